@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "policy/golden.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "policy/text.h"
+
+namespace sandrunner {
+namespace {
+
+using Doubles = std::vector<double>;
+
+/// weight (outputs, inputs) row-major times input, plus bias.
+Doubles linear(const std::vector<float>& weight, const std::vector<float>& bias,
+               const Doubles& input) {
+  Doubles output(bias.begin(), bias.end());
+  for (std::size_t row = 0; row < output.size(); ++row) {
+    for (std::size_t j = 0; j < input.size(); ++j) {
+      output[row] += static_cast<double>(weight[row * input.size() + j]) * input[j];
+    }
+  }
+  return output;
+}
+
+Doubles perceptron(const std::array<DenseParameters, 3>& layers, Doubles values) {
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    values = linear(layers[k].weight, layers[k].bias, values);
+    if (k + 1 == layers.size()) break;
+    for (double& value : values) value = value > 0.0 ? value : 0.01 * value;
+  }
+  return values;
+}
+
+double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
+
+/// The network again, as plainly as it can be written: the definition that `Network` is checked
+/// against.
+class PlainNetwork {
+ public:
+  explicit PlainNetwork(const NetworkParameters& parameters) : parameters_(parameters) {}
+
+  struct Output {
+    Doubles action;
+    Doubles estimate_raw;
+  };
+
+  Output step(const float* observation) {
+    const NetworkParameters& p = parameters_;
+    Doubles input;
+    for (int i = 0; i < kObservationSize; ++i) {
+      const double deviation = std::sqrt(static_cast<double>(p.observation_variance[i]) + 1e-8);
+      const double x = (static_cast<double>(observation[i]) - p.observation_mean[i]) / deviation;
+      const double limit = p.observation_clip;
+      input.push_back(std::clamp(x, -limit, limit));
+    }
+    const Doubles from_input = linear(p.encoder_weight_ih, p.encoder_bias_ih,
+                                      Doubles(input.begin() + kCommandSize, input.end()));
+    const Doubles from_state = linear(p.encoder_weight_hh, p.encoder_bias_hh, h_);
+    for (int u = 0; u < kHiddenSize; ++u) {
+      const auto gate = [&](int k) {
+        return from_input[k * kHiddenSize + u] + from_state[k * kHiddenSize + u];
+      };
+      c_[u] = logistic(gate(1)) * c_[u] + logistic(gate(0)) * std::tanh(gate(2));
+      h_[u] = logistic(gate(3)) * std::tanh(c_[u]);
+    }
+    const Doubles estimate_raw = perceptron(p.estimator, h_);
+    Doubles actor_input(input.begin(), input.begin() + kCommandSize);
+    actor_input.insert(actor_input.end(), h_.begin(), h_.end());
+    actor_input.insert(actor_input.end(), estimate_raw.begin(), estimate_raw.end());
+    return {perceptron(p.actor, actor_input), estimate_raw};
+  }
+
+ private:
+  const NetworkParameters& parameters_;
+  Doubles h_ = Doubles(kHiddenSize, 0.0);
+  Doubles c_ = Doubles(kHiddenSize, 0.0);
+};
+
+/// Uniform numbers in [-1, 1) by SplitMix64 (Steele, Lea, Flood 2014): the same on every machine.
+class Uniform {
+ public:
+  double next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
+  }
+
+ private:
+  std::uint64_t state_ = 0;
+};
+
+template <std::size_t kSize>
+double worst(const std::string& file, int step, const char* what,
+             const std::array<float, kSize>& found, const std::vector<float>& expected) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    const double wanted = expected[step * kSize + i];
+    const double deviation = std::abs(found[i] - wanted) / std::max(1.0, std::abs(wanted));
+    if (!(deviation <= kGoldenTolerance)) {
+      fail_file(file, "golden example fails at step {}: {}[{}] is {}, expected {:.9g}", step, what,
+                i, found[i], wanted);
+    }
+    largest = std::max(largest, deviation);
+  }
+  return largest;
+}
+
+}  // namespace
+
+GoldenExample make_golden_example(const NetworkParameters& parameters) {
+  GoldenExample golden;
+  PlainNetwork network(parameters);
+  Uniform uniform;
+  for (int k = 0; k < kGoldenSteps; ++k) {
+    for (int i = 0; i < kObservationSize; ++i) {
+      const double deviation = std::sqrt(static_cast<double>(parameters.observation_variance[i]));
+      // Of unit variance; in every fifth step one number lies beyond the clip.
+      double x = std::sqrt(3.0) * uniform.next();
+      if (k % 5 == 4 && i == k % kObservationSize) x *= 2.0 * parameters.observation_clip;
+      golden.observation.push_back(
+          static_cast<float>(parameters.observation_mean[i] + deviation * x));
+    }
+    const auto output = network.step(&golden.observation[k * kObservationSize]);
+    golden.action.insert(golden.action.end(), output.action.begin(), output.action.end());
+    golden.estimate_raw.insert(golden.estimate_raw.end(), output.estimate_raw.begin(),
+                               output.estimate_raw.end());
+  }
+  return golden;
+}
+
+double check_golden_example(const std::string& file, const Network& network,
+                            const GoldenExample& golden) {
+  double largest = 0.0;
+  NetworkState state;
+  NetworkOutput output;
+  for (int k = 0; k < kGoldenSteps; ++k) {
+    std::array<float, kObservationSize> observation;
+    std::copy_n(&golden.observation[k * kObservationSize], kObservationSize, observation.begin());
+    network.step(observation, state, output);
+    largest = std::max({largest, worst(file, k, "action", output.action, golden.action),
+                        worst(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
+  }
+  return largest;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The golden example of a policy file: inputs and outputs of the network, computed by other code
+// than `Network`, and run again whenever the file is loaded.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "policy/network.h"
+
+namespace sandrunner {
+
+inline constexpr int kGoldenSteps = 50;
+/// Allowed deviation of an output, relative to max(1, |expected output|).
+inline constexpr double kGoldenTolerance = 1e-4;
+
+/// kGoldenSteps steps, one after the other from the zero state; row-major.
+struct GoldenExample {
+  std::vector<float> observation;   ///< (kGoldenSteps, kObservationSize), raw
+  std::vector<float> action;        ///< (kGoldenSteps, kNumJoints), the actor's output
+  std::vector<float> estimate_raw;  ///< (kGoldenSteps, kEstimateSize), the estimator's output
+};
+
+/// Observations spread around the mean as the variance says, some beyond the clip, with the outputs
+/// that a plain double-precision evaluation gives.
+GoldenExample make_golden_example(const NetworkParameters& parameters);
+
+/// Runs the example through `network` and returns the largest deviation of an output, relative as
+/// the tolerance. Throws InputError ("<file>: golden example fails at step ...") where that exceeds
+/// kGoldenTolerance.
+double check_golden_example(const std::string& file, const Network& network,
+                            const GoldenExample& golden);
+
+}  // namespace sandrunner

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "policy/network.h"
+
+#include <fmt/format.h>
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "policy/activations.h"
+#include "rt/core/errors.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr int kLanes = 8;  // of one AVX register: x86-64-v3 is the floor
+
+/// A layer's weights in the order in which `multiply` reads them, so that a step is one forward
+/// stream through memory: panels of up to 64 rows; in each the bias, then one column after the
+/// other.
+///
+/// A panel is summed in eight registers, which hide the latency of the fused multiply-add. Narrow
+/// layers have fewer rows than that: there `kChains` sums share the columns (column j goes to sum j
+/// mod kChains).
+template <int kInputs, int kOutputs>
+struct PackedLayer {
+  static constexpr int kVectors = std::min(8, (kOutputs + kLanes - 1) / kLanes);
+  static constexpr int kChains = 8 / kVectors;
+  static constexpr int kRows = kVectors * kLanes;
+  static constexpr int kPanels = (kOutputs + kRows - 1) / kRows;
+  static constexpr int kPaddedOutputs = kPanels * kRows;
+  static_assert(kInputs % kChains == 0 && kVectors * kChains == 8);
+
+  alignas(64) float panel[kPanels][1 + kInputs][kRows];
+};
+
+/// `result` (kRows) = one panel times `input` (kInputs).
+template <int kInputs, int kOutputs>
+inline void multiply_panel(const PackedLayer<kInputs, kOutputs>& layer, int index,
+                           const float* input, float* result) noexcept {
+  using Layer = PackedLayer<kInputs, kOutputs>;
+  const float* weight = layer.panel[index][0];
+  __m256 sum[Layer::kChains][Layer::kVectors];
+  for (int chain = 0; chain < Layer::kChains; ++chain) {
+    for (int v = 0; v < Layer::kVectors; ++v) {
+      sum[chain][v] = chain == 0 ? _mm256_load_ps(weight + v * kLanes) : _mm256_setzero_ps();
+    }
+  }
+  weight += Layer::kRows;
+  for (int column = 0; column < kInputs; column += Layer::kChains) {
+    for (int chain = 0; chain < Layer::kChains; ++chain) {
+      const __m256 x = _mm256_broadcast_ss(input + column + chain);
+      for (int v = 0; v < Layer::kVectors; ++v) {
+        sum[chain][v] = _mm256_fmadd_ps(_mm256_load_ps(weight + v * kLanes), x, sum[chain][v]);
+      }
+      weight += Layer::kRows;
+    }
+  }
+  for (int stride = Layer::kChains / 2; stride > 0; stride /= 2) {
+    for (int chain = 0; chain < stride; ++chain) {
+      for (int v = 0; v < Layer::kVectors; ++v) {
+        sum[chain][v] = _mm256_add_ps(sum[chain][v], sum[chain + stride][v]);
+      }
+    }
+  }
+  for (int v = 0; v < Layer::kVectors; ++v) _mm256_store_ps(result + v * kLanes, sum[0][v]);
+}
+
+/// Output of a layer, padded to whole panels.
+template <int kInputs, int kOutputs>
+struct LayerOutput {
+  alignas(64) float value[PackedLayer<kInputs, kOutputs>::kPaddedOutputs];
+};
+
+template <int kInputs, int kOutputs>
+inline void linear(const PackedLayer<kInputs, kOutputs>& layer, const float* input,
+                   LayerOutput<kInputs, kOutputs>& output) noexcept {
+  using Layer = PackedLayer<kInputs, kOutputs>;
+  for (int p = 0; p < Layer::kPanels; ++p) {
+    multiply_panel(layer, p, input, output.value + p * Layer::kRows);
+  }
+}
+
+template <int kInputs, int kOutputs>
+inline void linear_leaky_relu(const PackedLayer<kInputs, kOutputs>& layer, const float* input,
+                              LayerOutput<kInputs, kOutputs>& output) noexcept {
+  linear(layer, input, output);
+  for (float& value : output.value) value = leaky_relu(value);
+}
+
+template <int kInputs, int kOutputs>
+void pack(const DenseParameters& parameters, PackedLayer<kInputs, kOutputs>& layer) {
+  using Layer = PackedLayer<kInputs, kOutputs>;
+  for (int row = 0; row < kOutputs; ++row) {
+    auto& panel = layer.panel[row / Layer::kRows];
+    const int lane = row % Layer::kRows;
+    panel[0][lane] = parameters.bias[row];
+    for (int j = 0; j < kInputs; ++j) panel[1 + j][lane] = parameters.weight[row * kInputs + j];
+  }
+}
+
+constexpr int kGates = 4;
+constexpr int kEncoderColumns = kEncoderInputSize + kHiddenSize;
+using EncoderLayer = PackedLayer<kEncoderColumns, kGates * kHiddenSize>;
+/// A panel of the encoder holds all four gates of its units, so that they are finished while they
+/// are hot.
+constexpr int kUnits = EncoderLayer::kRows / kGates;
+
+/// Columns are the input, then h. The two biases are one.
+void pack_encoder(const NetworkParameters& parameters, EncoderLayer& layer) {
+  for (int gate = 0; gate < kGates; ++gate) {
+    for (int unit = 0; unit < kHiddenSize; ++unit) {
+      const int row = gate * kHiddenSize + unit;
+      auto& panel = layer.panel[unit / kUnits];
+      const int lane = gate * kUnits + unit % kUnits;
+      panel[0][lane] = parameters.encoder_bias_ih[row] + parameters.encoder_bias_hh[row];
+      for (int j = 0; j < kEncoderInputSize; ++j) {
+        panel[1 + j][lane] = parameters.encoder_weight_ih[row * kEncoderInputSize + j];
+      }
+      for (int j = 0; j < kHiddenSize; ++j) {
+        panel[1 + kEncoderInputSize + j][lane] =
+            parameters.encoder_weight_hh[row * kHiddenSize + j];
+      }
+    }
+  }
+}
+
+/// `input` (kEncoderColumns) is the observation without the command, then h of the last step.
+inline void encode(const EncoderLayer& layer, const float* input, NetworkState& state) noexcept {
+  alignas(64) float gates[kGates][kUnits];
+  for (int p = 0; p < EncoderLayer::kPanels; ++p) {
+    multiply_panel(layer, p, input, gates[0]);
+    float* const h = state.h.data() + p * kUnits;
+    float* const c = state.c.data() + p * kUnits;
+    for (int u = 0; u < kUnits; ++u) {
+      const float in = sigmoid(gates[0][u]) * tanh_approximation(gates[2][u]);
+      c[u] = std::fma(sigmoid(gates[1][u]), c[u], in);
+      h[u] = sigmoid(gates[3][u]) * tanh_approximation(c[u]);
+    }
+  }
+}
+
+void check_sizes(const NetworkParameters& parameters) {
+  NetworkParameters copy = parameters;
+  for (const NamedTensor& tensor : tensors_of(copy)) {
+    if (tensor.values->size() != tensor.size()) {
+      throw InputError(fmt::format("network: tensor '{}' has {} values, expected {}", tensor.name,
+                                   tensor.values->size(), tensor.size()));
+    }
+  }
+}
+
+}  // namespace
+
+/// One block of memory, in the order of the computation.
+struct alignas(64) Network::PackedWeights {
+  float observation_mean[kObservationSize];
+  float observation_deviation[kObservationSize];
+  float observation_clip;
+  EncoderLayer encoder;
+  PackedLayer<kEstimatorSizes[0], kEstimatorSizes[1]> estimator_0;
+  PackedLayer<kEstimatorSizes[1], kEstimatorSizes[2]> estimator_1;
+  PackedLayer<kEstimatorSizes[2], kEstimatorSizes[3]> estimator_2;
+  PackedLayer<kActorSizes[0], kActorSizes[1]> actor_0;
+  PackedLayer<kActorSizes[1], kActorSizes[2]> actor_1;
+  PackedLayer<kActorSizes[2], kActorSizes[3]> actor_2;
+};
+
+Network::Network(const NetworkParameters& parameters) {
+  check_sizes(parameters);
+  auto weights = std::make_shared<PackedWeights>();  // value-initialised: padding is zero
+  for (int i = 0; i < kObservationSize; ++i) {
+    weights->observation_mean[i] = parameters.observation_mean[i];
+    weights->observation_deviation[i] = static_cast<float>(
+        std::sqrt(static_cast<double>(parameters.observation_variance[i]) + 1e-8));
+  }
+  weights->observation_clip = parameters.observation_clip;
+  pack_encoder(parameters, weights->encoder);
+  pack(parameters.estimator[0], weights->estimator_0);
+  pack(parameters.estimator[1], weights->estimator_1);
+  pack(parameters.estimator[2], weights->estimator_2);
+  pack(parameters.actor[0], weights->actor_0);
+  pack(parameters.actor[1], weights->actor_1);
+  pack(parameters.actor[2], weights->actor_2);
+  weights_ = std::move(weights);
+}
+
+void Network::step(const std::array<float, kObservationSize>& observation, NetworkState& state,
+                   NetworkOutput& output) const noexcept {
+  const PackedWeights& w = *weights_;
+  alignas(64) float normalised[kObservationSize];
+  for (int i = 0; i < kObservationSize; ++i) {
+    normalised[i] = clip((observation[i] - w.observation_mean[i]) / w.observation_deviation[i],
+                         w.observation_clip);
+  }
+  alignas(64) float encoder_input[kEncoderColumns];
+  std::copy_n(normalised + kCommandSize, kEncoderInputSize, encoder_input);
+  std::copy_n(state.h.data(), kHiddenSize, encoder_input + kEncoderInputSize);
+  encode(w.encoder, encoder_input, state);
+
+  alignas(64) float actor_input[kActorSizes[0]];
+  std::copy_n(normalised, kCommandSize, actor_input);
+  std::copy_n(state.h.data(), kHiddenSize, actor_input + kCommandSize);
+
+  LayerOutput<kEstimatorSizes[0], kEstimatorSizes[1]> estimator_0;
+  LayerOutput<kEstimatorSizes[1], kEstimatorSizes[2]> estimator_1;
+  LayerOutput<kEstimatorSizes[2], kEstimatorSizes[3]> estimate;
+  linear_leaky_relu(w.estimator_0, actor_input + kCommandSize, estimator_0);
+  linear_leaky_relu(w.estimator_1, estimator_0.value, estimator_1);
+  linear(w.estimator_2, estimator_1.value, estimate);
+  std::copy_n(estimate.value, kEstimateSize, actor_input + kCommandSize + kHiddenSize);
+  std::copy_n(estimate.value, kEstimateSize, output.estimate_raw.begin());
+
+  LayerOutput<kActorSizes[0], kActorSizes[1]> actor_0;
+  LayerOutput<kActorSizes[1], kActorSizes[2]> actor_1;
+  LayerOutput<kActorSizes[2], kActorSizes[3]> action;
+  linear_leaky_relu(w.actor_0, actor_input, actor_0);
+  linear_leaky_relu(w.actor_1, actor_0.value, actor_1);
+  linear(w.actor_2, actor_1.value, action);
+  std::copy_n(action.value, kNumJoints, output.action.begin());
+}
+
+}  // namespace sandrunner

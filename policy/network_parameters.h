@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The network's numbers as a trainer and a file hold them: plain row-major tensors. `Network` packs
+// them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "rt/core/messages.h"
+
+namespace sandrunner {
+
+inline constexpr int kCommandSize = 3;
+/// The encoder sees the observation without its command.
+inline constexpr int kEncoderInputSize = kObservationSize - kCommandSize;
+inline constexpr int kHiddenSize = 64;
+/// Input, two hidden layers, output (paper, "Controller structure").
+inline constexpr std::array<int, 4> kEstimatorSizes = {kHiddenSize, 128, 128, kEstimateSize};
+/// The actor's input is the normalised command, the encoder's output and the raw estimate, in this
+/// order.
+inline constexpr std::array<int, 4> kActorSizes = {kCommandSize + kHiddenSize + kEstimateSize, 256,
+                                                   128, kNumJoints};
+
+/// A dense layer: weight (outputs, inputs) row-major, bias (outputs).
+struct DenseParameters {
+  std::vector<float> weight;
+  std::vector<float> bias;
+};
+
+/// All parameters of the network, in PyTorch's layout. The LSTM's gates are stacked in the order
+/// input, forget, cell, output; both of its biases are added. Shapes: `tensors_of`.
+struct NetworkParameters {
+  std::vector<float> encoder_weight_ih;
+  std::vector<float> encoder_weight_hh;
+  std::vector<float> encoder_bias_ih;
+  std::vector<float> encoder_bias_hh;
+  std::array<DenseParameters, 3> estimator;
+  std::array<DenseParameters, 3> actor;
+  /// Observations enter as (x - mean) / sqrt(variance + 1e-8), limited to +-observation_clip.
+  std::vector<float> observation_mean;
+  std::vector<float> observation_variance;
+  float observation_clip = 10.0f;
+};
+
+/// One tensor: its name in the policy file, its shape and its values.
+struct NamedTensor {
+  std::string name;
+  std::vector<std::size_t> shape;
+  std::vector<float>* values;
+
+  /// Number of values that `shape` asks for.
+  std::size_t size() const;
+};
+
+/// The tensors of `parameters` in the order of the computation; the pointers live as long as
+/// `parameters`.
+std::vector<NamedTensor> tensors_of(NetworkParameters& parameters);
+
+}  // namespace sandrunner

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "policy/policy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace sandrunner {
+
+Policy::Policy(PolicySpec spec, Network network)
+    : spec_(std::move(spec)), network_(std::move(network)) {
+  for (int i = 0; i < kEstimateSize; ++i) {
+    estimate_deviation_[i] = std::sqrt(static_cast<double>(spec_.estimate_variance[i]));
+  }
+}
+
+PolicyStep Policy::step(const std::array<float, kObservationSize>& observation) noexcept {
+  NetworkOutput output;
+  network_.step(observation, state_, output);
+
+  PolicyStep result;
+  const double limit =
+      spec_.action_clip > 0.0 ? spec_.action_clip : std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kNumJoints; ++i) {
+    const double action = std::clamp(static_cast<double>(output.action[i]), -limit, limit);
+    result.target_rad[i] = spec_.nominal_position_rad[i] + spec_.action_scale_rad * action;
+  }
+  const auto physical = [&](int i) {
+    return output.estimate_raw[i] * estimate_deviation_[i] + spec_.estimate_mean[i];
+  };
+  result.estimate.body_height_m = physical(0);
+  for (int i = 0; i < 3; ++i) result.estimate.velocity_mps[i] = physical(1 + i);
+  for (int leg = 0; leg < kNumLegs; ++leg) result.estimate.foot_height_m[leg] = physical(4 + leg);
+  return result;
+}
+
+}  // namespace sandrunner

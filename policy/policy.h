@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "policy/network.h"
+
+namespace sandrunner {
+
+/// Everything besides the network that is needed to run a policy. README.md of this folder says how
+/// a file holds it.
+struct PolicySpec {
+  std::string name;
+  /// In the order kJointNames.
+  JointArray<double> nominal_position_rad{};
+  double action_scale_rad = 0.0;
+  /// Limit of |action|, before the scale; 0: none.
+  double action_clip = 0.0;
+  double kp_nmprad = 0.0;
+  double kd_nmsprad = 0.0;
+  double torque_limit_nm = 0.0;
+  /// The yaw command is limited to this centripetal acceleration over the commanded speed.
+  double yaw_command_clip_mps2 = 0.0;
+  /// Estimate in physical units = raw * sqrt(variance) + mean: body height (m), velocity (m/s),
+  /// foot heights (m).
+  std::array<float, kEstimateSize> estimate_mean{};
+  std::array<float, kEstimateSize> estimate_variance{};
+  /// Where the policy comes from: free text under free keys.
+  std::map<std::string, std::string> provenance;
+};
+
+/// What one step of the policy yields.
+struct PolicyStep {
+  /// Joint targets: nominal position + action scale * limited action.
+  JointArray<double> target_rad{};
+  StateEstimate estimate;
+};
+
+/// A policy that runs: network, its state, and the units around it. `load_policy` (policy_file.h)
+/// makes one.
+class Policy {
+ public:
+  Policy(PolicySpec spec, Network network);
+
+  /// Clears the memory of the network, as before its first step.
+  void reset() noexcept { state_ = {}; }
+
+  /// One step at kPolicyHz. `observation` is raw; estimator/observation.h builds it. Real-time
+  /// safe. NaN in, NaN out, until reset().
+  PolicyStep step(const std::array<float, kObservationSize>& observation) noexcept;
+
+  /// All that a step depends on besides its input: for snapshots and hashes.
+  const NetworkState& state() const noexcept { return state_; }
+  void set_state(const NetworkState& state) noexcept { state_ = state; }
+
+  const PolicySpec& spec() const noexcept { return spec_; }
+
+ private:
+  PolicySpec spec_;
+  std::array<double, kEstimateSize> estimate_deviation_;
+  Network network_;
+  NetworkState state_;
+};
+
+}  // namespace sandrunner

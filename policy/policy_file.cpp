@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "policy/policy_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "policy/safetensors.h"
+#include "policy/text.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr const char* kFormatVersion = "1";
+constexpr double kLargestObservationClip = 1e6;
+constexpr std::string_view kProvenancePrefix = "provenance.";
+
+std::string joint_names() { return joined(kJointNames, ","); }
+
+/// Takes the keys out of the metadata one by one; what is left at the end is unknown.
+class Metadata {
+ public:
+  Metadata(const std::string& path, std::map<std::string, std::string> values)
+      : path_(path), values_(std::move(values)) {}
+
+  std::string text(const std::string& key) {
+    auto node = values_.extract(key);
+    if (node.empty()) fail_file(path_, "metadata key '{}' is missing", key);
+    return node.mapped();
+  }
+
+  void expect(const std::string& key, const std::string& expected) {
+    const std::string found = text(key);
+    if (found != expected) {
+      fail_file(path_, "metadata '{}' is '{}', expected '{}'", key, printable(found, 120),
+                expected);
+    }
+  }
+
+  double positive(const std::string& key) {
+    const double value = parse(key, text(key));
+    if (value <= 0.0) fail_file(path_, "metadata '{}' is {}, expected more than 0", key, value);
+    return value;
+  }
+
+  double not_negative(const std::string& key) {
+    const double value = parse(key, text(key));
+    if (value < 0.0) fail_file(path_, "metadata '{}' is {}, expected at least 0", key, value);
+    return value;
+  }
+
+  bool contains(const std::string& key) const { return values_.contains(key); }
+
+  JointArray<double> joint_numbers(const std::string& key) {
+    const std::string list = text(key);
+    const auto count = std::count(list.begin(), list.end(), ',') + 1;
+    if (count != kNumJoints) {
+      fail_file(path_, "metadata '{}' has {} numbers, expected {}", key, count, kNumJoints);
+    }
+    JointArray<double> result;
+    std::size_t begin = 0;
+    for (double& value : result) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      value = parse(key, std::string_view(list).substr(begin, end - begin));
+      begin = end + 1;
+    }
+    return result;
+  }
+
+  std::map<std::string, std::string> provenance() {
+    std::map<std::string, std::string> result;
+    for (auto it = values_.lower_bound(std::string(kProvenancePrefix));
+         it != values_.end() && it->first.starts_with(kProvenancePrefix); it = values_.erase(it)) {
+      result[it->first.substr(kProvenancePrefix.size())] = it->second;
+    }
+    return result;
+  }
+
+  void expect_empty() const {
+    if (!values_.empty()) {
+      fail_file(path_, "unknown metadata key '{}'", printable(values_.begin()->first));
+    }
+  }
+
+ private:
+  double parse(const std::string& key, std::string_view text) const {
+    double value = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value)) {
+      fail_file(path_, "metadata '{}' is '{}', expected a number", key, printable(text));
+    }
+    return value;
+  }
+
+  const std::string& path_;
+  std::map<std::string, std::string> values_;
+};
+
+PolicySpec read_spec(const std::string& path, const std::map<std::string, std::string>& metadata,
+                     float& observation_clip) {
+  Metadata values(path, metadata);
+  if (!values.contains("sandrunner.format")) {
+    fail_file(path,
+              "not a policy file: metadata key 'sandrunner.format' is missing "
+              "('sandrunner-policy import' takes bare weights)");
+  }
+  values.expect("sandrunner.format", kFormatVersion);
+  values.expect("sandrunner.joint_names", joint_names());
+  values.expect("sandrunner.policy_hz", std::to_string(kPolicyHz));
+  values.expect("sandrunner.control_hz", std::to_string(kControlHz));
+  PolicySpec spec;
+  spec.name = values.text("sandrunner.name");
+  spec.nominal_position_rad = values.joint_numbers("sandrunner.nominal_position_rad");
+  spec.action_scale_rad = values.positive("sandrunner.action_scale_rad");
+  if (values.contains("sandrunner.action_clip")) {
+    spec.action_clip = values.not_negative("sandrunner.action_clip");
+  }
+  spec.kp_nmprad = values.not_negative("sandrunner.kp_nmprad");
+  spec.kd_nmsprad = values.not_negative("sandrunner.kd_nmsprad");
+  spec.torque_limit_nm = values.positive("sandrunner.torque_limit_nm");
+  spec.yaw_command_clip_mps2 = values.positive("sandrunner.yaw_command_clip_mps2");
+  const double clip = values.positive("sandrunner.observation_clip");
+  if (clip > kLargestObservationClip) {
+    fail_file(path, "metadata 'sandrunner.observation_clip' is {}, expected at most {}", clip,
+              kLargestObservationClip);
+  }
+  observation_clip = static_cast<float>(clip);
+  spec.provenance = values.provenance();
+  values.expect_empty();
+  return spec;
+}
+
+std::map<std::string, std::string> write_spec(const PolicySpec& spec, float observation_clip) {
+  // fmt writes the shortest text that reads back as the same number.
+  const auto text = [](auto value) { return fmt::format("{}", value); };
+  std::map<std::string, std::string> metadata = {
+      {"sandrunner.format", kFormatVersion},
+      {"sandrunner.name", spec.name},
+      {"sandrunner.joint_names", joint_names()},
+      {"sandrunner.policy_hz", text(kPolicyHz)},
+      {"sandrunner.control_hz", text(kControlHz)},
+      {"sandrunner.nominal_position_rad", joined(spec.nominal_position_rad, ",")},
+      {"sandrunner.action_scale_rad", text(spec.action_scale_rad)},
+      {"sandrunner.action_clip", text(spec.action_clip)},
+      {"sandrunner.kp_nmprad", text(spec.kp_nmprad)},
+      {"sandrunner.kd_nmsprad", text(spec.kd_nmsprad)},
+      {"sandrunner.torque_limit_nm", text(spec.torque_limit_nm)},
+      {"sandrunner.yaw_command_clip_mps2", text(spec.yaw_command_clip_mps2)},
+      {"sandrunner.observation_clip", text(observation_clip)}};
+  for (const auto& [key, value] : spec.provenance) {
+    metadata[std::string(kProvenancePrefix).append(key)] = value;
+  }
+  return metadata;
+}
+
+/// The tensors of a file besides the network's, with `estimate_*` as vectors while they are read or
+/// written.
+struct OtherTensors {
+  std::vector<float> estimate_mean;
+  std::vector<float> estimate_variance;
+
+  std::vector<NamedTensor> list() {
+    return {{"estimate.mean", {kEstimateSize}, &estimate_mean},
+            {"estimate.variance", {kEstimateSize}, &estimate_variance}};
+  }
+};
+
+std::vector<NamedTensor> golden_tensors(GoldenExample& golden) {
+  return {{"golden.observation", {kGoldenSteps, kObservationSize}, &golden.observation},
+          {"golden.action", {kGoldenSteps, kNumJoints}, &golden.action},
+          {"golden.estimate", {kGoldenSteps, kEstimateSize}, &golden.estimate_raw}};
+}
+
+/// Moves each of `wanted` out of `tensors`.
+void take(const std::string& path, const std::vector<NamedTensor>& wanted,
+          std::map<std::string, Tensor>& tensors) {
+  for (const NamedTensor& want : wanted) {
+    auto node = tensors.extract(want.name);
+    if (node.empty()) fail_file(path, "tensor '{}' is missing", want.name);
+    if (node.mapped().shape != want.shape) {
+      fail_file(path, "tensor '{}' has shape [{}], expected [{}]", want.name,
+                joined(node.mapped().shape, ", "), joined(want.shape, ", "));
+    }
+    *want.values = std::move(node.mapped().values);
+  }
+}
+
+void check_variance(const std::string& path, const std::string& name,
+                    const std::vector<float>& variance) {
+  const auto bad = std::find_if(variance.begin(), variance.end(), [](float v) { return v < 0.0f; });
+  if (bad != variance.end()) {
+    fail_file(path, "tensor '{}': value {} is {}, expected at least 0", name,
+              bad - variance.begin(), *bad);
+  }
+}
+
+/// Network, normalisation and, if wanted, golden example out of `tensors`, which must hold nothing
+/// else.
+void take_tensors(const std::string& path, std::map<std::string, Tensor> tensors, bool with_golden,
+                  PolicyFile& file) {
+  OtherTensors others;
+  take(path, tensors_of(file.parameters), tensors);
+  take(path, others.list(), tensors);
+  if (with_golden) take(path, golden_tensors(file.golden), tensors);
+  if (!tensors.empty()) {
+    fail_file(path, "unknown tensor '{}'", printable(tensors.begin()->first));
+  }
+  check_variance(path, "observation.variance", file.parameters.observation_variance);
+  check_variance(path, "estimate.variance", others.estimate_variance);
+  std::copy_n(others.estimate_mean.begin(), kEstimateSize, file.spec.estimate_mean.begin());
+  std::copy_n(others.estimate_variance.begin(), kEstimateSize, file.spec.estimate_variance.begin());
+}
+
+PolicyFile decode(const std::string& path, TensorFile content) {
+  PolicyFile file;
+  file.spec = read_spec(path, content.metadata, file.parameters.observation_clip);
+  take_tensors(path, std::move(content.tensors), true, file);
+  check_golden_example(path, Network(file.parameters), file.golden);
+  return file;
+}
+
+}  // namespace
+
+PolicyFile read_policy_file(const std::string& path) {
+  return decode(path, read_safetensors(path));
+}
+
+Policy load_policy(const std::string& path) {
+  PolicyFile file = read_policy_file(path);
+  return {std::move(file.spec), Network(file.parameters)};
+}
+
+void write_policy_file(const std::string& path, const PolicyFile& file) {
+  PolicyFile copy = file;
+  OtherTensors others{{file.spec.estimate_mean.begin(), file.spec.estimate_mean.end()},
+                      {file.spec.estimate_variance.begin(), file.spec.estimate_variance.end()}};
+  TensorFile content;
+  content.metadata = write_spec(file.spec, file.parameters.observation_clip);
+  for (const auto& list :
+       {tensors_of(copy.parameters), others.list(), golden_tensors(copy.golden)}) {
+    for (const NamedTensor& tensor : list) {
+      if (tensor.values->size() != tensor.size()) {
+        fail_file(path, "tensor '{}' has {} values, expected {}", tensor.name,
+                  tensor.values->size(), tensor.size());
+      }
+      content.tensors[tensor.name] = {tensor.shape, *tensor.values};
+    }
+  }
+  decode(path, content);
+  write_safetensors(path, content);
+}
+
+PolicyFile read_bare_weights(const std::string& path) {
+  TensorFile content = read_safetensors(path);
+  PolicyFile file;
+  take_tensors(path, std::move(content.tensors), false, file);
+  file.spec.provenance = std::move(content.metadata);
+  return file;
+}
+
+}  // namespace sandrunner

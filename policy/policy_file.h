@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Policy files: safetensors whose metadata says everything that is needed to run the policy, with a
+// golden example. README.md of this folder defines the format.
+#pragma once
+
+#include <string>
+
+#include "policy/golden.h"
+#include "policy/policy.h"
+
+namespace sandrunner {
+
+/// Content of a policy file.
+struct PolicyFile {
+  PolicySpec spec;
+  NetworkParameters parameters;
+  GoldenExample golden;
+};
+
+/// Reads a file, checks all of it and runs its golden example. Throws InputError, in one line that
+/// names the file and the tensor or key, if anything is missing, unknown, of another size or out of
+/// range.
+PolicyFile read_policy_file(const std::string& path);
+
+/// The policy of a file, ready to run. Errors as read_policy_file.
+Policy load_policy(const std::string& path);
+
+/// Checks `file` as read_policy_file would, then writes it; `path` is whole or untouched. Throws
+/// InputError.
+void write_policy_file(const std::string& path, const PolicyFile& file);
+
+/// Reads the layout in which others publish such networks: the same tensors without golden example,
+/// and metadata that mean nothing here and become the provenance. The rest of the result is left at
+/// its defaults. Throws InputError.
+PolicyFile read_bare_weights(const std::string& path);
+
+}  // namespace sandrunner

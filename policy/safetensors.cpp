@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "policy/safetensors.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "policy/text.h"
+
+namespace sandrunner {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the format is little-endian");
+
+using Json = nlohmann::json;
+constexpr std::size_t kLengthBytes = 8;
+constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;  // a policy has half a megabyte
+
+[[noreturn]] void fail_with_errno(const std::string& path, const char* what) {
+  fail_file(path, "{}: {}", what, std::generic_category().message(errno));
+}
+
+std::string read_bytes(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) fail_file(path, "no such file");
+  if (!std::filesystem::is_regular_file(status)) fail_file(path, "not a regular file");
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) fail_file(path, "cannot be read: {}", error.message());
+  if (size > kMaxFileBytes) {
+    fail_file(path, "{} bytes, expected at most {}", size, kMaxFileBytes);
+  }
+  std::string bytes(size, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail_with_errno(path, "cannot be read");
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (stream.gcount() != static_cast<std::streamsize>(size))
+    fail_file(path, "changed while it was read");
+  return bytes;
+}
+
+/// Parses the header; a key that occurs twice in one object is an error.
+Json parse_header(const std::string& path, std::string_view text) {
+  std::vector<std::set<std::string>> open_objects;
+  const auto watch_keys = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) {
+      open_objects.emplace_back();
+    } else if (event == Json::parse_event_t::object_end) {
+      open_objects.pop_back();
+    } else if (event == Json::parse_event_t::key) {
+      const auto key = parsed.get<std::string>();
+      if (!open_objects.back().insert(key).second) {
+        fail_file(path, "header has the key '{}' twice", printable(key));
+      }
+    }
+    return true;
+  };
+  try {
+    return Json::parse(text.begin(), text.end(), watch_keys);
+  } catch (const Json::parse_error& error) {
+    fail_file(path, "header is not valid JSON at byte {}", error.byte);
+  }
+}
+
+struct TensorEntry {
+  std::string name;
+  std::vector<std::size_t> shape;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+std::vector<std::size_t> read_sizes(const std::string& path, const std::string& tensor,
+                                    const char* key, const Json& json) {
+  if (!json.is_array() || !std::all_of(json.begin(), json.end(),
+                                       [](const Json& n) { return n.is_number_unsigned(); })) {
+    fail_file(path, "tensor '{}': {} is not an array of natural numbers", tensor, key);
+  }
+  return json.get<std::vector<std::size_t>>();
+}
+
+TensorEntry read_entry(const std::string& path, const std::string& name, const Json& json,
+                       std::size_t data_bytes) {
+  const std::string tensor = printable(name);
+  if (!json.is_object()) fail_file(path, "tensor '{}': header entry is not an object", tensor);
+  for (const char* key : {"dtype", "shape", "data_offsets"}) {
+    if (!json.contains(key)) fail_file(path, "tensor '{}': {} is missing", tensor, key);
+  }
+  if (json.size() != 3) {
+    fail_file(path, "tensor '{}': header entry has {} keys, expected dtype, shape, data_offsets",
+              tensor, json.size());
+  }
+  const Json& dtype = json["dtype"];
+  if (dtype != "F32") {
+    fail_file(path, "tensor '{}': dtype is {}, expected F32", tensor,
+              dtype.is_string() ? printable(dtype.get<std::string>()) : "not a string");
+  }
+  const auto offsets = read_sizes(path, tensor, "data_offsets", json["data_offsets"]);
+  if (offsets.size() != 2 || offsets[0] > offsets[1] || offsets[1] > data_bytes) {
+    fail_file(path, "tensor '{}': data_offsets do not lie in the {} bytes of data", tensor,
+              data_bytes);
+  }
+  TensorEntry entry{name, read_sizes(path, tensor, "shape", json["shape"]), offsets[0], offsets[1]};
+  const std::size_t bytes = entry.end - entry.begin;
+  std::size_t values = 1;
+  for (const std::size_t n : entry.shape) {
+    // The limit keeps the product from overflowing.
+    values = n == 0 || values <= data_bytes / n ? values * n : data_bytes + 1;
+  }
+  if (bytes != sizeof(float) * values) {
+    fail_file(path, "tensor '{}': {} bytes of data do not fit the shape [{}]", tensor, bytes,
+              joined(entry.shape, ", "));
+  }
+  return entry;
+}
+
+void check_finite(const std::string& path, const std::string& name, const Tensor& tensor) {
+  const auto bad = std::find_if(tensor.values.begin(), tensor.values.end(),
+                                [](float value) { return !std::isfinite(value); });
+  if (bad != tensor.values.end()) {
+    fail_file(path, "tensor '{}': value {} is not finite", printable(name),
+              bad - tensor.values.begin());
+  }
+}
+
+std::map<std::string, std::string> read_metadata(const std::string& path, const Json& json) {
+  std::map<std::string, std::string> metadata;
+  if (!json.is_object()) fail_file(path, "__metadata__ is not an object");
+  for (const auto& [key, value] : json.items()) {
+    if (!value.is_string()) {
+      fail_file(path, "__metadata__ '{}' is not a string", printable(key));
+    }
+    metadata[key] = value.get<std::string>();
+  }
+  return metadata;
+}
+
+/// File that vanishes unless it is renamed to its final name.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& target)
+      : target_(target), path_(target + ".partial-" + std::to_string(::getpid())) {
+    std::error_code error;
+    const auto status = std::filesystem::status(target, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+      fail_file(target, "cannot be written: exists and is not a regular file");
+    }
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail_with_errno(target, "cannot be written");
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!kept_) ::unlink(path_.c_str());
+  }
+
+  void write(const char* bytes, std::size_t size) {
+    while (size > 0) {
+      const ssize_t written = ::write(descriptor_, bytes, size);
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail_with_errno(target_, "cannot be written");
+      bytes += written;
+      size -= static_cast<std::size_t>(written);
+    }
+  }
+
+  void keep() {
+    if (::fsync(descriptor_) != 0) fail_with_errno(target_, "cannot be written");
+    const int closed = ::close(std::exchange(descriptor_, -1));
+    if (closed != 0 || ::rename(path_.c_str(), target_.c_str()) != 0) {
+      fail_with_errno(target_, "cannot be written");
+    }
+    kept_ = true;
+  }
+
+ private:
+  std::string target_;
+  std::string path_;
+  int descriptor_ = -1;
+  bool kept_ = false;
+};
+
+}  // namespace
+
+TensorFile read_safetensors(const std::string& path) {
+  const std::string bytes = read_bytes(path);
+  std::uint64_t header_bytes = 0;
+  if (bytes.size() < kLengthBytes) {
+    fail_file(path, "{} bytes are too few for a safetensors file", bytes.size());
+  }
+  std::memcpy(&header_bytes, bytes.data(), kLengthBytes);
+  if (header_bytes > bytes.size() - kLengthBytes) {
+    fail_file(path,
+              "a header of {} bytes does not fit in a file of {} (truncated, or not safetensors)",
+              header_bytes, bytes.size());
+  }
+  const std::string_view content(bytes);
+  const std::string_view data = content.substr(kLengthBytes + header_bytes);
+  const Json header = parse_header(path, content.substr(kLengthBytes, header_bytes));
+  if (!header.is_object()) fail_file(path, "header is not a JSON object");
+
+  TensorFile file;
+  std::vector<TensorEntry> entries;
+  for (const auto& [name, json] : header.items()) {
+    if (name == "__metadata__") {
+      file.metadata = read_metadata(path, json);
+    } else {
+      entries.push_back(read_entry(path, name, json, data.size()));
+    }
+  }
+  std::sort(entries.begin(), entries.end(), [](const TensorEntry& a, const TensorEntry& b) {
+    return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
+  });
+  std::size_t end = 0;
+  for (const TensorEntry& entry : entries) {
+    if (entry.begin != end) {
+      fail_file(path, "tensor '{}': data begin at byte {}, expected {}", printable(entry.name),
+                entry.begin, end);
+    }
+    end = entry.end;
+    Tensor tensor{entry.shape, std::vector<float>((entry.end - entry.begin) / sizeof(float))};
+    std::copy_n(data.data() + entry.begin, entry.end - entry.begin,
+                reinterpret_cast<char*>(tensor.values.data()));
+    check_finite(path, entry.name, tensor);
+    file.tensors.emplace(entry.name, std::move(tensor));
+  }
+  if (end != data.size()) {
+    fail_file(path, "{} bytes of data, expected {}", data.size(), end);
+  }
+  return file;
+}
+
+void write_safetensors(const std::string& path, const TensorFile& file) {
+  Json header = Json::object();
+  if (!file.metadata.empty()) header["__metadata__"] = file.metadata;
+  std::size_t end = 0;
+  for (const auto& [name, tensor] : file.tensors) {
+    check_finite(path, name, tensor);
+    const std::size_t begin = std::exchange(end, end + sizeof(float) * tensor.values.size());
+    header[name] = {{"dtype", "F32"}, {"shape", tensor.shape}, {"data_offsets", {begin, end}}};
+    read_entry(path, name, header[name], end);
+  }
+  std::string text;
+  try {
+    text = header.dump();
+  } catch (const Json::type_error&) {
+    fail_file(path, "metadata is not valid UTF-8");
+  }
+  text.resize((text.size() + 7) / 8 * 8, ' ');  // the data are aligned
+
+  TemporaryFile output(path);
+  const std::uint64_t header_bytes = text.size();
+  output.write(reinterpret_cast<const char*>(&header_bytes), sizeof(header_bytes));
+  output.write(text.data(), text.size());
+  for (const auto& [name, tensor] : file.tensors) {
+    output.write(reinterpret_cast<const char*>(tensor.values.data()),
+                 sizeof(float) * tensor.values.size());
+  }
+  output.keep();
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reader and writer of the safetensors container (https://github.com/huggingface/safetensors,
+// "Format"), for tensors of float32 only: 8 bytes of header length (little-endian), a JSON header,
+// the data.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace sandrunner {
+
+/// Dense float32 tensor, row-major.
+struct Tensor {
+  std::vector<std::size_t> shape;
+  std::vector<float> values;
+};
+
+/// Content of a safetensors file.
+struct TensorFile {
+  std::map<std::string, std::string> metadata;
+  std::map<std::string, Tensor> tensors;
+};
+
+/// Reads a whole file. Throws InputError, naming the file and the tensor, for anything that is not
+/// a well-formed file of finite float32 tensors that fill the data area without gap or overlap.
+TensorFile read_safetensors(const std::string& path);
+
+/// Writes a temporary file beside `path` and renames it, so that `path` is whole or untouched.
+/// Throws InputError if the target cannot be written or a tensor is malformed.
+void write_safetensors(const std::string& path, const TensorFile& file);
+
+}  // namespace sandrunner

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One step of the 4 kHz controller. It has no clock, thread or file: time is the tick of the
+// sensors, and all that it remembers is a ControllerState, so that a run replays from its recorded
+// inputs.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "rt/core/command_shaping.h"
+#include "rt/core/messages.h"
+#include "rt/core/mode_machine.h"
+#include "rt/core/robot_io.h"
+#include "rt/core/safety_gate.h"
+
+namespace sandrunner {
+
+/// Walk: joint targets of the policy with the policy's gains.
+struct WalkConfig {
+  double kp_nmprad = 50.0;
+  double kd_nmsprad = 0.5;
+  /// A policy output takes effect this many ticks after its input was sampled, 1 to 39; one that
+  /// comes later takes effect at once and counts as late.
+  std::uint64_t latency_ticks = 1;
+  // On request of Stand the command slows down to zero, the policy comes to rest, then Stand takes
+  // over.
+  double stop_deceleration_mps2 = 1.0;
+  double stop_yaw_deceleration_radps2 = 1.0;
+  double stop_speed_radps = 1.0;  ///< at rest: no joint and no body axis turns faster ...
+  double stop_calm_s = 0.25;      ///< ... for this long
+  double stop_time_s = 3.0;       ///< at zero command: longest wait for that rest
+};
+
+/// StandUp and Stand.
+struct StandConfig {
+  double kp_nmprad = 100.0;
+  double kd_nmsprad = 1.0;
+  /// Posture of Stand, and of Walk until the first policy output.
+  JointArray<double> nominal_rad{0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672,
+                                 0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672};
+  std::array<double, kJointsPerLeg> fold_rad{0.0, 1.2, -2.4};  ///< of each leg, before it extends
+  double fold_s = 1.0;
+  double extend_s = 1.5;
+  double skip_fold_rad = 0.3;    ///< no folding if all joints are nearer than this to nominal
+  double blend_s = 1.5;          ///< from the posture in Walk to that of Stand
+  double max_speed_radps = 4.0;  ///< of the targets: a longer way takes longer than the times above
+};
+
+/// Damping and the damping after a fault.
+struct DampingConfig {
+  double kd_nmsprad = 2.0;
+  double fault_s = 2.0;  ///< after a fault: damping for this long, then drives off
+};
+
+/// Shaping of the velocity command.
+struct ShapingConfig {
+  double centripetal_limit_mps2 = kCentripetalLimit_mps2;
+  double acceleration_limit_mps2 = 0.0;        ///< slew of vx and of vy; 0: off
+  double yaw_acceleration_limit_radps2 = 0.0;  ///< slew of the yaw rate; 0: off
+  /// A command older than this is taken as zero: the robot stops when its operator is lost. 0: off.
+  std::uint64_t operator_hold_ticks = 0;
+};
+
+struct ControllerConfig {
+  WalkConfig walk;
+  StandConfig stand;
+  DampingConfig damping;
+  ShapingConfig shaping;
+  GateConfig gate;
+};
+
+/// All that the controller remembers; a copy is a snapshot. All members are 64 bits wide: no
+/// padding.
+struct ControllerState {
+  Mode mode = Mode::kPassive;
+  std::uint64_t entered = 0;          ///< 1 once the first step has entered `mode`
+  std::uint64_t mode_start_tick = 0;  ///< when `mode` was entered
+  std::uint64_t request_id = 0;       ///< latest request that was considered
+  std::uint64_t disable_tick = 0;     ///< Fault: when the drives go off
+
+  // Motion of StandUp and Stand: from `from_rad` to `to_rad` between two ticks.
+  JointArray<double> from_rad{};
+  JointArray<double> to_rad{};
+  std::uint64_t motion_start_tick = 0;
+  std::uint64_t motion_ticks = 0;
+  std::uint64_t folding = 0;  ///< 1 in the first phase of StandUp
+
+  // Walk.
+  VelocityCommand command;            ///< after the slew, before the yaw clip
+  std::uint64_t stopping = 0;         ///< 1 after a request of Stand
+  std::uint64_t zero_since_tick = 0;  ///< while stopping: since when the command has been zero
+  std::uint64_t restless_tick = 0;    ///< while stopping: when something last moved
+  std::uint64_t episode = 0;
+  std::uint64_t next_policy_slot = 0;  ///< the policy is released when tick / 40 reaches this
+  JointArray<double> target_rad{};     ///< in use
+  std::uint64_t policy_sequence = 0;   ///< of the output in use; 0: none yet
+  std::uint64_t policy_input_tick =
+      0;  ///< of the output in use; before the first one, start of Walk
+  std::uint64_t late_policy_outputs = 0;  ///< since the start
+
+  GateState gate;
+};
+static_assert(std::is_trivially_copyable_v<ControllerState>);
+static_assert(sizeof(ControllerState) == 8 * (19 + 3 * kNumJoints) + sizeof(GateState),
+              "no padding");
+
+struct ControllerInput {
+  SensorFrame sensors;
+  PolicyOutput policy;  ///< newest one; the same one may be given any number of times
+  OperatorCommand command;
+};
+
+struct ControllerOutput {
+  SafeCommand command;
+  PolicyInput policy_input;
+  /// 1 in Walk on every 40th tick (or the first one after it, if that was skipped): run the policy
+  /// on `policy_input`. Else 0.
+  std::uint64_t release_policy = 0;
+  Mode mode = Mode::kPassive;
+  std::uint64_t faults = 0;  ///< latched bits of Fault
+};
+static_assert(std::is_trivially_copyable_v<ControllerInput>);
+static_assert(std::is_trivially_copyable_v<ControllerOutput>);
+
+class Controller {
+ public:
+  /// `config` must be sensible (finite, times, gains and thresholds not negative); it is not
+  /// checked here. `start` is entered by the first step, which leaves requests to the second:
+  /// Passive, or Walk for a simulated robot that starts on its feet.
+  explicit Controller(const ControllerConfig& config, Mode start = Mode::kPassive);
+
+  /// One tick. `input.sensors.tick` must grow from call to call; ticks may be skipped.
+  void step(const ControllerInput& input, ControllerOutput& output) noexcept;
+
+  const ControllerState& state() const noexcept { return state_; }
+  void restore(const ControllerState& state) noexcept { state_ = state; }
+
+ private:
+  Mode after_request(const OperatorCommand& command, std::uint64_t tick) noexcept;
+  Mode after_time(Mode mode, std::uint64_t tick) const noexcept;
+  void enter(Mode mode, const SensorFrame& sensors) noexcept;
+  void start_motion(const JointArray<double>& from_rad, const JointArray<double>& to_rad,
+                    double duration_s, std::uint64_t tick) noexcept;
+  void continue_stand_up(std::uint64_t tick) noexcept;
+  void take_policy(const PolicyOutput& policy, std::uint64_t tick) noexcept;
+  VelocityCommand shape(const OperatorCommand& command, std::uint64_t tick) noexcept;
+  bool at_rest(const SensorFrame& sensors) const noexcept;
+  JointCommand motion_command(std::uint64_t tick) const noexcept;
+  JointCommand walk_command() const noexcept;
+  bool motion_done(std::uint64_t tick) const noexcept {
+    return tick - state_.motion_start_tick >= state_.motion_ticks;
+  }
+
+  ControllerConfig config_;
+  SafetyGate gate_;
+  JointArray<double> fold_rad_;
+  double max_step_mps_;  // of the slew, in one tick
+  double max_step_radps_;
+  double stop_step_mps_;  // of the slew while stopping
+  double stop_step_radps_;
+  ControllerState state_;
+};
+
+}  // namespace sandrunner

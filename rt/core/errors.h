@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <stdexcept>
+
+namespace sandrunner {
+
+/// Input from outside (option, file, key, value) that cannot be used. `what()` is one line that
+/// names what was found, where, and what was expected. Programs print it and exit with
+/// kExitBadInput. Never thrown in real time.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Exit codes of all programs.
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitRobotFailed =
+    1;  ///< the robot fell or a fault latched; results are still written
+inline constexpr int kExitBadInput = 2;
+inline constexpr int kExitInternal = 3;
+
+}  // namespace sandrunner

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The modes of the controller and every way from one to another.
+//
+//            | damp     passive   stand     walk   reset    | stood up  stopped | fault
+//   ---------+----------------------------------------------+-------------------+------
+//   Passive  | Damping  .         StandUp   .      .        | .         .       | Fault
+//   Damping  | .        Passive   StandUp   .      .        | .         .       | Fault
+//   StandUp  | Damping  .         .         .      .        | Stand     .       | Fault
+//   Stand    | Damping  .         .         Walk   .        | .         .       | Fault
+//   Walk     | Damping  .         (1)       .      .        | .         Stand   | Fault
+//   Fault    | .        .         .         .      Passive(2)| .        .       | .
+//
+// "." stays. A robot that carries itself goes to Passive only through Damping: it is let down, not
+// dropped.
+//
+// (1) Starts a stop: the command goes to zero, the policy walks on until the robot has stopped.
+//
+// (2) Only when the drives are off and no condition for a fault holds any more (controller.h). The
+// robot then stays Passive until somebody asks for more: a reset never re-arms.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "rt/core/messages.h"
+
+namespace sandrunner {
+
+/// What can change the mode: a request of the operator, an end that was reached, a fault.
+enum class Event : std::uint64_t {
+  kRequestPassive,
+  kRequestDamp,
+  kRequestStand,
+  kRequestWalk,
+  kRequestReset,
+  kStoodUp,
+  kStopped,
+  kFault,
+};
+inline constexpr int kNumEvents = 8;
+
+struct Transition {
+  Mode from;
+  Event event;
+  Mode to;
+};
+
+inline constexpr std::array<Transition, 16> kTransitions = {{
+    {Mode::kPassive, Event::kRequestDamp, Mode::kDamping},
+    {Mode::kPassive, Event::kRequestStand, Mode::kStandUp},
+    {Mode::kPassive, Event::kFault, Mode::kFault},
+    {Mode::kDamping, Event::kRequestPassive, Mode::kPassive},
+    {Mode::kDamping, Event::kRequestStand, Mode::kStandUp},
+    {Mode::kDamping, Event::kFault, Mode::kFault},
+    {Mode::kStandUp, Event::kRequestDamp, Mode::kDamping},
+    {Mode::kStandUp, Event::kStoodUp, Mode::kStand},
+    {Mode::kStandUp, Event::kFault, Mode::kFault},
+    {Mode::kStand, Event::kRequestDamp, Mode::kDamping},
+    {Mode::kStand, Event::kRequestWalk, Mode::kWalk},
+    {Mode::kStand, Event::kFault, Mode::kFault},
+    {Mode::kWalk, Event::kRequestDamp, Mode::kDamping},
+    {Mode::kWalk, Event::kStopped, Mode::kStand},
+    {Mode::kWalk, Event::kFault, Mode::kFault},
+    {Mode::kFault, Event::kRequestReset, Mode::kPassive},
+}};
+
+/// The mode after `event` in `mode`: that of the table, else `mode`.
+Mode next_mode(Mode mode, Event event) noexcept;
+
+/// "passive", "damping", "stand_up", "stand", "walk", "fault".
+const char* mode_name(Mode mode) noexcept;
+
+}  // namespace sandrunner

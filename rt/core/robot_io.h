@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "rt/core/messages.h"
+
+namespace sandrunner {
+
+/// A joint command that has passed the safety gate. Nothing else can make one: anybody may copy it,
+/// and the default one switches the drives off.
+class SafeCommand {
+ public:
+  SafeCommand() = default;
+
+  const JointCommand& joints() const noexcept { return joints_; }
+  /// False: the drives are to be without torque, whatever `joints()` says (it is then zero).
+  bool enabled() const noexcept { return enabled_ != 0; }
+
+ private:
+  friend class SafetyGate;
+  SafeCommand(const JointCommand& joints, bool enabled) noexcept
+      : joints_(joints), enabled_(enabled ? 1 : 0) {}
+
+  JointCommand joints_;
+  std::uint64_t enabled_ = 0;  // as wide as the rest: no padding in a recording
+};
+static_assert(std::is_trivially_copyable_v<SafeCommand>);
+static_assert(sizeof(SafeCommand) == sizeof(JointCommand) + 8, "no padding");
+
+/// The robot as the control loop sees it: real drives and IMU, or the simulator. Called once each
+/// per tick from the control thread: `io.read(in); controller.step(in, out);
+/// io.write(out.command)`.
+class RobotIo {
+ public:
+  virtual ~RobotIo() = default;
+
+  /// Delivers the newest sensor values and the present tick. What did not arrive keeps its old
+  /// value and tick.
+  virtual void read(SensorFrame& frame) noexcept = 0;
+
+  /// Sends the command. It holds until the next one.
+  virtual void write(const SafeCommand& command) noexcept = 0;
+};
+
+}  // namespace sandrunner

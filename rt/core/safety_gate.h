@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The last thing before the motors. It judges what came in, limits what goes out, and is the only
+// maker of a SafeCommand. Each quantity has two thresholds: past its *limit* it is clamped or only
+// counted; past its *fault* a bit is latched, and from the same tick on nothing but damping (then
+// nothing at all) passes.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "rt/core/messages.h"
+#include "rt/core/robot_io.h"
+
+namespace sandrunner {
+
+/// Reasons for a fault, as bits. Where several arise in one tick, the lowest is reported as the
+/// first.
+enum class Fault : std::uint64_t {
+  kNone = 0,
+  kNonFiniteJoint = 1u << 0,    ///< NaN or infinity in a joint's position, velocity or torque
+  kNonFiniteImu = 1u << 1,      ///< the same in an IMU sample, or a quaternion that is no rotation
+  kNonFiniteAction = 1u << 2,   ///< the same in the policy's joint targets
+  kNonFiniteCommand = 1u << 3,  ///< the same in the operator's velocity command
+  kNonFiniteOutput = 1u << 4,   ///< the same in the controller's own joint command
+  kJointsStale = 1u << 5,
+  kImuStale = 1u << 6,
+  kPolicyStale = 1u << 7,
+  kJointPosition = 1u << 8,
+  kJointSpeed = 1u << 9,
+  kJointTorque = 1u << 10,
+  kTilt = 1u << 11,
+};
+inline constexpr int kNumFaults = 12;
+
+/// Stable name of one fault: "non_finite_joint", "joints_stale", "joint_position", "tilt", ...;
+/// "none".
+const char* fault_name(Fault fault) noexcept;
+
+/// Thresholds. The defaults of the faults lie beyond what the published network does in normal
+/// running (46 rad/s, a knee 0.3 rad past its range). Stops, speed and torque are those of the
+/// reference robot.
+struct GateConfig {
+  JointArray<double> joint_lower_rad{-3.1416, -6.2832, -2.4696, -3.1416, -6.2832, -2.4696,
+                                     -3.1416, -6.2832, -2.4696, -3.1416, -6.2832, -2.4696};
+  JointArray<double> joint_upper_rad{3.1416, 6.2832, -0.0262, 3.1416, 6.2832, -0.0262,
+                                     3.1416, 6.2832, -0.0262, 3.1416, 6.2832, -0.0262};
+  double joint_fault_rad = 0.35;   ///< fault: measured this far past a stop (limit: past it at all)
+  double target_margin_rad = 1.0;  ///< a commanded position is clamped to the stops plus this
+  double speed_limit_radps = 25.7;  ///< counted; a commanded velocity is clamped to it
+  double speed_fault_radps = 60.0;
+  double torque_limit_nm = 63.45;   ///< a feed-forward torque is clamped to it
+  double torque_fault_ratio = 1.2;  ///< fault: measured torque over this times the limit ...
+  double torque_fault_s = 0.005;    ///< ... in all samples of a joint for this long
+  double tilt_limit_deg = 45.0;     ///< between the body's and the world's z axis; only counted
+  double tilt_fault_deg = 60.0;
+  // Ages, in control ticks of 0.25 ms. A value as old as this passes, an older one does not.
+  std::uint64_t joints_limit_ticks = 2;
+  std::uint64_t joints_fault_ticks = 8;
+  std::uint64_t imu_limit_ticks = 8;
+  std::uint64_t imu_fault_ticks = 40;
+  std::uint64_t policy_fault_ticks =
+      120;  ///< since the input of the policy output in use was sampled
+};
+
+/// Memory of the gate: what is latched, and counts since the start. All members 64 bits wide.
+struct GateState {
+  std::uint64_t faults = 0;          ///< latched bits of Fault
+  Fault first_fault = Fault::kNone;  ///< that began the latest latch; kept over a reset
+  std::uint64_t first_fault_tick = 0;
+  std::uint64_t tick = 0;                         ///< of the latest judgement
+  JointArray<std::uint64_t> torque_over_ticks{};  ///< samples in a row above the fault torque
+  // Ticks in which ...
+  std::uint64_t joint_limit_ticks = 0;     ///< a joint was past its stop
+  std::uint64_t speed_limit_ticks = 0;     ///< a joint was above the speed limit
+  std::uint64_t tilt_limit_ticks = 0;      ///< the body was tilted past the limit
+  std::uint64_t joints_late_ticks = 0;     ///< the joint values were older than their limit
+  std::uint64_t imu_late_ticks = 0;        ///< the IMU sample was older than its limit
+  std::uint64_t position_clamp_ticks = 0;  ///< a commanded position was clamped
+  std::uint64_t velocity_clamp_ticks = 0;  ///< a commanded velocity was clamped
+  std::uint64_t torque_clamp_ticks = 0;    ///< a feed-forward torque was clamped
+};
+static_assert(std::is_trivially_copyable_v<GateState>);
+static_assert(sizeof(GateState) == 8 * (12 + kNumJoints), "no padding");
+
+/// What the gate judges in one tick.
+struct GateInput {
+  const SensorFrame& sensors;
+  const VelocityCommand& command;
+  /// Joint targets of the policy if they count (Walk, present episode), else null.
+  const JointArray<double>* action_rad = nullptr;
+  /// Age of the policy output in use; 0 outside Walk.
+  std::uint64_t policy_age_ticks = 0;
+};
+
+class SafetyGate {
+ public:
+  /// `damping_kd_nmsprad`: gain of the command that passes while a fault is latched.
+  SafetyGate(const GateConfig& config, double damping_kd_nmsprad);
+
+  /// Counts excesses over limits, latches faults, returns the bits of the faults that hold in this
+  /// tick. Finiteness and ages are judged always; position, speed and torque not in Passive, where
+  /// a robot may lie as it likes; tilt only in StandUp, Stand and Walk.
+  std::uint64_t judge(const GateInput& input, Mode mode, GateState& state) const noexcept;
+
+  /// Makes the command that may reach the motors: `wanted` with its positions, velocities and
+  /// feed-forward clamped; damping while a fault is latched (a `wanted` that is not finite latches
+  /// one); off if not `enabled`.
+  SafeCommand pass(const JointCommand& wanted, bool enabled, GateState& state) const noexcept;
+
+  /// Clears the latch. When that is allowed is the controller's business.
+  void clear(GateState& state) const noexcept;
+
+ private:
+  std::uint64_t judge_joints(const JointState& joints, GateState& state) const noexcept;
+  std::uint64_t judge_tilt(const ImuSample& imu, GateState& state) const noexcept;
+
+  GateConfig config_;
+  JointCommand damping_;
+  JointCommand lower_;  // what pass() clamps to; the gains in them are not used
+  JointCommand upper_;
+  double torque_fault_nm_;
+  std::uint64_t torque_fault_ticks_;
+  double tilt_limit_cos_;
+  double tilt_fault_cos_;
+};
+
+/// Whole control ticks in `duration_s`, rounded; negative and NaN give 0.
+std::uint64_t ticks_from_s(double duration_s) noexcept;
+
+}  // namespace sandrunner

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sandrunner: the control process. This file parses, wires and reports; what happens in between is
+// run.cpp.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <optional>
+
+#include "policy/policy_file.h"
+#include "rt/command_source.h"
+#include "rt/core/errors.h"
+#include "rt/core/floating_point.h"
+#include "rt/options.h"
+#include "rt/process_config.h"
+#include "rt/run.h"
+#include "rt/run_csv.h"
+#include "rt/run_pictures.h"
+#include "rt/summary.h"
+
+namespace {
+
+using namespace sandrunner;
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+// Fails now rather than after the run.
+void prepare_folder(const std::string& dir) {
+  std::error_code error;
+  std::filesystem::create_directories(dir, error);
+  if (error || !std::filesystem::is_directory(dir) || access(dir.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(fmt::format("--out: folder '{}' cannot be written", dir));
+  }
+}
+
+void show_progress(const RunSample& s) {
+  fmt::print(stderr, "\r{:8.1f} s  {:<9} {:6.2f} m/s  x {:7.2f} m ", s.t_s, mode_name(s.mode),
+             s.vx_mps, s.base_position_m[0]);
+  std::fflush(stderr);
+}
+
+int run(int argc, char** argv) {
+  const std::optional<Options> options = parse_options(argc, argv);
+  if (!options) return kExitOk;
+  const CommandSource command(options->command);
+  std::optional<Policy> policy;
+  if (!options->policy_path.empty()) policy.emplace(load_policy(options->policy_path));
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, options->terrain);
+  for (const std::string& file : options->config_files) tree.add_file(file);
+  for (const std::string& assignment : options->assignments) tree.set(assignment);
+  ProcessConfig config = read_process_config(tree, policy ? &policy->spec() : nullptr);
+  config.simulator.seed = options->seed;
+  if (options->start_walking && !policy) {
+    throw InputError("--start walk: walking needs a policy, give one with --policy");
+  }
+  const bool out = !options->out_dir.empty();
+  if (out) prepare_folder(options->out_dir);
+
+  flush_denormals_to_zero();
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const RunPlan plan{.walk_s = options->duration_s, .start_walking = options->start_walking};
+  const RunResult result =
+      run_lockstep(config, policy ? &*policy : nullptr, command, plan, out, interrupted,
+                   terminal ? show_progress : std::function<void(const RunSample&)>());
+  if (terminal) fmt::print(stderr, "\r{:60}\r", "");
+
+  fmt::print("{}", summary_table(result, command));
+  if (!policy) fmt::print("Stood up; walking needs a policy: --policy FILE.\n");
+  if (out) {
+    const std::string dir = options->out_dir + "/";
+    write_text(summary_json(result, *options, command, policy ? policy->spec().name : ""),
+               dir + "summary.json");
+    write_text(config.effective, dir + "config.toml");
+    write_csv(result.record, dir + "run.csv");
+    draw_run_plot(result.record, dir + "run.png");
+    draw_run_strip(result.record, dir + "strip.png");
+    fmt::print("wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n",
+               dir);
+  }
+  return result.survived ? kExitOk : kExitRobotFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "sandrunner: {}\n", error.what());
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sandrunner: internal error: {}\n", error.what());
+    return kExitInternal;
+  }
+}

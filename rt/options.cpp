@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "rt/core/errors.h"
+#include "sim/terrain.h"
+
+namespace sandrunner {
+
+std::optional<Options> parse_options(int argc, const char* const* argv) {
+  Options o;
+  CLI::App app{
+      "Runs a legged robot on sand: the control process, here with the granular simulator in place "
+      "of the robot."};
+  app.option_defaults()->always_capture_default();
+  std::string start = "stand";
+  app.add_option("--policy", o.policy_path, "policy file (default: the one that ships)")
+      ->type_name("FILE")
+      ->capture_default_str();
+  app.add_option(
+         "--terrain", o.terrain,
+         fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
+      ->type_name("PRESET|FILE");
+  app.add_option("--command", o.command,
+                 "velocity vx,vy,wz (m/s, m/s, rad/s), or a CSV file with header t_s,vx,vy,wz, "
+                 "linear between rows")
+      ->type_name("VX,VY,WZ|FILE");
+  app.add_option("--duration", o.duration_s, "time in Walk, s")->type_name("S");
+  app.add_option(
+         "--start", start,
+         "stand: lies, stands up, walks, stands again; walk: walks at once from the nominal pose")
+      ->check(CLI::IsMember({"stand", "walk"}));
+  app.add_option("--seed", o.seed, "0: exactly the nominal start; above 0: a disturbed one")
+      ->type_name("N");
+  app.add_option("--config", o.config_files,
+                 "TOML file with settings; may be repeated, later ones win")
+      ->type_name("FILE")
+      ->always_capture_default(false);
+  app.add_option("--set", o.assignments, "one setting, e.g. terrain.friction=0.6; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false)
+      ->always_capture_default(false);
+  app.add_option("--out", o.out_dir, "folder for summary.json, run.csv, run.png, strip.png")
+      ->type_name("DIR");
+  app.set_version_flag("--version", std::string("sandrunner ") + SANDRUNNER_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {  // --help, --version
+    app.exit(done);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("command line: {}", error.what()));
+  }
+  o.start_walking = start == "walk";
+  if (!std::isfinite(o.duration_s) || o.duration_s <= 0.0 || o.duration_s > 86400.0) {
+    throw InputError(
+        fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
+  }
+  return o;
+}
+
+}  // namespace sandrunner

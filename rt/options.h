@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sandrunner {
+
+/// The command line of `sandrunner`, as typed; files are not looked at here.
+struct Options {
+  std::string policy_path;  ///< empty: the policy that ships
+  std::string terrain = "dry-sand";
+  std::string command = "1.5,0,0";
+  double duration_s = 20.0;  ///< of Walk
+  bool start_walking = false;
+  std::uint64_t seed = 0;
+  std::vector<std::string> config_files;
+  std::vector<std::string> assignments;  ///< of --set
+  std::string out_dir;                   ///< empty: nothing is written
+};
+
+/// Parses the command line. Returns nothing if all is said (--help, --version, which print to
+/// standard output). Throws InputError.
+std::optional<Options> parse_options(int argc, const char* const* argv);
+
+}  // namespace sandrunner

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "policy/policy.h"
+#include "rt/command_source.h"
+#include "rt/process_config.h"
+#include "rt/run_record.h"
+#include "rt/run_statistics.h"
+
+namespace sandrunner {
+
+/// What the run is to be.
+struct RunPlan {
+  double walk_s = 20.0;
+  bool start_walking =
+      false;  ///< at once in Walk from the nominal pose; ends when the time is over
+};
+
+struct RunResult {
+  bool survived =
+      true;  ///< on its feet: no base or thigh contact since the first Walk, no latched fault
+  std::optional<double> fall_time_s;  ///< since the start of Walk
+  std::string
+      fall_reason;  ///< "base_contact", "thigh_contact", "did_not_stand", or the name of a fault
+  bool interrupted = false;
+  double walked_s = 0.0;  ///< time in Walk under the command
+  double simulated_s = 0.0;
+  double realtime_factor = 0.0;  ///< simulated time over wall time of the loop
+  std::uint64_t state_hash = 0;  ///< of simulator, controller and policy at the end
+  RunFigures figures;
+  RunRecord record;  ///< filled only if asked for
+};
+
+/// Runs the simulated robot in lockstep: from lying to standing, the walk, and standing again (or
+/// just the walk). Without a policy it only stands up. `interrupt` ends it in damping; `progress`
+/// is called every half second of simulated time.
+RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const CommandSource& command,
+                       const RunPlan& plan, bool keep_record, const std::atomic<bool>& interrupt,
+                       const std::function<void(const RunSample&)>& progress);
+
+}  // namespace sandrunner

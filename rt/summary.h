@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "rt/command_source.h"
+#include "rt/options.h"
+#include "rt/run.h"
+
+namespace sandrunner {
+
+/// The result as a table for a person.
+std::string summary_table(const RunResult& result, const CommandSource& command);
+
+/// The result as summary.json (rt/README.md lists the keys).
+std::string summary_json(const RunResult& result, const Options& options,
+                         const CommandSource& command, const std::string& policy_name);
+
+/// Writes `text` to a file beside `path` and renames it: whole or absent. InputError if it cannot.
+void write_text(const std::string& text, const std::string& path);
+
+}  // namespace sandrunner

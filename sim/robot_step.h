@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One 0.25 ms step of a robot on its ground: dynamics, contact law of each foot, contact problem,
+// semi-implicit Euler. Free of clock, heap and branches that depend on one lane; instantiated for
+// double (the simulator behind RobotIo) and for float and float packs (training).
+#pragma once
+
+#include <array>
+#include <bit>
+#include <type_traits>
+
+#include "sim/contact_solver.h"
+#include "sim/dynamics.h"
+#include "sim/granular.h"
+
+namespace sandrunner::sim {
+
+inline constexpr int kMaxRegions = 16;
+
+/// Patches of ground one after the other along x; the last one is endless.
+template <typename S>
+struct Terrain {
+  int count = 1;
+  std::array<Ground<S>, kMaxRegions> ground;
+  std::array<S, kMaxRegions>
+      start_x{};  ///< from where on patch i counts; ascending, that of patch 0 is ignored
+  /// Upper bound of the surface's height, m: 0 without roughness.
+  S highest{};
+
+  S region_at(S x) const noexcept {
+    S index = S(0.0);
+    for (int i = 1; i < count; ++i) index = select(x >= start_x[i], S(double(i)), index);
+    return index;
+  }
+  Ground<S> pick(S index) const noexcept {
+    if constexpr (std::is_floating_point_v<S>) {
+      return ground[static_cast<int>(index)];
+    } else {
+      Ground<S> g = ground[0];
+      using Fields = std::array<S, sizeof(Ground<S>) / sizeof(S)>;
+      Fields fields = std::bit_cast<Fields>(g);
+      for (int i = 1; i < count; ++i) {
+        const Fields other = std::bit_cast<Fields>(ground[i]);
+        const Mask<S> here = index == S(double(i));
+        for (std::size_t f = 0; f < fields.size(); ++f)
+          fields[f] = select(here, other[f], fields[f]);
+      }
+      return std::bit_cast<Ground<S>>(fields);
+    }
+  }
+};
+
+// Contact points: feet, then knees (thigh), shanks, corners of the base.
+inline constexpr int kNumBaseCorners = 8;
+inline constexpr int kNumPoints = 3 * kNumLegs + kNumBaseCorners;
+
+/// All that one robot's step carries over to the next.
+template <typename S>
+struct RobotState {
+  RigidState<S> rigid;
+  std::array<FootContact<S>, kNumLegs> feet;
+  std::array<std::array<S, 3>, kNumPoints> impulse{};  ///< of the last step: warm start, N s
+  std::array<S, kNumJoints> stop_impulse{};            ///< signed: > 0 at the lower stop
+};
+
+/// What a step shows to those who watch: sensors, statistics, rewards, pictures.
+template <typename S>
+struct StepReport {
+  std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m, at the start of the step
+  std::array<S, kNumLegs> penetration{};        ///< of the deepest point below the surface, m
+  std::array<Vec3<S>, kNumLegs> foot_velocity;  ///< of the deepest point, world, m/s
+  std::array<std::array<S, 3>, kNumLegs>
+      foot_force{};                     ///< contact frame (world axes on level ground), N
+  std::array<S, kNumLegs> raw_force{};  ///< granular law before the filter, N
+  std::array<Vec3<S>, kNumLegs> knee;   ///< world, m
+  S base_contact{}, thigh_contact{}, shank_contact{};  ///< 1: touches the ground
+  Vec3<S> base_acceleration;  ///< of the base origin, body components, m/s^2
+  int sweeps = 0;
+};
+
+struct StepSettings {
+  double dt_s = kControlPeriod_s;
+  double tolerance_ns = 1e-5;  ///< of the contact solver, N s
+  int max_sweeps = 150;
+};
+
+template <typename S>
+class RobotStepper {
+ public:
+  /// Advances `x` by one step under joint torques (N m).
+  void step(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
+            const StepSettings& settings, const std::array<S, kNumJoints>& torque_nm,
+            RobotState<S>& x, StepReport<S>& report) noexcept;
+
+  const Dynamics<S>& dynamics() const noexcept { return dynamics_; }
+  /// The contact problem of the last step as solved, for tests.
+  const std::array<PointContact<S>, kNumPoints>& points() const noexcept { return points_; }
+  int num_points() const noexcept { return num_points_; }
+
+ private:
+  struct Frame {  // rows in body components
+    Vec3<S> t1, t2, n;
+  };
+  void fill_rows(const RobotModel<S>& model, const Vec3<S>& r_base, const Vec3<S>& r_hip, int leg,
+                 int joints, const Frame& frame, PointContact<S>& c) noexcept;
+  void add_feet(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
+                S dt, RobotState<S>& x, StepReport<S>& report) noexcept;
+  void add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain, RobotState<S>& x,
+                       StepReport<S>& report) noexcept;
+  void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const Vec3<S>& r_base,
+                      const Vec3<S>& r_hip, int leg, int joints, S radius, bool only_rigid,
+                      int slot, RobotState<S>& x, S& touched) noexcept;
+  void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
+  Frame surface_frame(S slope_x, S slope_y) const noexcept;
+
+  Dynamics<S> dynamics_;
+  Mat3<S> rotation_;           // body to world
+  Motion<S> velocity_, free_;  // now, and at the end of the step without contact
+  std::array<PointContact<S>, kNumPoints> points_;
+  std::array<int, kNumPoints> slots_{};
+  int num_points_ = 0;
+  std::array<StopRow<S>, kNumJoints> stops_;
+  std::array<int, kNumJoints> stop_joints_{};
+  int num_stops_ = 0;
+  std::array<GranularForce<S>, kNumLegs> granular_;
+};
+
+}  // namespace sandrunner::sim
+
+#include "sim/robot_step_impl.h"

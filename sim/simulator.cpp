@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/simulator.h"
+
+#include <algorithm>
+
+#include "sim/random.h"
+
+namespace sandrunner::sim {
+namespace {
+
+// Streams of random numbers.
+enum Stream : std::uint64_t { kStartStream = 1, kNoiseStream = 2 };
+
+}  // namespace
+
+Simulator::Simulator(const Robot& robot, const SimulatorConfig& config)
+    : robot_(robot),
+      model_(robot.model),
+      config_(config),
+      foot_(make_foot_profile(config.terrain, robot.model)),
+      terrain_(make_terrain(config.terrain, foot_, robot.model)) {
+  reset_standing();
+}
+
+void Simulator::disturb(double height_above_m) {
+  RigidState<double>& x = state_.robot.rigid;
+  if (config_.seed > 0) {
+    std::uint64_t counter = 0;
+    const auto draw = [&] {
+      return 0.1 * (2.0 * random_uniform(config_.seed, kStartStream, counter++) - 1.0);
+    };
+    for (double& q : x.q) q += draw();
+    x.velocity = {draw(), draw(), draw()};
+    x.angular_velocity = {draw(), draw(), draw()};
+  }
+  // Lowest point of the feet (and, lying, of the box) to the wanted height above the surface.
+  if (config_.seed > 0 || height_above_m == 0.0) {
+    double lowest = 1e9;
+    for (int l = 0; l < kNumLegs; ++l) {
+      const LegPose<double> p =
+          leg_pose(model_.legs[l], x.q[3 * l], x.q[3 * l + 1], x.q[3 * l + 2]);
+      const Vec3<double> foot = hip_to_base(model_.legs[l], p, p.foot);
+      const Vec3<double> knee = hip_to_base(model_.legs[l], p, p.knee);
+      lowest = std::min(lowest, foot.z - model_.foot_radius_m - surface_height(foot.x, foot.y));
+      lowest = std::min(lowest, knee.z - model_.knee_radius_m - surface_height(knee.x, knee.y));
+    }
+    lowest =
+        std::min(lowest, model_.base_box_centre_m.z - model_.base_box_half_m.z - terrain_.highest);
+    x.position.z = height_above_m - lowest;
+  }
+  update_truth();
+}
+
+void Simulator::reset_standing() {
+  state_ = {};
+  RigidState<double>& x = state_.robot.rigid;
+  x.q = robot_.nominal_rad;
+  x.position = {0.0, 0.0, robot_.nominal_height_m + terrain_.highest};
+  disturb(0.002);
+}
+
+void Simulator::reset_lying() {
+  state_ = {};
+  state_.robot.rigid.q = robot_.lying_rad;
+  disturb(0.0);
+}
+
+SensorFrame Simulator::sample() const noexcept {
+  const RigidState<double>& x = state_.robot.rigid;
+  SensorFrame f;
+  f.tick = f.joints.tick = f.imu.tick = state_.tick;
+  f.joints.position_rad = x.q;
+  f.joints.velocity_radps = x.qd;
+  f.joints.torque_nm = state_.torque_nm;
+  f.imu.orientation_wxyz = {x.orientation.w, x.orientation.x, x.orientation.y, x.orientation.z};
+  f.imu.angular_velocity_radps = {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
+  f.imu.linear_acceleration_mps2 = state_.linear_acceleration_mps2;
+  const SensorNoise& n = config_.noise;
+  std::uint64_t counter = state_.tick * 64;  // fewer than 64 draws a tick
+  const auto noise = [&](double sigma) {
+    return sigma > 0.0 ? sigma * random_normal(config_.seed, kNoiseStream, counter++) : 0.0;
+  };
+  for (double& q : f.joints.position_rad) q += noise(n.joint_position_rad);
+  for (double& qd : f.joints.velocity_radps) qd += noise(n.joint_velocity_radps);
+  for (double& w : f.imu.angular_velocity_radps) w += noise(n.angular_velocity_radps);
+  for (double& a : f.imu.linear_acceleration_mps2) a += noise(n.linear_acceleration_mps2);
+  if (n.orientation_rad > 0.0) {
+    const Vec3<double> turn{noise(n.orientation_rad), noise(n.orientation_rad),
+                            noise(n.orientation_rad)};
+    const Quaternion<double> q = integrate(x.orientation, turn);
+    f.imu.orientation_wxyz = {q.w, q.x, q.y, q.z};
+  }
+  return f;
+}
+
+void Simulator::read(SensorFrame& frame) noexcept {
+  const auto delay = static_cast<std::uint64_t>(config_.sensor_delay_ticks);
+  if (delay == 0) {
+    frame = sample();
+    return;
+  }
+  state_.sensors[state_.tick % kMaxDelayTicks] = sample();
+  // Delayed values do not look old to the controller: the delay lies in the sensor, which stamps on
+  // arrival.
+  frame = state_.sensors[(state_.tick - std::min(delay, state_.tick)) % kMaxDelayTicks];
+  frame.tick = frame.joints.tick = frame.imu.tick = state_.tick;
+}
+
+void Simulator::write(const SafeCommand& command) noexcept {
+  SafeCommand acting = command;
+  const auto delay = static_cast<std::uint64_t>(config_.actuator_delay_ticks);
+  if (delay > 0) {
+    state_.commands[state_.tick % kMaxDelayTicks] = command;
+    acting = state_.tick < delay ? SafeCommand{}
+                                 : state_.commands[(state_.tick - delay) % kMaxDelayTicks];
+  }
+  const JointCommand& c = acting.joints();
+  RigidState<double>& x = state_.robot.rigid;
+  const double stall = config_.torque_speed_line ? config_.line.stall_torque_nm : 0.0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    state_.torque_nm[j] =
+        acting.enabled()
+            ? drive_torque(x.q[j], x.qd[j], c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j],
+                           c.kd_nmsprad[j], c.feedforward_nm[j], model_.torque_limit_nm[j], stall,
+                           1.0 / config_.line.no_load_speed_radps)
+            : 0.0;
+  }
+  const Mat3<double> before = rotation_matrix(x.orientation);
+  stepper_.step(model_, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,
+                truth_.report);
+  // Specific force at the base origin, body frame.
+  const Vec3<double> felt = mul_add(before.r2, kGravity_mps2, truth_.report.base_acceleration);
+  state_.linear_acceleration_mps2 = {felt.x, felt.y, felt.z};
+  ++state_.tick;
+  update_truth();
+}
+
+void Simulator::update_truth() noexcept {
+  const RobotState<double>& x = state_.robot;
+  const Mat3<double> r = rotation_matrix(x.rigid.orientation);
+  const Vec3<double> v = transposed_times(r, x.rigid.velocity);
+  truth_.state.velocity_mps = {v.x, v.y, v.z};
+  // The ground counts from the deepest remembered penetration of the feet in contact.
+  double deepest = 0.0;
+  for (int l = 0; l < kNumLegs; ++l) {
+    if (x.feet[l].active > 0.0) deepest = std::max(deepest, x.feet[l].memory_depth);
+    const LegPose<double> p =
+        leg_pose(model_.legs[l], x.rigid.q[3 * l], x.rigid.q[3 * l + 1], x.rigid.q[3 * l + 2]);
+    truth_.state.foot_height_m[l] =
+        x.rigid.position.z + dot(r.r2, hip_to_base(model_.legs[l], p, p.foot));
+  }
+  truth_.state.body_height_m = x.rigid.position.z + deepest;
+}
+
+void Simulator::restore(const SimulatorState& state) noexcept {
+  state_ = state;
+  update_truth();
+}
+
+void Simulator::add_to(StateHash& hash) const noexcept {
+  hash.add(state_.tick);
+  hash.add(state_.robot);
+  hash.add(state_.torque_nm);
+  hash.add(state_.linear_acceleration_mps2);
+  if (config_.sensor_delay_ticks > 0) hash.add(state_.sensors);
+  if (config_.actuator_delay_ticks > 0) hash.add(state_.commands);
+}
+
+double Simulator::surface_height(double x_m, double y_m) const noexcept {
+  const Ground<double>& ground = terrain_.ground[static_cast<int>(terrain_.region_at(x_m))];
+  if (!(ground.roughness > 0.0)) return 0.0;
+  double height, slope_x, slope_y;
+  rough_surface(ground, x_m, y_m, height, slope_x, slope_y);
+  return height;
+}
+
+SimulatorConfig read_simulator_config(ConfigTree& config) {
+  SimulatorConfig c;
+  c.terrain = read_terrain(config);
+  const auto number = [&](const char* key, double& value, double min, double max) {
+    value = config.number(key, value, min, max);
+  };
+  number("sim.noise.joint_position_rad", c.noise.joint_position_rad, 0.0, 1.0);
+  number("sim.noise.joint_velocity_radps", c.noise.joint_velocity_radps, 0.0, 10.0);
+  number("sim.noise.orientation_rad", c.noise.orientation_rad, 0.0, 0.1);
+  number("sim.noise.angular_velocity_radps", c.noise.angular_velocity_radps, 0.0, 10.0);
+  number("sim.noise.linear_acceleration_mps2", c.noise.linear_acceleration_mps2, 0.0, 100.0);
+  const auto ticks = [&](const char* key) {
+    return static_cast<int>(config.integer(key, 0, 0, kMaxDelayTicks - 1));
+  };
+  c.sensor_delay_ticks = ticks("sim.sensor_delay_ticks");
+  c.actuator_delay_ticks = ticks("sim.actuator_delay_ticks");
+  c.torque_speed_line = config.flag("sim.torque_speed_line", c.torque_speed_line);
+  number("sim.stall_torque_nm", c.line.stall_torque_nm, 1.0, 1e4);
+  number("sim.no_load_speed_radps", c.line.no_load_speed_radps, 1.0, 1e3);
+  number("sim.solver_tolerance_ns", c.step.tolerance_ns, 1e-12, 1e-2);
+  return c;
+}
+
+}  // namespace sandrunner::sim

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The robot in simulation, behind the same interface as the hardware.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "rt/core/robot_io.h"
+#include "rt/core/state_hash.h"
+#include "sim/actuator.h"
+#include "sim/robot_step.h"
+#include "sim/terrain.h"
+
+namespace sandrunner::sim {
+
+/// Standard deviations of the white sensor noise added at every sample; all off by default.
+struct SensorNoise {
+  double joint_position_rad = 0.0;
+  double joint_velocity_radps = 0.0;
+  double orientation_rad = 0.0;  ///< about each body axis
+  double angular_velocity_radps = 0.0;
+  double linear_acceleration_mps2 = 0.0;
+};
+
+inline constexpr int kMaxDelayTicks = 64;
+
+struct SimulatorConfig {
+  TerrainDescription terrain;
+  SensorNoise noise;
+  int sensor_delay_ticks = 0;    ///< age of what read() delivers, 0..63
+  int actuator_delay_ticks = 0;  ///< ticks until a command acts, 0..63
+  bool torque_speed_line = false;
+  TorqueSpeedLine line;
+  StepSettings step;
+  std::uint64_t seed = 0;
+};
+
+/// The complete state: a copy is a snapshot. Every member is 64 bits wide, so there is no padding.
+struct SimulatorState {
+  std::uint64_t tick = 0;
+  RobotState<double> robot;
+  JointArray<double> torque_nm{};  ///< of the last step
+  Vector3 linear_acceleration_mps2{0.0, 0.0,
+                                   kGravity_mps2};    ///< what the IMU's accelerometer feels
+  std::array<SensorFrame, kMaxDelayTicks> sensors{};  ///< ring by tick; used with a delay
+  std::array<SafeCommand, kMaxDelayTicks> commands{};
+};
+static_assert(std::is_trivially_copyable_v<SimulatorState>);
+
+/// What really happens, for statistics, pictures and comparison with the estimate; the controller
+/// never sees it.
+struct SimulatorTruth {
+  StepReport<double> report;  ///< of the last step
+  StateEstimate state;        ///< the estimate's quantities as they are
+};
+
+class Simulator final : public RobotIo {
+ public:
+  Simulator(const Robot& robot, const SimulatorConfig& config);
+
+  /// On its feet in the nominal pose, at rest, base at the robot's nominal height (`--start walk`).
+  /// A seed above 0 disturbs it: joints +-0.1 rad, base twist +-0.1 (m/s, rad/s), height such that
+  /// the lowest foot is 2 mm above the ground; uniform draws from the seed.
+  void reset_standing();
+  /// On its belly in the lying pose, at rest (disturbed likewise, but kept on the ground).
+  void reset_lying();
+
+  void read(SensorFrame& frame) noexcept override;
+  /// Takes the command and advances the robot by one tick.
+  void write(const SafeCommand& command) noexcept override;
+
+  const SimulatorState& state() const noexcept { return state_; }
+  void restore(const SimulatorState& state) noexcept;
+  /// Adds what decides the future to `hash`.
+  void add_to(StateHash& hash) const noexcept;
+
+  const SimulatorTruth& truth() const noexcept { return truth_; }
+  const RobotModel<double>& model() const noexcept { return model_; }
+  const Terrain<double>& terrain() const noexcept { return terrain_; }
+  const RobotStepper<double>& stepper() const noexcept { return stepper_; }
+  /// Height of the undisturbed surface, m.
+  double surface_height(double x_m, double y_m) const noexcept;
+
+ private:
+  void disturb(double height_above_m);
+  SensorFrame sample() const noexcept;
+  void update_truth() noexcept;
+
+  Robot robot_;
+  RobotModel<double> model_;
+  SimulatorConfig config_;
+  FootProfile<double> foot_;
+  Terrain<double> terrain_;
+  RobotStepper<double> stepper_;
+  SimulatorState state_;
+  SimulatorTruth truth_;
+};
+
+/// Reads the table [sim] of `config` and its terrain. Throws InputError.
+SimulatorConfig read_simulator_config(ConfigTree& config);
+
+}  // namespace sandrunner::sim

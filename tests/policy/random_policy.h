@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A policy with random weights, the same on every machine: for tests that need one that runs, not
+// one that walks.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "policy/policy_file.h"
+
+namespace sandrunner {
+
+/// Uniform numbers by SplitMix64.
+class RandomFloats {
+ public:
+  explicit RandomFloats(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t bits() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+
+  /// In [-1, 1).
+  float next() { return static_cast<float>(bits() >> 40) * 0x1p-23f - 1.0f; }
+
+  /// A raw observation; some of its numbers lie beyond the clip of `random_policy_file`.
+  std::array<float, kObservationSize> observation() {
+    std::array<float, kObservationSize> result;
+    for (float& value : result) value = 4.0f * next();
+    return result;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Weights of a size that keeps the layers' outputs near 1; normalisation about 0 +- 1 with clip 3.
+inline PolicyFile random_policy_file(std::uint64_t seed = 1) {
+  PolicyFile file;
+  RandomFloats random(seed);
+  for (const NamedTensor& tensor : tensors_of(file.parameters)) {
+    const float scale = 2.0f / std::sqrt(static_cast<float>(tensor.shape.back()));
+    for (std::size_t i = 0; i < tensor.size(); ++i) tensor.values->push_back(scale * random.next());
+  }
+  for (float& variance : file.parameters.observation_variance) variance += 1.0f;
+  file.parameters.observation_clip = 3.0f;
+  PolicySpec& spec = file.spec;
+  spec.name = "random";
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    spec.nominal_position_rad[kJointsPerLeg * leg + 1] = 0.5;
+    spec.nominal_position_rad[kJointsPerLeg * leg + 2] = -1.0;
+  }
+  spec.action_scale_rad = 0.1;
+  spec.kp_nmprad = 40.0;
+  spec.kd_nmsprad = 0.75;
+  spec.torque_limit_nm = 60.0;
+  spec.yaw_command_clip_mps2 = 2.5;
+  for (int i = 0; i < kEstimateSize; ++i) {
+    spec.estimate_mean[i] = 0.1f * static_cast<float>(i);
+    spec.estimate_variance[i] = 0.25f;
+  }
+  spec.provenance = {{"seed", std::to_string(seed)}};
+  file.golden = make_golden_example(file.parameters);
+  return file;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Modes, standing up, stopping, snapshots. Walk's policy and command are in walk_test.cpp.
+#include "rt/core/controller.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "fake_robot.h"
+#include "rt/core/state_hash.h"
+
+namespace sandrunner {
+namespace {
+
+TEST(ControllerTest, StartsPassiveWithDrivesOff) {
+  FakeLoop loop;
+  for (int n = 0; n < 100; ++n) {
+    loop.tick();
+    ASSERT_EQ(loop.output.mode, Mode::kPassive);
+    ASSERT_FALSE(loop.output.command.enabled());
+  }
+}
+
+TEST(ControllerTest, RequestCountsOnceForItsId) {
+  FakeLoop loop;
+  loop.request(ModeRequest::kDamp);
+  EXPECT_EQ(loop.output.mode, Mode::kDamping);
+  EXPECT_EQ(loop.output.command.joints().kd_nmsprad[4], 2.0);
+  loop.request(ModeRequest::kPassive);
+  loop.input.command.request = ModeRequest::kDamp;  // old id
+  loop.run_s(0.1);
+  EXPECT_EQ(loop.output.mode, Mode::kPassive);
+}
+
+TEST(ControllerTest, DampWorksFromEveryModeThatMoves) {
+  for (const Mode mode : {Mode::kPassive, Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
+    FakeLoop loop;
+    loop.reach(mode);
+    loop.request(ModeRequest::kDamp);
+    EXPECT_EQ(loop.output.mode, Mode::kDamping);
+    EXPECT_TRUE(only_brakes(loop.output.command));
+    EXPECT_TRUE(loop.output.command.enabled());
+  }
+}
+
+TEST(ControllerTest, WalkIsRefusedUntilStanding) {
+  FakeLoop loop;
+  for (const Mode mode : {Mode::kPassive, Mode::kDamping, Mode::kStandUp}) {
+    loop.reach(mode);
+    loop.request(ModeRequest::kWalk);
+    EXPECT_EQ(loop.output.mode, mode);
+  }
+  loop.run_s(3.0);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);  // the refused requests did not wait
+}
+
+TEST(ControllerTest, PassiveIsRefusedWhileStanding) {
+  FakeLoop loop;
+  loop.reach(Mode::kStand);
+  loop.request(ModeRequest::kPassive);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+}
+
+/// Stands up from `posture_rad`, checks that targets move smoothly, returns how long it took.
+double stand_up(const JointArray<double>& posture_rad, double* nearest_to_fold_rad = nullptr) {
+  FakeLoop loop;
+  loop.robot.now.joints.position_rad = posture_rad;
+  loop.request(ModeRequest::kStand);
+  const StandConfig& stand = loop.config.stand;
+  JointCommand before = loop.output.command.joints();
+  EXPECT_EQ(before.position_rad, posture_rad);  // begins where the robot is
+  std::uint64_t ticks = 0;
+  double nearest_rad = 100.0;
+  while (loop.output.mode == Mode::kStandUp && ticks < 100000) {
+    loop.tick();
+    ++ticks;
+    const JointCommand& now = loop.output.command.joints();
+    double from_fold_rad = 0.0;
+    for (int j = 0; j < kNumJoints; ++j) {
+      const double step_rad = now.position_rad[j] - before.position_rad[j];
+      const double mean_radps = 0.5 * (now.velocity_radps[j] + before.velocity_radps[j]);
+      EXPECT_NEAR(step_rad * kControlHz, mean_radps, 1e-4);  // the speed is that of the position
+      EXPECT_LE(std::fabs(now.velocity_radps[j]), stand.max_speed_radps * (1.0 + 1e-9));
+      EXPECT_LE(std::fabs(now.velocity_radps[j] - before.velocity_radps[j]) * kControlHz, 30.0);
+      EXPECT_EQ(now.kp_nmprad[j], 100.0);
+      EXPECT_EQ(now.kd_nmsprad[j], 1.0);
+      const double fold_rad = stand.fold_rad[j % kJointsPerLeg];
+      from_fold_rad = std::max(from_fold_rad, std::fabs(now.position_rad[j] - fold_rad));
+    }
+    nearest_rad = std::min(nearest_rad, from_fold_rad);
+    before = now;
+  }
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  EXPECT_EQ(before.position_rad, stand.nominal_rad);
+  EXPECT_EQ(before.velocity_radps, JointArray<double>{});
+  if (nearest_to_fold_rad != nullptr) *nearest_to_fold_rad = nearest_rad;
+  return static_cast<double>(ticks) * kControlPeriod_s;
+}
+
+TEST(ControllerTest, StandsUpSmoothlyByFoldingFirst) {
+  double nearest_to_fold_rad = 0.0;
+  EXPECT_NEAR(stand_up(kLyingPosture_rad, &nearest_to_fold_rad), 2.5, 0.001);
+  EXPECT_LT(nearest_to_fold_rad, 1e-9);
+}
+
+TEST(ControllerTest, LongWayTakesLongerInsteadOfFaster) {
+  JointArray<double> posture_rad = kLyingPosture_rad;
+  posture_rad[1] = -3.0;
+  EXPECT_NEAR(stand_up(posture_rad), 1.875 * 4.2 / 4.0 + 1.5, 0.001);
+}
+
+TEST(ControllerTest, DoesNotFoldWhenNearlyStanding) {
+  JointArray<double> posture_rad = StandConfig{}.nominal_rad;
+  for (double& q : posture_rad) q += 0.29;
+  double nearest_to_fold_rad = 0.0;
+  EXPECT_NEAR(stand_up(posture_rad, &nearest_to_fold_rad), 1.5, 0.001);
+  EXPECT_GT(nearest_to_fold_rad, 0.5);
+}
+
+TEST(ControllerTest, StopWalksOnAtZeroCommandThenStands) {
+  FakeLoop loop;
+  loop.reach(Mode::kWalk);
+  EXPECT_EQ(loop.output.policy_input.command.vx_mps, 1.0);
+  loop.request(ModeRequest::kStand);
+  for (std::uint64_t n = 0; n < ticks_from_s(1.5); ++n) {
+    ASSERT_EQ(loop.output.mode, Mode::kWalk);
+    ASSERT_EQ(loop.output.policy_input.command.vx_mps, 0.0);
+    loop.tick();
+  }
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  loop.run_s(0.51);
+  EXPECT_EQ(loop.output.command.joints().position_rad, loop.config.stand.nominal_rad);
+}
+
+TEST(ControllerTest, StopWaitsForTheSlewToReachZero) {
+  ControllerConfig config;
+  config.shaping.acceleration_limit_mps2 = 2.0;
+  FakeLoop loop(Mode::kPassive, config);
+  loop.reach(Mode::kWalk);
+  loop.run_s(1.0);
+  EXPECT_EQ(loop.output.policy_input.command.vx_mps, 1.0);
+  loop.request(ModeRequest::kStand);
+  loop.run_s(0.5 + 1.49);
+  EXPECT_EQ(loop.output.mode, Mode::kWalk);
+  loop.run_s(0.02);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+}
+
+TEST(ControllerTest, WalkTakesAStopBack) {
+  FakeLoop loop;
+  loop.reach(Mode::kWalk);
+  const std::uint64_t episode = loop.output.policy_input.episode;
+  loop.request(ModeRequest::kStand);
+  loop.run_s(1.0);
+  loop.request(ModeRequest::kWalk);
+  EXPECT_EQ(loop.output.policy_input.command.vx_mps, 1.0);
+  loop.run_s(3.0);
+  EXPECT_EQ(loop.output.mode, Mode::kWalk);
+  EXPECT_EQ(loop.output.policy_input.episode, episode);
+}
+
+TEST(ControllerTest, TorqueIsContinuousFromWalkToStand) {
+  FakeLoop loop;
+  loop.reach(Mode::kWalk);
+  // Legs that yield by a fixed 0.1 rad under the robot's weight.
+  loop.spoil = [&](ControllerInput& seen) {
+    seen.sensors.joints.position_rad = loop.config.stand.nominal_rad;
+    for (double& q : seen.sensors.joints.position_rad) q -= 0.1;
+    seen.sensors.joints.velocity_radps = {};
+  };
+  loop.request(ModeRequest::kStand);
+  const auto torque_nm = [&] {
+    const JointCommand& c = loop.output.command.joints();
+    const double q = loop.output.policy_input.joints.position_rad[4];
+    return joint_torque(q, 0.0, c.position_rad[4], c.velocity_radps[4], c.kp_nmprad[4],
+                        c.kd_nmsprad[4], c.feedforward_nm[4]);
+  };
+  double before_nm = torque_nm();
+  EXPECT_NEAR(before_nm, 50.0 * 0.1, 1e-6);
+  while (loop.output.mode == Mode::kWalk) loop.tick();
+  EXPECT_NEAR(torque_nm(), before_nm, 0.01);
+  for (int n = 0; n < 2100; ++n) {
+    before_nm = torque_nm();
+    loop.tick();
+    ASSERT_NEAR(torque_nm(), before_nm, 0.05);
+  }
+  EXPECT_NEAR(torque_nm(), 100.0 * 0.1, 1e-6);
+}
+
+std::uint64_t hash_of(const ControllerOutput& output, const ControllerState& state) {
+  StateHash hash;
+  hash.add(output);
+  hash.add(state);
+  return hash.value();
+}
+
+TEST(ControllerTest, SnapshotContinuesWithTheSameBits) {
+  ControllerConfig config;
+  config.shaping.acceleration_limit_mps2 = 1.0;
+  FakeLoop loop(Mode::kPassive, config);
+  std::vector<ControllerInput> inputs;
+  std::vector<std::uint64_t> hashes;
+  std::vector<ControllerState> snapshots;
+  // A life: stand up, walk, stop, walk into a fault, be reset.
+  loop.spoil = [&](ControllerInput& seen) {
+    const std::uint64_t tick = seen.sensors.tick;
+    const auto at = [&](std::uint64_t when, ModeRequest wish, std::uint64_t id) {
+      if (tick < when) return;
+      seen.command.request = wish;
+      seen.command.request_id = id;
+    };
+    at(10, ModeRequest::kStand, 1);
+    at(11000, ModeRequest::kWalk, 2);
+    at(14000, ModeRequest::kStand, 3);
+    at(26000, ModeRequest::kWalk, 4);
+    at(37500, ModeRequest::kResetFault, 5);
+    if (tick > 28000 && tick < 28100) seen.sensors.joints.torque_nm[1] = 80.0;
+    snapshots.push_back(loop.controller.state());
+    inputs.push_back(seen);
+  };
+  std::array<bool, 6> visited{};
+  for (int n = 0; n < 38000; ++n) {
+    loop.action_rad[2] = -1.1 + 0.001 * (n % 100);
+    loop.tick();
+    hashes.push_back(hash_of(loop.output, loop.controller.state()));
+    visited[static_cast<std::size_t>(loop.output.mode)] = true;
+  }
+  EXPECT_EQ(visited, (std::array<bool, 6>{true, false, true, true, true, true}));
+  EXPECT_EQ(loop.output.mode, Mode::kPassive);
+
+  for (const std::size_t start : {0u, 5u, 3000u, 10500u, 11001u, 13333u, 15000u, 28019u, 30000u}) {
+    Controller other(config, Mode::kPassive);
+    other.restore(snapshots[start]);
+    ControllerOutput output;
+    const std::size_t end = std::min<std::size_t>(start + 12000, inputs.size());
+    for (std::size_t n = start; n < end; ++n) {
+      other.step(inputs[n], output);
+      ASSERT_EQ(hash_of(output, other.state()), hashes[n]) << start << " " << n;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/core/safety_gate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <type_traits>
+
+#include "fake_robot.h"
+
+namespace sandrunner {
+namespace {
+
+// Only the gate makes a command that can move a motor.
+static_assert(!std::is_constructible_v<SafeCommand, const JointCommand&, bool>);
+static_assert(!std::is_constructible_v<SafeCommand, const JointCommand&>);
+static_assert(!std::is_aggregate_v<SafeCommand>);
+static_assert(!std::is_assignable_v<SafeCommand&, const JointCommand&>);
+static_assert(std::is_default_constructible_v<SafeCommand>);
+static_assert(std::is_copy_constructible_v<SafeCommand>);
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+class SafetyGateTest : public testing::Test {
+ protected:
+  SafetyGateTest() {
+    sensors.joints.position_rad = StandConfig{}.nominal_rad;
+    wanted.position_rad = StandConfig{}.nominal_rad;
+    wanted.kp_nmprad.fill(100.0);
+    wanted.kd_nmsprad.fill(1.0);
+  }
+  std::uint64_t judge(Mode mode) { return gate.judge({sensors, command}, mode, state); }
+  void tilt(double angle_deg) {
+    const double half_rad = angle_deg * M_PI / 360.0;
+    // About an axis in the plane, with a yaw before it: neither may matter.
+    const double c = std::cos(half_rad), s = std::sin(half_rad), h = std::sqrt(0.5);
+    sensors.imu.orientation_wxyz = {h * c, h * s * 0.6 - h * s * 0.8, h * s * 0.6 + h * s * 0.8,
+                                    h * c};
+  }
+
+  GateConfig config;
+  SafetyGate gate{config, 2.0};
+  GateState state;
+  SensorFrame sensors;
+  VelocityCommand command;
+  JointCommand wanted;
+};
+
+TEST_F(SafetyGateTest, DefaultCommandIsOff) {
+  const SafeCommand command_off;
+  EXPECT_FALSE(command_off.enabled());
+  EXPECT_TRUE(only_brakes(command_off));
+  EXPECT_EQ(command_off.joints().kd_nmsprad[0], 0.0);
+}
+
+TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
+  wanted.feedforward_nm.fill(63.45);
+  wanted.velocity_radps.fill(-25.7);
+  const SafeCommand passed = gate.pass(wanted, true, state);
+  EXPECT_TRUE(passed.enabled());
+  EXPECT_EQ(passed.joints().position_rad, wanted.position_rad);
+  EXPECT_EQ(passed.joints().velocity_radps, wanted.velocity_radps);
+  EXPECT_EQ(passed.joints().kp_nmprad, wanted.kp_nmprad);
+  EXPECT_EQ(passed.joints().kd_nmsprad, wanted.kd_nmsprad);
+  EXPECT_EQ(passed.joints().feedforward_nm, wanted.feedforward_nm);
+  EXPECT_EQ(state.position_clamp_ticks + state.velocity_clamp_ticks + state.torque_clamp_ticks, 0u);
+}
+
+TEST_F(SafetyGateTest, ClampsAndCountsCommandedPositions) {
+  wanted.position_rad[2] = 5.0;
+  wanted.position_rad[5] = -5.0;
+  const SafeCommand passed = gate.pass(wanted, true, state);
+  EXPECT_EQ(passed.joints().position_rad[2], -0.0262 + 1.0);
+  EXPECT_EQ(passed.joints().position_rad[5], -2.4696 - 1.0);
+  EXPECT_EQ(state.position_clamp_ticks, 1u);  // ticks, not joints
+}
+
+TEST_F(SafetyGateTest, ClampsAndCountsCommandedVelocitiesAndTorques) {
+  wanted.velocity_radps[0] = 30.0;
+  wanted.feedforward_nm[11] = -64.0;
+  const SafeCommand passed = gate.pass(wanted, true, state);
+  EXPECT_EQ(passed.joints().velocity_radps[0], 25.7);
+  EXPECT_EQ(passed.joints().feedforward_nm[11], -63.45);
+  EXPECT_EQ(state.velocity_clamp_ticks, 1u);
+  EXPECT_EQ(state.torque_clamp_ticks, 1u);
+}
+
+TEST_F(SafetyGateTest, CommandThatIsNotFiniteBecomesDampingAndLatches) {
+  for (auto part :
+       {&JointCommand::position_rad, &JointCommand::velocity_radps, &JointCommand::kp_nmprad,
+        &JointCommand::kd_nmsprad, &JointCommand::feedforward_nm}) {
+    for (const double bad : {kNan, kInf, -kInf}) {
+      state = {};
+      JointCommand broken = wanted;
+      (broken.*part)[7] = bad;
+      const SafeCommand passed = gate.pass(broken, true, state);
+      EXPECT_TRUE(passed.enabled());
+      EXPECT_TRUE(only_brakes(passed));
+      EXPECT_EQ(passed.joints().kd_nmsprad[7], 2.0);
+      EXPECT_EQ(state.first_fault, Fault::kNonFiniteOutput);
+    }
+  }
+}
+
+TEST_F(SafetyGateTest, NothingButDampingPassesWhileLatched) {
+  sensors.joints.velocity_radps[3] = 61.0;
+  EXPECT_NE(judge(Mode::kStand), 0u);
+  sensors.joints.velocity_radps[3] = 0.0;
+  EXPECT_EQ(judge(Mode::kFault), 0u);
+  EXPECT_TRUE(only_brakes(gate.pass(wanted, true, state)));
+  EXPECT_FALSE(gate.pass(wanted, false, state).enabled());
+  gate.clear(state);
+  EXPECT_FALSE(only_brakes(gate.pass(wanted, true, state)));
+}
+
+TEST_F(SafetyGateTest, LimitsAreCountedWithoutAFault) {
+  sensors.joints.position_rad[2] = -0.0262 + 0.35;
+  sensors.joints.position_rad[5] = 0.0;
+  sensors.joints.velocity_radps[4] = -60.0;
+  tilt(59.999);
+  sensors.tick = 40;
+  sensors.joints.tick = 40 - 8;
+  sensors.imu.tick = 0;
+  EXPECT_EQ(judge(Mode::kWalk), 0u);
+  EXPECT_EQ(state.joint_limit_ticks, 1u);
+  EXPECT_EQ(state.speed_limit_ticks, 1u);
+  EXPECT_EQ(state.tilt_limit_ticks, 1u);
+  EXPECT_EQ(state.joints_late_ticks, 1u);
+  EXPECT_EQ(state.imu_late_ticks, 1u);
+  EXPECT_EQ(state.faults, 0u);
+}
+
+TEST_F(SafetyGateTest, NothingIsCountedWithinLimits) {
+  sensors.joints.position_rad[2] = -0.0262;
+  sensors.joints.velocity_radps[4] = 25.7;
+  tilt(44.999);
+  sensors.tick = 10;
+  sensors.joints.tick = 8;
+  sensors.imu.tick = 2;
+  EXPECT_EQ(judge(Mode::kWalk), 0u);
+  EXPECT_EQ(state.joint_limit_ticks + state.speed_limit_ticks + state.tilt_limit_ticks +
+                state.joints_late_ticks + state.imu_late_ticks,
+            0u);
+}
+
+TEST_F(SafetyGateTest, TiltIsJudgedOnlyWhereTheRobotCarriesItself) {
+  tilt(60.001);
+  EXPECT_EQ(judge(Mode::kDamping), 0u);
+  EXPECT_EQ(judge(Mode::kPassive), 0u);
+  for (const Mode mode : {Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
+    EXPECT_EQ(judge(mode), static_cast<std::uint64_t>(Fault::kTilt));
+  }
+  tilt(179.0);
+  EXPECT_EQ(judge(Mode::kStand), static_cast<std::uint64_t>(Fault::kTilt));
+}
+
+TEST_F(SafetyGateTest, TiltThresholdMatchesItsAngle) {
+  for (int angle_deg = 5; angle_deg <= 175; angle_deg += 5) {
+    config.tilt_fault_deg = angle_deg;
+    const SafetyGate other(config, 2.0);
+    state = {};
+    tilt(angle_deg - 1e-6);
+    EXPECT_EQ(other.judge({sensors, command}, Mode::kStand, state), 0u) << angle_deg;
+    tilt(angle_deg + 1e-6);
+    EXPECT_NE(other.judge({sensors, command}, Mode::kStand, state), 0u) << angle_deg;
+  }
+}
+
+TEST_F(SafetyGateTest, TorqueFaultNeedsTwentySamplesOfOneJointInARow) {
+  const auto sample = [&](int joint, double torque_nm) {
+    sensors.joints.torque_nm = {};
+    sensors.joints.torque_nm[joint] = torque_nm;
+    return judge(Mode::kWalk);
+  };
+  for (int n = 0; n < 19; ++n) EXPECT_EQ(sample(2, -77.0), 0u);
+  EXPECT_EQ(sample(2, 76.0), 0u);  // below 1.2 * 63.45
+  for (int n = 0; n < 100; ++n) EXPECT_EQ(sample(n % 2, 77.0), 0u);
+  for (int n = 0; n < 19; ++n) EXPECT_EQ(sample(8, 77.0), 0u);
+  EXPECT_EQ(sample(8, 77.0), static_cast<std::uint64_t>(Fault::kJointTorque));
+}
+
+TEST_F(SafetyGateTest, SampleFromTheFutureIsStale) {
+  sensors.tick = 100;
+  sensors.joints.tick = 101;
+  sensors.imu.tick = 101;
+  const std::uint64_t found = judge(Mode::kPassive);
+  EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kJointsStale) |
+                       static_cast<std::uint64_t>(Fault::kImuStale));
+  EXPECT_EQ(state.first_fault, Fault::kJointsStale);
+  EXPECT_EQ(state.first_fault_tick, 100u);
+}
+
+TEST_F(SafetyGateTest, QuaternionThatIsNoRotationIsUnusable) {
+  sensors.imu.orientation_wxyz = {0.0, 0.0, 0.0, 0.0};
+  EXPECT_EQ(judge(Mode::kStand), static_cast<std::uint64_t>(Fault::kNonFiniteImu));
+  sensors.imu.orientation_wxyz = {1e200, 1e200, 0.0, 0.0};
+  EXPECT_EQ(judge(Mode::kStand), static_cast<std::uint64_t>(Fault::kNonFiniteImu));
+}
+
+TEST(FaultTest, NamesAreStable) {
+  const char* expected[kNumFaults] = {
+      "non_finite_joint",  "non_finite_imu", "non_finite_action", "non_finite_command",
+      "non_finite_output", "joints_stale",   "imu_stale",         "policy_stale",
+      "joint_position",    "joint_speed",    "joint_torque",      "tilt"};
+  for (int i = 0; i < kNumFaults; ++i) {
+    EXPECT_STREQ(fault_name(static_cast<Fault>(1u << i)), expected[i]);
+  }
+  EXPECT_STREQ(fault_name(Fault::kNone), "none");
+}
+
+TEST(TicksFromSecondsTest, RoundsAndTakesOddValues) {
+  EXPECT_EQ(ticks_from_s(0.005), 20u);
+  EXPECT_EQ(ticks_from_s(1.5), 6000u);
+  EXPECT_EQ(ticks_from_s(-1.0), 0u);
+  EXPECT_EQ(ticks_from_s(kNan), 0u);
+  EXPECT_EQ(ticks_from_s(kInf), std::uint64_t{1} << 62);
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sandrunner-policy: imports policies that others published and describes policy files.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+
+#include "policy/policy_file.h"
+#include "policy/text.h"
+#include "rt/core/errors.h"
+
+namespace sandrunner {
+namespace {
+
+/// How the published controller of Raibo is wired (compliant-gym; Choi et al. 2023, "Controller
+/// structure").
+void set_raibo_conventions(PolicySpec& spec) {
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    spec.nominal_position_rad[kJointsPerLeg * leg + 0] = 0.0;
+    spec.nominal_position_rad[kJointsPerLeg * leg + 1] = 0.559836;
+    spec.nominal_position_rad[kJointsPerLeg * leg + 2] = -1.119672;
+  }
+  spec.action_scale_rad = 0.3;
+  spec.action_clip = 0.0;
+  spec.kp_nmprad = 50.0;
+  spec.kd_nmsprad = 0.5;
+  spec.torque_limit_nm = 63.45;
+  spec.yaw_command_clip_mps2 = 2.943;  // 0.3 g
+}
+
+void import_policy(const std::string& input, const std::string& output, const std::string& name) {
+  PolicyFile file = read_bare_weights(input);
+  set_raibo_conventions(file.spec);
+  file.spec.name = name;
+  file.spec.provenance["imported_from"] = std::filesystem::path(input).filename().string();
+  file.parameters.observation_clip = 10.0f;
+  file.golden = make_golden_example(file.parameters);
+  write_policy_file(output, file);
+  fmt::print("wrote {}\n", output);
+}
+
+std::size_t number_of_parameters(NetworkParameters parameters) {
+  std::size_t count = 0;
+  for (const NamedTensor& tensor : tensors_of(parameters)) count += tensor.size();
+  return count - 2 * kObservationSize;  // the normalisation is not trained
+}
+
+void print_info(const std::string& path) {
+  const PolicyFile file = read_policy_file(path);
+  const PolicySpec& spec = file.spec;
+  const double deviation = check_golden_example(path, Network(file.parameters), file.golden);
+
+  const auto row = [](const char* label, const std::string& text) {
+    fmt::print("{:<20}{}\n", label, text);
+  };
+  row("name", printable(spec.name));
+  row("network", fmt::format("LSTM {}-{}, estimator {}, actor {}; {} parameters", kEncoderInputSize,
+                             kHiddenSize, joined(kEstimatorSizes, "-"), joined(kActorSizes, "-"),
+                             number_of_parameters(file.parameters)));
+  row("observation", fmt::format("{} values, normalised, limited to +-{}", kObservationSize,
+                                 file.parameters.observation_clip));
+  row("rates", fmt::format("policy {} Hz, control {} Hz", kPolicyHz, kControlHz));
+  row("joint target",
+      fmt::format("nominal + {} rad * action, action {}", spec.action_scale_rad,
+                  spec.action_clip > 0.0 ? fmt::format("limited to +-{}", spec.action_clip)
+                                         : "not limited"));
+  row("gains", fmt::format("Kp {} N m/rad, Kd {} N m s/rad, torque limit {} N m", spec.kp_nmprad,
+                           spec.kd_nmsprad, spec.torque_limit_nm));
+  row("yaw command",
+      fmt::format("limited to {} m/s^2 of centripetal acceleration", spec.yaw_command_clip_mps2));
+
+  fmt::print("\n{:<20}{:>10}{:>12}{:>12}\n", "nominal pose, rad", "HAA", "HFE", "KFE");
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    const double* q = &spec.nominal_position_rad[kJointsPerLeg * leg];
+    fmt::print("{:<20}{:>10.6f}{:>12.6f}{:>12.6f}\n", kLegNames[leg], q[0], q[1], q[2]);
+  }
+  constexpr std::array<const char*, kEstimateSize> kEstimateNames = {
+      "body height, m",    "velocity x, m/s",   "velocity y, m/s",   "velocity z, m/s",
+      "foot height LF, m", "foot height RF, m", "foot height LH, m", "foot height RH, m"};
+  fmt::print("\n{:<20}{:>10}{:>12}\n", "estimate", "mean", "deviation");
+  for (int i = 0; i < kEstimateSize; ++i) {
+    fmt::print("{:<20}{:>10.3f}{:>12.3f}\n", kEstimateNames[i], spec.estimate_mean[i],
+               std::sqrt(spec.estimate_variance[i]));
+  }
+  fmt::print("\n");
+  for (const auto& [key, value] : spec.provenance) {
+    fmt::print("{:<19} {}\n", printable(key), printable(value, 200));
+  }
+  row("golden example", fmt::format("{} steps pass, largest deviation {:.1e} (allowed {:.0e})",
+                                    kGoldenSteps, deviation, kGoldenTolerance));
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Imports and describes the policy files of sandrunner.", "sandrunner-policy");
+  app.set_version_flag("--version", "sandrunner-policy " SANDRUNNER_VERSION);
+  app.require_subcommand(1);
+
+  std::string input;
+  std::string output;
+  std::string name;
+  CLI::App* import_command = app.add_subcommand(
+      "import", "turn published weights (bare safetensors) into a policy file for Raibo");
+  import_command->add_option("IN", input, "weights in the layout of compliant-gym")->required();
+  import_command->add_option("--out", output, "policy file to write")->required();
+  import_command->add_option("--name", name, "name of the policy (default: that of IN)");
+
+  std::string path;
+  CLI::App* info_command =
+      app.add_subcommand("info", "check a policy file and print what it holds");
+  info_command->add_option("FILE", path, "policy file")->required();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    throw InputError(error.what());
+  }
+  if (*import_command) {
+    if (name.empty()) name = std::filesystem::path(input).stem().string();
+    import_policy(input, output, name);
+  } else if (*info_command) {
+    print_info(path);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+}  // namespace sandrunner
+
+int main(int argc, char** argv) {
+  try {
+    const int code = sandrunner::run(argc, argv);
+    if (std::fflush(stdout) == 0) return code;
+    std::fputs("sandrunner-policy: standard output cannot be written\n", stderr);
+    return sandrunner::kExitInternal;
+  } catch (const sandrunner::InputError& error) {
+    fmt::print(stderr, "sandrunner-policy: {}\n", sandrunner::printable(error.what(), 1000));
+    return sandrunner::kExitBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sandrunner-policy: internal error: {}\n", error.what());
+    return sandrunner::kExitInternal;
+  }
+}
