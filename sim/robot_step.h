@@ -14,37 +14,47 @@
 
 namespace sandrunner::sim {
 
-inline constexpr int kMaxRegions = 16;
+inline constexpr int kMaxRegions = 8;
 
-/// Patches of ground one after the other along x; the last one is endless.
+/// Patches of ground one after the other along x; the last one is endless. All members are S, so
+/// that a pack's terrain is an array of its robots' terrains.
 template <typename S>
 struct Terrain {
-  int count = 1;
+  S count = S(1.0);
   std::array<Ground<S>, kMaxRegions> ground;
   std::array<S, kMaxRegions>
       start_x{};  ///< from where on patch i counts; ascending, that of patch 0 is ignored
   /// Upper bound of the surface's height, m: 0 without roughness.
   S highest{};
 
+  /// Index of the patch at x.
   S region_at(S x) const noexcept {
     S index = S(0.0);
-    for (int i = 1; i < count; ++i) index = select(x >= start_x[i], S(double(i)), index);
+    if (!any(count > S(1.0))) return index;
+    for (int i = 1; i < kMaxRegions; ++i) {
+      index = select(both(x >= start_x[i], count > S(double(i))), S(double(i)), index);
+    }
     return index;
   }
-  Ground<S> pick(S index) const noexcept {
+  /// The patch of each lane; `scratch` is where lanes that stand on different patches are put
+  /// together.
+  const Ground<S>& pick(S index, Ground<S>& scratch) const noexcept {
     if constexpr (std::is_floating_point_v<S>) {
-      return ground[static_cast<int>(index)];
+      return ground[static_cast<std::size_t>(index)];
     } else {
-      Ground<S> g = ground[0];
+      if (!any(index > S(0.0))) return ground[0];
       using Fields = std::array<S, sizeof(Ground<S>) / sizeof(S)>;
-      Fields fields = std::bit_cast<Fields>(g);
-      for (int i = 1; i < count; ++i) {
-        const Fields other = std::bit_cast<Fields>(ground[i]);
+      Fields fields = std::bit_cast<Fields>(ground[0]);
+      for (int i = 1; i < kMaxRegions; ++i) {
         const Mask<S> here = index == S(double(i));
-        for (std::size_t f = 0; f < fields.size(); ++f)
+        if (!any(here)) continue;
+        const Fields other = std::bit_cast<Fields>(ground[i]);
+        for (std::size_t f = 0; f < fields.size(); ++f) {
           fields[f] = select(here, other[f], fields[f]);
+        }
       }
-      return std::bit_cast<Ground<S>>(fields);
+      scratch = std::bit_cast<Ground<S>>(fields);
+      return scratch;
     }
   }
 };
@@ -108,7 +118,7 @@ class RobotStepper {
                        StepReport<S>& report) noexcept;
   void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const Vec3<S>& r_base,
                       const Vec3<S>& r_hip, int leg, int joints, S radius, bool only_rigid,
-                      int slot, RobotState<S>& x, S& touched) noexcept;
+                      const Mask<S>& near, int slot, RobotState<S>& x, S& touched) noexcept;
   void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
   Frame surface_frame(S slope_x, S slope_y) const noexcept;
 

@@ -73,7 +73,8 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     FootContact<S>& contact = x.feet[l];
     // A contact keeps the patch on which it began.
     contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
-    const Ground<S> ground = terrain.pick(contact.region);
+    Ground<S> scratch;
+    const Ground<S>& ground = terrain.pick(contact.region, scratch);
     S height = zero, slope_x = zero, slope_y = zero;
     const Mask<S> rough = ground.roughness > zero;
     if (any(rough)) {
@@ -141,13 +142,17 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
 template <typename S>
 void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain,
                                      const Vec3<S>& r_base, const Vec3<S>& r_hip, int leg,
-                                     int joints, S radius, bool only_rigid, int slot,
-                                     RobotState<S>& x, S& touched) noexcept {
+                                     int joints, S radius, bool only_rigid, const Mask<S>& near,
+                                     int slot, RobotState<S>& x, S& touched) noexcept {
   const S zero = S(0.0), one = S(1.0);
   const Vec3<S> place = x.rigid.position + rotation_ * r_base;
   const auto forget = [&] { x.impulse[slot] = {zero, zero, zero}; };
-  if (!any(place.z - radius < terrain.highest)) return forget();
-  const Ground<S> ground = terrain.pick(terrain.region_at(place.x));
+  // Lanes outside this mask stay outside, whatever rounding says of them further down: one robot
+  // alone stops here.
+  const Mask<S> close = both(near, place.z - radius < terrain.highest);
+  if (!any(close)) return forget();
+  Ground<S> scratch;
+  const Ground<S>& ground = terrain.pick(terrain.region_at(place.x), scratch);
   S height = zero, slope_x = zero, slope_y = zero;
   const Mask<S> rough = ground.roughness > zero;
   if (any(rough)) {
@@ -161,7 +166,7 @@ void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S
   const Frame frame{select(rough, tilted.t1, level.t1), select(rough, tilted.t2, level.t2),
                     select(rough, tilted.n, level.n)};
   const S penetration = radius - (place.z - height) * dot(frame.n, rotation_.r2);
-  Mask<S> active = penetration >= zero;
+  Mask<S> active = both(close, penetration >= zero);
   if (only_rigid) active = both(active, ground.is_rigid == one);
   touched = select(active, one, touched);
   if (!any(active)) return forget();
@@ -192,19 +197,21 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
     const Vec3<S> knee_base = hip_to_base(model.legs[l], pose, pose.knee);
     report.knee[l] = x.rigid.position + rotation_ * knee_base;
     add_hard_point(model, terrain, knee_base, pose.knee, l, 2, model.knee_radius_m, false,
-                   kNumLegs + l, x, report.thigh_contact);
+                   zero == zero, kNumLegs + l, x, report.thigh_contact);
     // On level ground knee and foot cover the shank; only uneven rigid ground can touch it.
-    if (any(terrain.highest > zero)) {
+    const Mask<S> uneven = terrain.highest > zero;
+    if (any(uneven)) {
       const Vec3<S> middle = S(0.5) * (pose.knee + pose.foot);
       add_hard_point(model, terrain, hip_to_base(model.legs[l], pose, middle), middle, l, 3,
-                     model.shank_radius_m, true, 2 * kNumLegs + l, x, report.shank_contact);
+                     model.shank_radius_m, true, uneven, 2 * kNumLegs + l, x, report.shank_contact);
     }
   }
   const Vec3<S>& half = model.base_box_half_m;
   const S reach = fma(abs(rotation_.r2.x), half.x,
                       fma(abs(rotation_.r2.y), half.y, abs(rotation_.r2.z) * half.z));
   const S lowest = (x.rigid.position.z + dot(rotation_.r2, model.base_box_centre_m)) - reach;
-  if (!any(lowest < terrain.highest)) {
+  const Mask<S> low = lowest < terrain.highest;
+  if (!any(low)) {
     for (int i = 0; i < kNumBaseCorners; ++i) x.impulse[3 * kNumLegs + i] = {zero, zero, zero};
     return;
   }
@@ -212,7 +219,7 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
     const Vec3<S> corner =
         model.base_box_centre_m +
         Vec3<S>{(i & 1) ? half.x : -half.x, (i & 2) ? half.y : -half.y, (i & 4) ? half.z : -half.z};
-    add_hard_point(model, terrain, corner, corner, -1, 0, zero, false, 3 * kNumLegs + i, x,
+    add_hard_point(model, terrain, corner, corner, -1, 0, zero, false, low, 3 * kNumLegs + i, x,
                    report.base_contact);
   }
 }

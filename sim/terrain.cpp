@@ -137,8 +137,9 @@ FootProfile<double> make_foot_profile(const TerrainDescription& terrain,
 Terrain<double> make_terrain(const TerrainDescription& description, const FootProfile<double>& foot,
                              const RobotModel<double>& model) {
   Terrain<double> terrain;
-  terrain.count = static_cast<int>(description.patches.size());
-  for (int i = 0; i < terrain.count; ++i) {
+  const std::size_t count = description.patches.size();
+  terrain.count = static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
     terrain.ground[i] = derive_ground(description.patches[i].ground, foot, model.foot_radius_m);
     terrain.start_x[i] = description.patches[i].from_x_m;
     // Six waves of amplitude roughness/sqrt(3) can add up to no more than this.
