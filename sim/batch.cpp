@@ -89,6 +89,14 @@ void Batch::set_state(int robot, const RobotState<float>& v) noexcept {
 void Batch::set_drive(int robot, const BatchDrive<float>& v) noexcept {
   copy_in(robot, offsetof(BatchRobot<float>, drive), &v, sizeof(v));
 }
+void Batch::set_robot(int robot, const BatchRobot<float>& v) noexcept {
+  copy_in(robot, 0, &v, sizeof(v));
+}
+BatchRobot<float> Batch::robot(int robot) const noexcept {
+  BatchRobot<float> v;
+  copy_out(robot, 0, &v, sizeof(v));
+  return v;
+}
 RobotState<float> Batch::state(int robot) const noexcept {
   RobotState<float> v;
   copy_out(robot, offsetof(BatchRobot<float>, state), &v, sizeof(v));

@@ -33,6 +33,7 @@ struct BatchSums {
   S stop_excess{};                        ///< sum over joints of the distance past the stop, rad
   S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
   S slip{};                               ///< sum over feet in contact of |v_xy|^2, m^2/s^2
+  std::array<S, kNumLegs> foot_load{};  ///< normal force of each foot, N
   S base_contact{}, thigh_contact{};      ///< 1: touched the ground in the period
 };
 
@@ -91,6 +92,9 @@ class Batch {
   void set_state(int robot, const RobotState<float>& state) noexcept;
   void set_drive(int robot, const BatchDrive<float>& drive) noexcept;
   RobotState<float> state(int robot) const noexcept;
+  /// Everything of one robot, for checkpoints.
+  BatchRobot<float> robot(int robot) const noexcept;
+  void set_robot(int robot, const BatchRobot<float>& all) noexcept;
   BatchSums<float> sums(int robot) const noexcept;
   BatchReport<float> report(int robot) const noexcept;
 

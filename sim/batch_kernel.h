@@ -45,6 +45,7 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
     stepper.step(r.model, foot, r.terrain, settings, torque, r.state, report);
     for (int l = 0; l < kNumLegs; ++l) {
       const Vec3<S>& v = report.foot_velocity[l];
+      sums.foot_load[l] = sums.foot_load[l] + report.foot_force[l][2];
       sums.slip = sums.slip + select(report.penetration[l] >= zero, fma(v.x, v.x, v.y * v.y), zero);
     }
     sums.base_contact = max(sums.base_contact, report.base_contact);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <bit>
+#include <tuple>
 #include <type_traits>
 
 #include "sim/contact_solver.h"
@@ -58,6 +59,24 @@ struct Terrain {
     }
   }
 };
+
+/// The same terrain in another scalar.
+template <typename To>
+Terrain<To> convert_terrain(const Terrain<double>& from) noexcept {
+  using From = std::array<double, sizeof(Ground<double>) / sizeof(double)>;
+  using Values = std::array<To, std::tuple_size_v<From>>;
+  Terrain<To> to;
+  to.count = To(from.count);
+  to.highest = To(from.highest);
+  for (int i = 0; i < kMaxRegions; ++i) {
+    const From values = std::bit_cast<From>(from.ground[i]);
+    Values converted;
+    for (std::size_t f = 0; f < values.size(); ++f) converted[f] = To(values[f]);
+    to.ground[i] = std::bit_cast<Ground<To>>(converted);
+    to.start_x[i] = To(from.start_x[i]);
+  }
+  return to;
+}
 
 // Contact points: feet, then knees (thigh), shanks, corners of the base.
 inline constexpr int kNumBaseCorners = 8;

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/train/learner/block_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sandrunner::learner {
+
+void LossSums::add(const LossSums& other) {
+  policy += other.policy;
+  value += other.value;
+  for (std::size_t k = 0; k < estimate_square.size(); ++k) {
+    estimate_square[k] += other.estimate_square[k];
+  }
+  kl += other.kl;
+  clipped += other.clipped;
+  samples += other.samples;
+}
+
+template <typename Scalar>
+double entropy(const Scalar* log_std) {
+  double sum = 0.5 * kActionSize * (1.0 + std::log(2.0 * std::numbers::pi));
+  for (int k = 0; k < kActionSize; ++k) sum += static_cast<double>(log_std[k]);
+  return sum;
+}
+template double entropy(const float* log_std);
+template double entropy(const double* log_std);
+
+template <typename Scalar>
+BlockPass<Scalar>::BlockPass(const ParameterLayout& layout, int steps, int envs, int chunk_steps)
+    : layout_(layout),
+      steps_(steps),
+      envs_(envs),
+      chunk_steps_(chunk_steps),
+      encoder_(kProprioceptionSize, layout.hidden(), steps, envs),
+      estimator_(layout.estimator(), chunk_steps * envs),
+      actor_(layout.actor(), chunk_steps * envs),
+      critic_(layout.critic(), chunk_steps * envs),
+      actor_input_(kCommandSize + layout.hidden() + kEstimateSize, chunk_steps * envs),
+      critic_input_(layout.privileged(), chunk_steps * envs),
+      output_gradient_(layout.hidden(), steps * envs) {}
+
+template <typename Scalar>
+void BlockPass<Scalar>::run_heads(const Scalar* parameters, const BasicRollout<Scalar>& rollout,
+                                  int t, int steps, int first_env, int window_step) {
+  const int n = steps * envs_;
+  const auto h = encoder_.output().middleCols(window_step * envs_, n);
+  estimator_.forward(parameters, h);
+  for (int k = 0; k < steps; ++k) {
+    const auto command = rollout.observation(t + k).middleCols(first_env, envs_);
+    actor_input_.block(0, k * envs_, kCommandSize, envs_) = command.topRows(kCommandSize);
+    critic_input_.middleCols(k * envs_, envs_) =
+        rollout.privileged(t + k).middleCols(first_env, envs_);
+  }
+  actor_input_.block(kCommandSize, 0, layout_.hidden(), n) = h;
+  actor_input_.block(kCommandSize + layout_.hidden(), 0, kEstimateSize, n) = estimator_.output(n);
+  actor_.forward(parameters, actor_input_.leftCols(n));
+  critic_.forward(parameters, critic_input_.leftCols(n));
+}
+
+template <typename Scalar>
+void BlockPass<Scalar>::act(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t,
+                            int first_env, MatrixRef<Scalar> h, MatrixRef<Scalar> c) {
+  encoder_.input(0) =
+      rollout.observation(t).middleCols(first_env, envs_).bottomRows(kProprioceptionSize);
+  encoder_.forward(parameters + layout_.encoder(), h, c, &rollout.reset(t, first_env), 0);
+  h = encoder_.output();
+  c = encoder_.last_cell();
+  run_heads(parameters, rollout, t, 1, first_env, 0);
+  rollout.mean(t).middleCols(first_env, envs_) = actor_.output(envs_);
+  for (int env = 0; env < envs_; ++env) {
+    rollout.value(t, first_env + env) = critic_.output(envs_)(0, env);
+  }
+}
+
+template <typename Scalar>
+void BlockPass<Scalar>::last_value(const Scalar* parameters, BasicRollout<Scalar>& rollout,
+                                   int first_env) {
+  const int t = rollout.shape.steps;
+  critic_.forward(parameters, rollout.privileged(t).middleCols(first_env, envs_));
+  for (int env = 0; env < envs_; ++env) {
+    rollout.value(t, first_env + env) = critic_.output(envs_)(0, env);
+  }
+}
+
+template <typename Scalar>
+Scalar BlockPass<Scalar>::value(const Scalar* parameters, const Scalar* privileged) {
+  critic_.forward(parameters,
+                  Eigen::Map<const Matrix<Scalar>>(privileged, layout_.privileged(), 1));
+  return critic_.output(1)(0, 0);
+}
+
+template <typename Scalar>
+LossSums BlockPass<Scalar>::loss_and_gradient(const Scalar* parameters,
+                                              const BasicRollout<Scalar>& rollout, int first_env,
+                                              const LossConfig& config, const AdvantageScale& scale,
+                                              int samples, Scalar* gradient) {
+  const auto initial_h = rollout.initial_h(0).middleCols(first_env, envs_);
+  const auto initial_c = rollout.initial_c(0).middleCols(first_env, envs_);
+  const std::uint8_t* reset = &rollout.reset(0, first_env);
+  for (int t = 0; t < steps_; ++t) {
+    encoder_.input(t) =
+        rollout.observation(t).middleCols(first_env, envs_).bottomRows(kProprioceptionSize);
+  }
+  encoder_.forward(parameters + layout_.encoder(), initial_h, initial_c, reset, rollout.shape.envs);
+  LossSums sums;
+  output_gradient_.setZero();
+  for (int t = 0; t < steps_; t += chunk_steps_) {
+    const int steps = std::min(chunk_steps_, steps_ - t);
+    const int n = steps * envs_;
+    run_heads(parameters, rollout, t, steps, first_env, t);
+    differentiate_loss(parameters, rollout, t, steps, first_env, config, scale, samples, sums,
+                       gradient);
+    critic_.backward(parameters, critic_input_.leftCols(n), gradient);
+    actor_.backward(parameters, actor_input_.leftCols(n), gradient);
+    estimator_.backward(parameters, encoder_.output().middleCols(t * envs_, n), gradient);
+    // Of the actor's inputs only h: command is data, the estimate is detached.
+    auto dh = output_gradient_.middleCols(t * envs_, n);
+    actor_.add_input_gradient(parameters, kCommandSize, dh);
+    estimator_.add_input_gradient(parameters, 0, dh);
+  }
+  encoder_.backward(parameters + layout_.encoder(), output_gradient_, reset, rollout.shape.envs,
+                    gradient + layout_.encoder());
+  return sums;
+}
+
+template <typename Scalar>
+void BlockPass<Scalar>::differentiate_loss(const Scalar* parameters,
+                                           const BasicRollout<Scalar>& rollout, int t, int steps,
+                                           int first_env, const LossConfig& config,
+                                           const AdvantageScale& scale, int samples, LossSums& sums,
+                                           Scalar* gradient) {
+  const int n = steps * envs_;
+  const Scalar inverse_samples = Scalar(1) / static_cast<Scalar>(samples);
+  const auto clip = static_cast<Scalar>(config.clip);
+  const auto value_factor = static_cast<Scalar>(config.value_weight) * inverse_samples;
+  const auto estimate_factor =
+      static_cast<Scalar>(config.estimate_weight * 2.0 / kEstimateSize) * inverse_samples;
+  const Scalar* log_std = parameters + layout_.log_std();
+  std::array<Scalar, kActionSize> inverse_std{};
+  std::array<Scalar, kActionSize> log_std_gradient{};
+  std::array<Scalar, kActionSize> kl_variance{};  // old variance / new variance
+  Scalar log_norm = static_cast<Scalar>(-0.5 * kActionSize * std::log(2.0 * std::numbers::pi));
+  Scalar kl_constant = 0;
+  for (std::size_t k = 0; k < kActionSize; ++k) {
+    inverse_std[k] = std::exp(-log_std[k]);
+    log_norm -= log_std[k];
+    const Scalar log_ratio = rollout.log_std(static_cast<Eigen::Index>(k)) - log_std[k];
+    kl_variance[k] = std::exp(2 * log_ratio);
+    kl_constant += static_cast<Scalar>(0.5) * (kl_variance[k] - 1) - log_ratio;
+  }
+  const auto means = actor_.output(n);
+  const auto values = critic_.output(n);
+  const auto estimates = estimator_.output(n);
+  auto mean_gradient = actor_.output_gradient(n);
+  auto value_gradient = critic_.output_gradient(n);
+  auto estimate_gradient = estimator_.output_gradient(n);
+
+  for (int column = 0; column < n; ++column) {
+    const int step = t + column / envs_;
+    const int env = first_env + column % envs_;
+
+    const auto mean = means.col(column);
+    const auto action = rollout.action(step).col(env);
+    const auto old_mean = rollout.mean(step).col(env);
+    std::array<Scalar, kActionSize> z{};
+    Scalar square = 0;
+    Scalar shift_square = 0;
+    for (int k = 0; k < kActionSize; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      z[i] = (action(k) - mean(k)) * inverse_std[i];
+      square += z[i] * z[i];
+      const Scalar shift = (old_mean(k) - mean(k)) * inverse_std[i];
+      shift_square += shift * shift;
+    }
+    const Scalar log_prob = log_norm - static_cast<Scalar>(0.5) * square;
+    const Scalar ratio = std::exp(log_prob - rollout.log_prob(step, env));
+    const Scalar advantage = (rollout.advantage(step, env) - static_cast<Scalar>(scale.mean)) *
+                             static_cast<Scalar>(scale.inverse_std);
+    const Scalar bounded = std::clamp(ratio, 1 - clip, 1 + clip);
+    const bool is_clipped = bounded * advantage < ratio * advantage;
+    sums.policy -= static_cast<double>((is_clipped ? bounded : ratio) * advantage);
+    sums.clipped += is_clipped ? 1.0 : 0.0;
+    sums.kl += static_cast<double>(kl_constant + static_cast<Scalar>(0.5) * shift_square);
+    const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * inverse_samples;
+    for (int k = 0; k < kActionSize; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      mean_gradient(k, column) = log_prob_gradient * z[i] * inverse_std[i];
+      log_std_gradient[i] += log_prob_gradient * (z[i] * z[i] - 1);
+    }
+
+    const Scalar value_error = values(0, column) - rollout.value_target(step, env);
+    sums.value += 0.5 * static_cast<double>(value_error * value_error);
+    value_gradient(0, column) = value_factor * value_error;
+
+    const auto target = rollout.estimate_target(step).col(env);
+    for (int k = 0; k < kEstimateSize; ++k) {
+      const Scalar error = estimates(k, column) - target(k);
+      sums.estimate_square[static_cast<std::size_t>(k)] += static_cast<double>(error * error);
+      estimate_gradient(k, column) = estimate_factor * error;
+    }
+  }
+  sums.samples += n;
+  // The entropy grows by one with each log_std.
+  const auto entropy_gradient =
+      static_cast<Scalar>(config.entropy_weight) * inverse_samples * static_cast<Scalar>(n);
+  for (std::size_t k = 0; k < kActionSize; ++k) {
+    gradient[layout_.log_std() + static_cast<std::ptrdiff_t>(k)] +=
+        log_std_gradient[k] - entropy_gradient;
+  }
+}
+
+template class BlockPass<float>;
+template class BlockPass<double>;
+
+}  // namespace sandrunner::learner

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The networks as they work together, and the loss with its gradient over a block of environments.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "tools/train/learner/lstm.h"
+#include "tools/train/learner/matrix.h"
+#include "tools/train/learner/mlp.h"
+#include "tools/train/learner/parameters.h"
+#include "tools/train/learner/rollout.h"
+
+namespace sandrunner::learner {
+
+/// loss = mean over samples of
+///   -min(ratio A, clip(ratio, 1 - clip, 1 + clip) A) + value_weight (V - R)^2 / 2
+///   + estimate_weight mean_8((estimate - target)^2) - entropy_weight entropy
+struct LossConfig {
+  double clip = 0.2;
+  double value_weight = 1.0;
+  double estimate_weight = 1.0;
+  double entropy_weight = 0.0;
+};
+
+/// A = (advantage - mean) inverse_std.
+struct AdvantageScale {
+  double mean = 0.0;
+  double inverse_std = 1.0;
+};
+
+/// Sums over samples (steps x environments).
+struct LossSums {
+  double policy = 0.0;
+  double value = 0.0;  ///< (V - R)^2 / 2
+  std::array<double, kEstimateSize> estimate_square{};
+  double kl = 0.0;  ///< of the new policy from the one that acted, exact
+  double clipped = 0.0;
+  double samples = 0.0;
+
+  void add(const LossSums& other);
+};
+
+/// Working memory and wiring of all networks for a block of environments: the encoder over `steps`
+/// steps, the heads over chunks of columns. Instantiated for float (training) and double (tests).
+///   encoder: proprioception -> h;  estimator: h -> estimate;  critic: privileged -> value
+///   actor: [command | h | estimate] -> mean of the action. No gradient flows from the actor into
+///   the estimate.
+template <typename Scalar>
+class BlockPass {
+ public:
+  /// The heads work on chunk_steps * envs columns at a time: few enough to stay in the cache.
+  BlockPass(const ParameterLayout& layout, int steps, int envs, int chunk_steps);
+
+  /// One step of acting: fills mean, value of rollout step t for the block, and carries its memory
+  /// h, c (hidden x envs) on. The block has one step (constructor).
+  void act(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t, int first_env,
+           MatrixRef<Scalar> h, MatrixRef<Scalar> c);
+
+  /// Value of rollout step `steps`, the state after the window.
+  void last_value(const Scalar* parameters, BasicRollout<Scalar>& rollout, int first_env);
+
+  /// Value of one privileged vector.
+  Scalar value(const Scalar* parameters, const Scalar* privileged);
+
+  /// Loss of the window of the block's environments; adds its gradient, divided by `samples` (the
+  /// number of samples in the whole minibatch), to `gradient`.
+  LossSums loss_and_gradient(const Scalar* parameters, const BasicRollout<Scalar>& rollout,
+                             int first_env, const LossConfig& config, const AdvantageScale& scale,
+                             int samples, Scalar* gradient);
+
+ private:
+  /// Fills actor_input_ and critic_input_ and runs the heads for rollout steps t ... t + steps,
+  /// whose encoder outputs begin with step `window_step` of the encoder.
+  void run_heads(const Scalar* parameters, const BasicRollout<Scalar>& rollout, int t, int steps,
+                 int first_env, int window_step);
+  /// Fills the output gradients of the heads and adds that of log_std.
+  void differentiate_loss(const Scalar* parameters, const BasicRollout<Scalar>& rollout, int t,
+                          int steps, int first_env, const LossConfig& config,
+                          const AdvantageScale& scale, int samples, LossSums& sums,
+                          Scalar* gradient);
+
+  ParameterLayout layout_;
+  int steps_;
+  int envs_;
+  int chunk_steps_;
+  Lstm<Scalar> encoder_;
+  Mlp<Scalar> estimator_;
+  Mlp<Scalar> actor_;
+  Mlp<Scalar> critic_;
+  Matrix<Scalar> actor_input_;
+  Matrix<Scalar> critic_input_;
+  Matrix<Scalar> output_gradient_;  // of the encoder
+};
+
+/// Entropy of the policy's normal distribution; log_std: 12 values.
+template <typename Scalar>
+double entropy(const Scalar* log_std);
+
+}  // namespace sandrunner::learner

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace sandrunner::learner {
+
+/// State of a training as named sections of bytes: the learner's, and whatever the program adds
+/// (environments, curriculum, progress) to continue to the same bits.
+struct Checkpoint {
+  std::string architecture;  ///< sizes that the state belongs to, readable
+  std::uint64_t config_hash = 0;
+  std::map<std::string, std::vector<char>> sections;
+  std::string source;  ///< file it was read from, for messages
+
+  template <typename T>
+  void put(const std::string& name, const T* values, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::vector<char>& bytes = sections[name];
+    bytes.resize(count * sizeof(T));
+    if (count > 0) std::memcpy(bytes.data(), values, bytes.size());
+  }
+
+  /// Throws InputError if the section is missing or is not `count` values long.
+  template <typename T>
+  void get(const std::string& name, T* values, std::size_t count) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::vector<char>& bytes = section(name, count * sizeof(T));
+    if (count > 0) std::memcpy(values, bytes.data(), bytes.size());
+  }
+
+ private:
+  const std::vector<char>& section(const std::string& name, std::size_t expected_bytes) const;
+};
+
+/// Writes to `path`.tmp, flushes it to the disk and renames it: `path` is always a whole
+/// checkpoint, the old or the new one. Throws InputError (disk full, no such folder, ...) and then
+/// leaves `path` as it was.
+void save_checkpoint(const Checkpoint& checkpoint, const std::string& path);
+
+/// Throws InputError if the file cannot be read, is no checkpoint, is truncated, or fails its
+/// checksum.
+Checkpoint load_checkpoint(const std::string& path);
+
+}  // namespace sandrunner::learner

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/train/learner/learner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "rt/core/errors.h"
+#include "tools/train/learner/gae.h"
+#include "tools/train/learner/random.h"
+
+namespace sandrunner::learner {
+namespace {
+
+constexpr double kLearningRateUp = 1.2;
+constexpr double kLearningRateDown = 1.3;
+constexpr int kChunkColumns = 256;     // activations of the heads that stay in a 1 MiB cache
+constexpr std::size_t kRange = 16384;  // parameters of one task of reduction and optimiser
+
+void require(bool holds, const std::string& key, double found, const std::string& expected) {
+  if (!holds) throw InputError(fmt::format("learner: {} is {}, expected {}", key, found, expected));
+}
+
+void check_widths(const std::string& key, const std::vector<int>& widths) {
+  for (const int width : widths) require(width >= 1, key, width, "layer widths of at least 1");
+}
+
+/// The config, if it can work.
+const LearnerConfig& checked(const LearnerConfig& config, const RolloutShape& shape) {
+  require(shape.steps >= 1, "steps", shape.steps, "at least 1");
+  require(shape.privileged >= 1, "privileged", shape.privileged, "at least 1");
+  require(config.network.hidden >= 1, "hidden", config.network.hidden, "at least 1");
+  check_widths("estimator", config.network.estimator);
+  check_widths("actor", config.network.actor);
+  check_widths("critic", config.network.critic);
+  require(config.block_envs >= 1, "block_envs", config.block_envs, "at least 1");
+  require(config.minibatches >= 1, "minibatches", config.minibatches, "at least 1");
+  require(config.epochs >= 1, "epochs", config.epochs, "at least 1");
+  require(shape.envs >= 1 && shape.envs % config.block_envs == 0, "envs", shape.envs,
+          fmt::format("a multiple of block_envs, {}", config.block_envs));
+  require(shape.envs / config.block_envs >= config.minibatches, "envs", shape.envs,
+          fmt::format("at least a block of {} for each of {} minibatches", config.block_envs,
+                      config.minibatches));
+  require(config.loss.clip > 0.0 && config.loss.clip < 1.0, "clip", config.loss.clip,
+          "between 0 and 1");
+  require(config.loss.value_weight >= 0.0, "value_weight", config.loss.value_weight, "at least 0");
+  require(config.loss.estimate_weight >= 0.0, "estimate_weight", config.loss.estimate_weight,
+          "at least 0");
+  require(std::isfinite(config.loss.entropy_weight), "entropy_weight", config.loss.entropy_weight,
+          "a number");
+  require(config.gamma >= 0.0 && config.gamma < 1.0, "gamma", config.gamma, "in [0, 1)");
+  require(config.lambda >= 0.0 && config.lambda <= 1.0, "lambda", config.lambda, "in [0, 1]");
+  require(config.max_gradient_norm > 0.0, "max_gradient_norm", config.max_gradient_norm,
+          "more than 0");
+  require(config.kl_target > 0.0, "kl_target", config.kl_target, "more than 0");
+  require(config.learning_rate_min > 0.0, "learning_rate_min", config.learning_rate_min,
+          "more than 0");
+  require(config.learning_rate_start >= config.learning_rate_min &&
+              config.learning_rate_start <= config.learning_rate_max,
+          "learning_rate_start", config.learning_rate_start,
+          "between learning_rate_min and learning_rate_max");
+  require(config.action_std_min > 0.0, "action_std_min", config.action_std_min, "more than 0");
+  require(config.action_std_start >= config.action_std_min, "action_std_start",
+          config.action_std_start, "at least action_std_min");
+  return config;
+}
+
+std::string join(const std::vector<int>& widths) {
+  std::string text;
+  for (const int width : widths) text += fmt::format("{}{}", text.empty() ? "" : "-", width);
+  return text;
+}
+
+}  // namespace
+
+double adapted_learning_rate(double learning_rate, double kl, const LearnerConfig& config) {
+  if (kl < 0.5 * config.kl_target) learning_rate *= kLearningRateUp;
+  if (kl > 2.0 * config.kl_target) learning_rate /= kLearningRateDown;
+  return std::clamp(learning_rate, config.learning_rate_min, config.learning_rate_max);
+}
+
+Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
+                 WorkerPool& pool)
+    : config_(checked(config, shape)),
+      layout_(config.network, shape.privileged),
+      pool_(pool),
+      rollout_(shape, config.network.hidden),
+      parameters_(initial_parameters(layout_, seed, config.action_std_start)),
+      adam_(parameters_.size()),
+      h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
+      c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
+      pending_reset_(static_cast<std::size_t>(shape.envs), 0) {
+  counters_.seed = seed;
+  counters_.learning_rate = config.learning_rate_start;
+  const int chunk_steps = std::clamp(kChunkColumns / config.block_envs, 1, shape.steps);
+  for (int worker = 0; worker < pool.threads(); ++worker) {
+    acting_.emplace_back(layout_, 1, config.block_envs, 1);
+    learning_.emplace_back(layout_, shape.steps, config.block_envs, chunk_steps);
+  }
+  const int blocks_per_minibatch = (blocks() + config.minibatches - 1) / config.minibatches;
+  gradients_.assign(static_cast<std::size_t>(blocks_per_minibatch),
+                    std::vector<float>(parameters_.size()));
+  begin_window();
+}
+
+void Learner::act_block(int block, int t, int worker) {
+  const int first = block * config_.block_envs;
+  const int end = first + config_.block_envs;
+  for (int env = first; env < end; ++env) {
+    rollout_.reset(t, env) = std::exchange(pending_reset_[static_cast<std::size_t>(env)], 0);
+  }
+  acting_[static_cast<std::size_t>(worker)].act(parameters_.data(), rollout_, t, first,
+                                                h_.middleCols(first, config_.block_envs),
+                                                c_.middleCols(first, config_.block_envs));
+
+  const std::uint64_t step = counters_.steps + static_cast<std::uint64_t>(t);
+  const Eigen::Array<float, kActionSize, 1> std_dev = rollout_.log_std.array().exp();
+  const float log_norm =
+      -0.5f * kActionSize * std::log(2.0f * std::numbers::pi_v<float>) - rollout_.log_std.sum();
+  for (int env = first; env < end; ++env) {
+    const auto mean = rollout_.mean(t).col(env);
+    auto action = rollout_.action(t).col(env);
+    float square = 0.0f;
+    for (int k = 0; k < kActionSize; k += 2) {
+      const auto [a, b] =
+          random_normal_pair(counters_.seed, Stream::kAction, static_cast<std::uint64_t>(env),
+                             step * kActionSize + static_cast<std::uint64_t>(k));
+      action(k) = mean(k) + std_dev(k) * a;
+      action(k + 1) = mean(k + 1) + std_dev(k + 1) * b;
+      square += a * a + b * b;
+    }
+    rollout_.log_prob(t, env) = log_norm - 0.5f * square;
+  }
+}
+
+float Learner::value(const float* privileged, int worker) {
+  return acting_[static_cast<std::size_t>(worker)].value(parameters_.data(), privileged);
+}
+
+void Learner::compute_advantages(UpdateStats& stats) {
+  struct Sums {
+    double advantage = 0.0;
+    double advantage_square = 0.0;
+    double target = 0.0;
+    double target_square = 0.0;
+  };
+  std::vector<Sums> sums(static_cast<std::size_t>(blocks()));
+  pool_.run(blocks(), [&](int block, int worker) {
+    const int first = block * config_.block_envs;
+    acting_[static_cast<std::size_t>(worker)].last_value(parameters_.data(), rollout_, first);
+    compute_gae(rollout_, first, config_.block_envs, config_.gamma, config_.lambda);
+    Sums& sum = sums[static_cast<std::size_t>(block)];
+    for (int t = 0; t < rollout_.shape.steps; ++t) {
+      for (int env = first; env < first + config_.block_envs; ++env) {
+        const double advantage = rollout_.advantage(t, env);
+        const double target = rollout_.value_target(t, env);
+        sum.advantage += advantage;
+        sum.advantage_square += advantage * advantage;
+        sum.target += target;
+        sum.target_square += target * target;
+      }
+    }
+  });
+  Sums total;
+  for (const Sums& sum : sums) {
+    total.advantage += sum.advantage;
+    total.advantage_square += sum.advantage_square;
+    total.target += sum.target;
+    total.target_square += sum.target_square;
+  }
+  const double n = static_cast<double>(rollout_.shape.envs) * rollout_.shape.steps;
+  const double mean = total.advantage / n;
+  const double variance = std::max(0.0, total.advantage_square / n - mean * mean);
+  const double target_mean = total.target / n;
+  const double target_variance = std::max(0.0, total.target_square / n - target_mean * target_mean);
+  advantage_scale_ = {mean, 1.0 / (std::sqrt(variance) + 1e-8)};
+  // The advantage is the difference of target and value.
+  stats.explained_variance = target_variance > 0.0 ? 1.0 - variance / target_variance : 0.0;
+}
+
+std::vector<int> Learner::shuffled_blocks(int epoch) const {
+  std::vector<int> order(static_cast<std::size_t>(blocks()));
+  std::iota(order.begin(), order.end(), 0);
+  const std::uint64_t round = counters_.updates * static_cast<std::uint64_t>(config_.epochs) +
+                              static_cast<std::uint64_t>(epoch);
+  for (std::size_t i = order.size() - 1; i > 0; --i) {
+    const std::uint64_t bits = random_bits(counters_.seed, Stream::kShuffle, round, i);
+    std::swap(order[i], order[static_cast<std::size_t>(bits % (i + 1))]);
+  }
+  return order;
+}
+
+double Learner::reduce_gradients(int count) {
+  const std::size_t size = parameters_.size();
+  const std::size_t ranges = (size + kRange - 1) / kRange;
+  std::vector<double> squares(ranges, 0.0);
+  pool_.run(static_cast<int>(ranges), [&](int range, int) {
+    const std::size_t begin = static_cast<std::size_t>(range) * kRange;
+    const std::size_t end = std::min(size, begin + kRange);
+    std::vector<float>& sum = gradients_.front();
+    for (int i = 1; i < count; ++i) {
+      const std::vector<float>& gradient = gradients_[static_cast<std::size_t>(i)];
+      for (std::size_t k = begin; k < end; ++k) sum[k] += gradient[k];
+    }
+    double square = 0.0;
+    for (std::size_t k = begin; k < end; ++k) {
+      square += static_cast<double>(sum[k]) * static_cast<double>(sum[k]);
+    }
+    squares[static_cast<std::size_t>(range)] = square;
+  });
+  return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0));
+}
+
+bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) {
+  const int samples = count * config_.block_envs * rollout_.shape.steps;
+  std::vector<LossSums> sums(static_cast<std::size_t>(count));
+  pool_.run(count, [&](int i, int worker) {
+    const auto slot = static_cast<std::size_t>(i);
+    std::fill(gradients_[slot].begin(), gradients_[slot].end(), 0.0f);
+    sums[slot] = learning_[static_cast<std::size_t>(worker)].loss_and_gradient(
+        parameters_.data(), rollout_, blocks[i] * config_.block_envs, config_.loss,
+        advantage_scale_, samples, gradients_[slot].data());
+  });
+  LossSums total;
+  for (const LossSums& sum : sums) total.add(sum);
+  const double norm = reduce_gradients(count);
+
+  const double estimate_loss =
+      std::accumulate(total.estimate_square.begin(), total.estimate_square.end(), 0.0) /
+      kEstimateSize;
+  if (!std::isfinite(norm + total.policy + total.value + estimate_loss + total.kl)) return false;
+  const double kl = total.kl / total.samples;
+  stats.policy_loss += total.policy / total.samples;
+  stats.value_loss += total.value / total.samples;
+  stats.estimate_loss += estimate_loss / total.samples;
+  for (std::size_t k = 0; k < kEstimateSize; ++k) {
+    stats.estimate_rms[k] += total.estimate_square[k] / total.samples;
+  }
+  stats.kl += kl;
+  stats.last_kl = kl;
+  stats.clip_fraction += total.clipped / total.samples;
+  stats.gradient_norm += norm;
+
+  counters_.learning_rate = adapted_learning_rate(counters_.learning_rate, kl, config_);
+  const double scale = norm > config_.max_gradient_norm ? config_.max_gradient_norm / norm : 1.0;
+  ++adam_.step;
+  const std::size_t size = parameters_.size();
+  pool_.run(static_cast<int>((size + kRange - 1) / kRange), [&](int range, int) {
+    const std::size_t begin = static_cast<std::size_t>(range) * kRange;
+    adam_.update(begin, std::min(size, begin + kRange), counters_.learning_rate,
+                 static_cast<float>(scale), gradients_.front().data(), parameters_.data());
+  });
+  const auto floor = static_cast<float>(std::log(config_.action_std_min));
+  float* log_std = parameters_.data() + layout_.log_std();
+  for (int k = 0; k < kActionSize; ++k) log_std[k] = std::max(log_std[k], floor);
+  return true;
+}
+
+UpdateStats Learner::update() {
+  UpdateStats stats;
+  compute_advantages(stats);
+  const std::vector<float> parameters_before = parameters_;
+  const Adam adam_before = adam_;
+  const double learning_rate_before = counters_.learning_rate;
+  int done = 0;
+  for (int epoch = 0; epoch < config_.epochs && stats.finite; ++epoch) {
+    const std::vector<int> order = shuffled_blocks(epoch);
+    for (int i = 0; i < config_.minibatches && stats.finite; ++i) {
+      const int begin = blocks() * i / config_.minibatches;
+      const int end = blocks() * (i + 1) / config_.minibatches;
+      stats.finite = learn_minibatch(order.data() + begin, end - begin, stats);
+      ++done;
+    }
+  }
+  if (!stats.finite) {
+    parameters_ = parameters_before;
+    adam_ = adam_before;
+    counters_.learning_rate = learning_rate_before;
+  }
+  stats.policy_loss /= done;
+  stats.value_loss /= done;
+  stats.estimate_loss /= done;
+  for (double& square : stats.estimate_rms) square = std::sqrt(square / done);
+  stats.kl /= done;
+  stats.clip_fraction /= done;
+  stats.gradient_norm /= done;
+  stats.learning_rate = counters_.learning_rate;
+
+  const int last = rollout_.shape.steps;
+  rollout_.observation(0) = rollout_.observation(last);
+  rollout_.privileged(0) = rollout_.privileged(last);
+  rollout_.estimate_target(0) = rollout_.estimate_target(last);
+  ++counters_.updates;
+  counters_.steps += static_cast<std::uint64_t>(last);
+  begin_window();
+  stats.action_std = std::exp(static_cast<double>(rollout_.log_std.mean()));
+  return stats;
+}
+
+void Learner::begin_window() {
+  rollout_.initial_h(0) = h_;
+  rollout_.initial_c(0) = c_;
+  rollout_.log_std =
+      Eigen::Map<const Vector<float>>(parameters_.data() + layout_.log_std(), kActionSize);
+}
+
+std::string Learner::architecture() const {
+  const NetworkSizes& network = config_.network;
+  return fmt::format("envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}",
+                     rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged,
+                     network.hidden, join(network.estimator), join(network.actor),
+                     join(network.critic));
+}
+
+void Learner::save(Checkpoint& checkpoint) const {
+  checkpoint.architecture = architecture();
+  Counters counters = counters_;
+  counters.adam_steps = adam_.step;
+  checkpoint.put("learner.counters", &counters, 1);
+  checkpoint.put("learner.parameters", parameters_.data(), parameters_.size());
+  checkpoint.put("learner.adam_m", adam_.m.data(), adam_.m.size());
+  checkpoint.put("learner.adam_v", adam_.v.data(), adam_.v.size());
+  checkpoint.put("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
+  checkpoint.put("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
+  checkpoint.put("learner.pending_reset", pending_reset_.data(), pending_reset_.size());
+  const auto put_first_step = [&](const std::string& name, const auto& field) {
+    const auto columns = field(0);
+    checkpoint.put(name, columns.data(), static_cast<std::size_t>(columns.size()));
+  };
+  put_first_step("learner.observation", rollout_.observation);
+  put_first_step("learner.privileged", rollout_.privileged);
+  put_first_step("learner.estimate_target", rollout_.estimate_target);
+}
+
+void Learner::load(const Checkpoint& checkpoint) {
+  if (checkpoint.architecture != architecture()) {
+    throw InputError(fmt::format("{}: checkpoint is for {}; expected {}", checkpoint.source,
+                                 checkpoint.architecture, architecture()));
+  }
+  Counters counters;
+  checkpoint.get("learner.counters", &counters, 1);
+  checkpoint.get("learner.parameters", parameters_.data(), parameters_.size());
+  checkpoint.get("learner.adam_m", adam_.m.data(), adam_.m.size());
+  checkpoint.get("learner.adam_v", adam_.v.data(), adam_.v.size());
+  checkpoint.get("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
+  checkpoint.get("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
+  checkpoint.get("learner.pending_reset", pending_reset_.data(), pending_reset_.size());
+  const auto get_first_step = [&](const std::string& name, auto& field) {
+    auto columns = field(0);
+    checkpoint.get(name, columns.data(), static_cast<std::size_t>(columns.size()));
+  };
+  get_first_step("learner.observation", rollout_.observation);
+  get_first_step("learner.privileged", rollout_.privileged);
+  get_first_step("learner.estimate_target", rollout_.estimate_target);
+  counters_ = counters;
+  adam_.step = counters.adam_steps;
+  begin_window();
+}
+
+}  // namespace sandrunner::learner

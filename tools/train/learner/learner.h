@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/train/learner/adam.h"
+#include "tools/train/learner/block_pass.h"
+#include "tools/train/learner/checkpoint.h"
+#include "tools/train/learner/matrix.h"
+#include "tools/train/learner/parameters.h"
+#include "tools/train/learner/rollout.h"
+#include "tools/train/learner/worker_pool.h"
+
+namespace sandrunner::learner {
+
+/// Defaults: those of a prototype that learned to run on sand in minutes.
+struct LearnerConfig {
+  NetworkSizes network;
+  LossConfig loss;
+  /// Environments that are stepped, and differentiated through time, together: the unit of work of
+  /// a thread and of a minibatch. Each should hold the same mixture of terrains. Does not depend on
+  /// the number of threads, so neither do the weights.
+  int block_envs = 64;
+  int minibatches = 4;  ///< each of whole blocks, drawn anew in every epoch
+  int epochs = 3;
+  double gamma = 0.99;
+  double lambda = 0.95;
+  double max_gradient_norm = 1.0;
+  double kl_target = 0.02;  ///< of a minibatch, from the policy that acted
+  double learning_rate_start = 5e-4;
+  double learning_rate_min = 2e-5;
+  double learning_rate_max = 2e-3;
+  double action_std_start = 0.6;
+  double action_std_min = 0.2;
+};
+
+/// Learning rate after a minibatch with divergence `kl`: x 1.2 below half of the target, / 1.3
+/// above twice it.
+double adapted_learning_rate(double learning_rate, double kl, const LearnerConfig& config);
+
+/// Means over all minibatches of an update, unless said.
+struct UpdateStats {
+  bool finite = true;  ///< false: a loss or gradient was not finite and nothing was learned
+  double policy_loss = 0.0;
+  double value_loss = 0.0;
+  double estimate_loss = 0.0;
+  std::array<double, kEstimateSize> estimate_rms{};  ///< error, units of estimate_target
+  double kl = 0.0;
+  double last_kl = 0.0;  ///< of the last minibatch
+  double clip_fraction = 0.0;
+  double gradient_norm = 0.0;       ///< before it was limited
+  double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
+  double learning_rate = 0.0;       ///< after the update
+  double action_std = 0.0;          ///< geometric mean, after the update
+};
+
+/// Recurrent PPO with a supervised estimator. A window of training:
+///
+///   (before the first window: write rollout().observation(0), privileged(0), estimate_target(0))
+///   pool.run(learner.blocks(), [&](int block, int worker) {
+///     for (int t = 0; t < steps; ++t) {
+///       learner.act_block(block, t, worker);      // -> rollout().action(t)
+///       ... step environments [block * block_envs, (block + 1) * block_envs); write reward(t,
+///       env), end(t, env);
+///       ... where an episode timed out: timeout_value(t, env) = learner.value(privileged vector,
+///       worker);
+///       ... where the robot was set up anew: learner.reset_memory(env);
+///       ... write observation(t + 1), privileged(t + 1), estimate_target(t + 1)
+///     }
+///   });
+///   const UpdateStats stats = learner.update();   // also carries step `steps` over to step 0
+///
+/// Same seed, config and data: same weights, bit for bit, for any number of threads.
+class Learner {
+ public:
+  /// `pool` must outlive the learner. Throws InputError for sizes and constants that cannot work.
+  Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
+          WorkerPool& pool);
+
+  Rollout& rollout() { return rollout_; }
+  const LearnerConfig& config() const { return config_; }
+  int blocks() const { return rollout_.shape.envs / config_.block_envs; }
+
+  /// Answers observation(t), privileged(t) of a block's environments: fills action, mean, log_prob,
+  /// value of step t. Different blocks may be run at the same time by different workers.
+  void act_block(int block, int t, int worker);
+
+  /// Clears the environment's memory before its next act. By whoever runs the environment's block.
+  void reset_memory(int env) { pending_reset_[static_cast<std::size_t>(env)] = 1; }
+
+  /// The critic's value of one privileged vector.
+  float value(const float* privileged, int worker);
+
+  /// Learns from the whole window and moves on to the next. Not from within a task of the pool.
+  /// When not finite, the parameters and the optimiser are as before, but the data that caused it
+  /// may live on in the memories.
+  UpdateStats update();
+
+  /// Writes and reads everything that the next window depends on, except the environments. Only
+  /// between update() and the next act_block. `load` throws InputError if the checkpoint belongs to
+  /// other sizes.
+  void save(Checkpoint& checkpoint) const;
+  void load(const Checkpoint& checkpoint);
+
+  std::uint64_t updates() const { return counters_.updates; }
+  std::uint64_t transitions() const {
+    return counters_.steps * static_cast<std::uint64_t>(rollout_.shape.envs);
+  }
+  const ParameterLayout& layout() const { return layout_; }
+  const std::vector<float>& parameters() const { return parameters_; }
+
+ private:
+  struct Counters {
+    std::uint64_t seed = 0;
+    std::uint64_t updates = 0;
+    std::uint64_t steps = 0;  // of each environment
+    std::uint64_t adam_steps = 0;
+    double learning_rate = 0.0;
+  };
+
+  std::string architecture() const;
+  void compute_advantages(UpdateStats& stats);
+  std::vector<int> shuffled_blocks(int epoch) const;
+  bool learn_minibatch(const int* blocks, int count, UpdateStats& stats);
+  double reduce_gradients(int count);
+  void begin_window();
+
+  LearnerConfig config_;
+  ParameterLayout layout_;
+  WorkerPool& pool_;
+  Rollout rollout_;
+  Counters counters_;
+  std::vector<float> parameters_;
+  Adam adam_;
+  Matrix<float> h_;  // memory of each environment
+  Matrix<float> c_;
+  std::vector<std::uint8_t> pending_reset_;
+  AdvantageScale advantage_scale_;
+  std::vector<BlockPass<float>> acting_;       // one a worker, one step
+  std::vector<BlockPass<float>> learning_;     // one a worker, a window
+  std::vector<std::vector<float>> gradients_;  // one a block of a minibatch
+};
+
+}  // namespace sandrunner::learner

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/train/learner/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tools/train/learner/random.h"
+
+namespace sandrunner::learner {
+namespace {
+
+constexpr double kActorOutputScale = 0.05;  // first actions: almost the nominal pose
+constexpr double kCriticOutputScale = 0.3;
+constexpr float kForgetBias = 1.0f;  // the memory starts out remembering
+
+}  // namespace
+
+ParameterLayout::ParameterLayout(const NetworkSizes& sizes, int privileged)
+    : hidden_(sizes.hidden),
+      privileged_(privileged),
+      encoder_(add("encoder", 4 * sizes.hidden, kProprioceptionSize + 1 + sizes.hidden)),
+      estimator_(add_mlp("estimator", sizes.hidden, sizes.estimator, kEstimateSize)),
+      actor_(
+          add_mlp("actor", kCommandSize + sizes.hidden + kEstimateSize, sizes.actor, kActionSize)),
+      critic_(add_mlp("critic", privileged, sizes.critic, 1)),
+      log_std_(add("log_std", kActionSize, 1)) {}
+
+std::ptrdiff_t ParameterLayout::add(std::string name, int rows, int cols) {
+  const std::ptrdiff_t offset = size_;
+  tensors_.push_back({std::move(name), rows, cols, offset});
+  size_ += static_cast<std::ptrdiff_t>(rows) * cols;
+  return offset;
+}
+
+std::vector<LayerView> ParameterLayout::add_mlp(const std::string& name, int inputs,
+                                                const std::vector<int>& hidden, int outputs) {
+  std::vector<int> widths = hidden;
+  widths.push_back(outputs);
+  std::vector<LayerView> layers;
+  for (const int width : widths) {
+    const std::string prefix = name + "." + std::to_string(layers.size());
+    LayerView layer{inputs, width, 0, 0};
+    layer.weight = add(prefix + ".weight", width, inputs);
+    layer.bias = add(prefix + ".bias", width, 1);
+    layers.push_back(layer);
+    inputs = width;
+  }
+  return layers;
+}
+
+std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64_t seed,
+                                      double action_std) {
+  std::vector<float> parameters(static_cast<std::size_t>(layout.size()), 0.0f);
+  // Drawn by position in the array: one normal value a weight.
+  const auto fill = [&](std::ptrdiff_t offset, std::ptrdiff_t count, double scale) {
+    for (std::ptrdiff_t i = offset; i < offset + count; ++i) {
+      const auto index = static_cast<std::uint64_t>(i);
+      parameters[static_cast<std::size_t>(i)] =
+          static_cast<float>(scale) *
+          random_normal_pair(seed, Stream::kInitialization, index, 0).first;
+    }
+  };
+  const auto fill_mlp = [&](const std::vector<LayerView>& layers, double output_scale) {
+    for (const LayerView& layer : layers) {
+      // He et al. 2015: a rectifier passes half of the variance; the last layer has none.
+      const bool last = &layer == &layers.back();
+      const double gain = last ? output_scale : std::sqrt(2.0);
+      fill(layer.weight, static_cast<std::ptrdiff_t>(layer.inputs) * layer.outputs,
+           gain / std::sqrt(static_cast<double>(layer.inputs)));
+    }
+  };
+
+  const int hidden = layout.hidden();
+  const int encoder_cols = kProprioceptionSize + 1 + hidden;
+  fill(layout.encoder(), static_cast<std::ptrdiff_t>(4 * hidden) * encoder_cols,
+       1.0 / std::sqrt(static_cast<double>(kProprioceptionSize + hidden)));
+  for (int row = 0; row < 4 * hidden; ++row) {
+    const bool forget_gate = row >= hidden && row < 2 * hidden;
+    const std::ptrdiff_t bias =
+        layout.encoder() + static_cast<std::ptrdiff_t>(row) * encoder_cols + kProprioceptionSize;
+    parameters[static_cast<std::size_t>(bias)] = forget_gate ? kForgetBias : 0.0f;
+  }
+  fill_mlp(layout.estimator(), 1.0);
+  fill_mlp(layout.actor(), kActorOutputScale);
+  fill_mlp(layout.critic(), kCriticOutputScale);
+  std::fill_n(parameters.begin() + layout.log_std(), kActionSize,
+              static_cast<float>(std::log(action_std)));
+  return parameters;
+}
+
+std::vector<NamedTensor> policy_tensors(const ParameterLayout& layout,
+                                        const std::vector<float>& parameters) {
+  std::vector<NamedTensor> tensors;
+  const int hidden = layout.hidden();
+  const int cols = kProprioceptionSize + 1 + hidden;
+  const auto columns = [&](int first, int count) {
+    std::vector<float> values;
+    for (int row = 0; row < 4 * hidden; ++row) {
+      const float* begin = parameters.data() + layout.encoder() + row * cols + first;
+      values.insert(values.end(), begin, begin + count);
+    }
+    return values;
+  };
+  tensors.push_back(
+      {"encoder.weight_ih", {4 * hidden, kProprioceptionSize}, columns(0, kProprioceptionSize)});
+  tensors.push_back(
+      {"encoder.weight_hh", {4 * hidden, hidden}, columns(kProprioceptionSize + 1, hidden)});
+  tensors.push_back({"encoder.bias_ih", {4 * hidden}, columns(kProprioceptionSize, 1)});
+  tensors.push_back({"encoder.bias_hh",
+                     {4 * hidden},
+                     std::vector<float>(static_cast<std::size_t>(4 * hidden), 0.0f)});
+  for (const TensorView& view : layout.tensors()) {
+    if (!view.name.starts_with("estimator.") && !view.name.starts_with("actor.")) continue;
+    const float* begin = parameters.data() + view.offset;
+    const bool is_bias = view.name.ends_with(".bias");
+    tensors.push_back(
+        {view.name, is_bias ? std::vector<int>{view.rows} : std::vector<int>{view.rows, view.cols},
+         std::vector<float>(begin, begin + view.rows * view.cols)});
+  }
+  return tensors;
+}
+
+}  // namespace sandrunner::learner

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/train/learner/learner.h"
+#include "tools/train/task/task.h"
+
+namespace sandrunner::train {
+
+/// One row of the learning curve.
+struct ProgressRow {
+  double iteration = 0, transitions = 0, core_hours = 0;
+  double transitions_per_s = 0, simulation_share = 0;  ///< of the wall time of the window
+  double reward = 0, kernel_rigid = 0, kernel_soil = 0, falls_rigid = 0, falls_soil = 0;
+  double speed_ratio_rigid = 0, speed_ratio_soil = 0;
+  double estimate_vx_rms_mps = 0, estimate_height_rms_m = 0;
+  double command_speed_mps = 0, ground_open = 0;
+  double body_height_m = 0, torque_squared = 0, power_w = 0, stride_hz = 0;
+  double learning_rate = 0, kl = 0, action_std = 0, explained_variance = 0;
+};
+
+/// The learning curve as a trivially copyable list: part of the checkpoint, so that curve and CSV survive a resume.
+class Progress {
+ public:
+  void add(const ProgressRow& row) { rows_.push_back(row); }
+  const std::vector<ProgressRow>& rows() const { return rows_; }
+  void save(learner::Checkpoint& checkpoint) const;
+  void load(const learner::Checkpoint& checkpoint);
+
+  /// One line for a person; `eta_s`: seconds left.
+  static std::string line(const ProgressRow& row, double eta_s);
+  /// Writes curve.csv and curve.png into `dir`. Throws InputError.
+  void write(const std::string& dir) const;
+
+ private:
+  std::vector<ProgressRow> rows_;
+};
+
+}  // namespace sandrunner::train

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Task, first part: what is drawn at random, and resets.
+#include <cmath>
+
+#include "rt/core/command_shaping.h"
+#include "sim/actuator.h"
+#include "sim/random.h"
+#include "tools/train/task/task.h"
+
+namespace sandrunner::train {
+namespace {
+
+// Log-uniform between low and high; an exponent above 1 draws more often near low.
+double log_between(double low, double high, double share, double exponent) {
+  return low * std::pow(high / low, std::pow(share, exponent));
+}
+
+double between(double a, double b, double share) { return a + share * (b - a); }
+
+}  // namespace
+
+double Task::uniform(int env, Env& e) const {
+  return sim::random_uniform(seed_, static_cast<std::uint64_t>(env), e.draws++);
+}
+double Task::uniform(int env, Env& e, double low, double high) const {
+  return between(low, high, uniform(env, e));
+}
+double Task::normal(int env, Env& e) const {
+  return sim::random_normal(seed_, static_cast<std::uint64_t>(env) + (1ull << 32), e.draws++);
+}
+
+void Task::new_command(int env, Env& e) const {
+  const CommandSettings& c = config_.command;
+  const double vx = uniform(env, e) < c.forward_share ? uniform(env, e, 0.0, curriculum_.speed_mps)
+                                                      : uniform(env, e, -1.0, 1.0);
+  double vy = uniform(env, e, -c.lateral_mps, c.lateral_mps);
+  if (uniform(env, e) >= c.lateral_share) vy = 0.0;
+  double wz = uniform(env, e, -c.yaw_radps, c.yaw_radps);
+  if (uniform(env, e) >= c.yaw_share) wz = 0.0;
+  e.command = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
+  e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1], static_cast<float>(c.centripetal_mps2));
+  if (uniform(env, e) < c.zero_share) e.command = {};
+  e.command_steps_left = static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
+}
+
+void Task::new_ground(int env, Env& e) {
+  const GroundSettings& g = config_.ground;
+  sim::GroundParameters p;
+  p.friction = uniform(env, e, g.friction_low, g.friction_high);
+  double inertial = 1.0;
+  if (is_rigid(env)) {
+    p.kind = sim::GroundKind::kRigid;
+    // Half of the rigid robots walk on uneven ground, rougher as the curriculum opens.
+    const bool uneven = env % block_envs_ >= g.rigid_envs / 2;
+    p.roughness_m = uneven ? curriculum_.ground * uniform(env, e, 0.0, g.roughness_m) : 0.0;
+    p.roughness_wavelength_m = g.roughness_wavelength_m;
+    p.roughness_seed = static_cast<std::uint64_t>(env) * 131 + e.draws;
+  } else {
+    const double open = curriculum_.ground;
+    const double flat_low = log_between(g.sigma_flat_low_start, g.sigma_flat_low, open, 1.0);
+    const double cone_low = log_between(g.sigma_cone_low_start, g.sigma_cone_low, open, 1.0);
+    p.sigma_flat_npm3 = log_between(flat_low, g.sigma_flat_high, uniform(env, e), g.softness_exponent);
+    p.sigma_cone_npm3 = log_between(cone_low, g.sigma_cone_high, uniform(env, e), g.softness_exponent);
+    p.recruitment *= uniform(env, e, 1.0 - g.recruitment_spread, 1.0 + g.recruitment_spread);
+    p.cone_angle_rad += uniform(env, e, -1.0, 1.0) * g.cone_angle_spread_deg * (3.14159265358979 / 180.0);
+    inertial = uniform(env, e, g.inertial_low, g.inertial_high);
+    p.grain_density_kgpm3 *= inertial;
+    p.stroke_stiffness_npm = uniform(env, e, 50.0, std::fmax(50.0, g.stroke_stiffness_high));
+    p.stroke_damping_nspm = uniform(env, e, 0.0, g.stroke_damping_high);
+  }
+  sim::Terrain<double> terrain;
+  terrain.ground[0] = sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
+  terrain.highest = terrain.ground[0].roughness * 3.4641016151377544;
+  const sim::Terrain<float> lanes = sim::convert_terrain<float>(terrain);
+  batch_.set_terrain(env, lanes);
+  e.ground = lanes.ground[0];
+  const bool rigid = is_rigid(env);
+  e.ground_features = {rigid ? 1.0f : 0.0f,
+                       rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),
+                       rigid ? 2.0f : static_cast<float>(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
+                       static_cast<float>(3.0 * (p.friction - 0.75)),
+                       static_cast<float>(2.0 * (inertial - 0.65)),
+                       static_cast<float>(100.0 * p.roughness_m),
+                       e.ground_features[6],
+                       e.ground_features[7]};
+}
+
+void Task::new_robot(int env, Env& e) {
+  const RobotSettings& r = config_.robot;
+  sim::RobotModel<double> m = robot_.model;
+  const auto scale = [](sim::Body<double>& body, double factor) {
+    body.mass *= factor;
+    body.inertia = {body.inertia.xx * factor, body.inertia.xy * factor, body.inertia.xz * factor,
+                    body.inertia.yy * factor, body.inertia.yz * factor, body.inertia.zz * factor};
+  };
+  const auto spread = [&](double width) { return 1.0 + uniform(env, e, -width, width); };
+  const double base_factor = spread(r.base_mass_spread);
+  scale(m.base, base_factor);
+  m.base.com = m.base.com + sim::Vec3<double>{uniform(env, e, -r.base_com_m[0], r.base_com_m[0]),
+                                              uniform(env, e, -r.base_com_m[1], r.base_com_m[1]),
+                                              uniform(env, e, -r.base_com_m[2], r.base_com_m[2])};
+  for (auto& leg : m.legs) {
+    scale(leg.hip, spread(r.link_mass_spread));
+    scale(leg.thigh, spread(r.link_mass_spread));
+    scale(leg.shank, spread(r.link_mass_spread));
+    const double d = r.foot_position_m;
+    leg.foot = leg.foot + sim::Vec3<double>{uniform(env, e, -d, d), uniform(env, e, -d, d), uniform(env, e, -d, d)};
+  }
+  batch_.set_model(env, sim::convert_model<float>(m));
+  sim::BatchDrive<float>& drive = e.drive;
+  drive.kp = static_cast<float>(config_.policy.kp_nmprad * spread(r.kp_spread));
+  drive.kd = static_cast<float>(config_.policy.kd_nmsprad * spread(r.kd_spread));
+  drive.torque_scale = static_cast<float>(spread(r.torque_spread));
+  const sim::TorqueSpeedLine line;
+  drive.stall_torque_nm = r.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
+  drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+  drive.switch_tick =
+      static_cast<float>(r.latency_ticks[static_cast<std::size_t>(3.0 * uniform(env, e))]);
+  const double offset = config_.noise.joint_offset_rad;
+  for (float& o : e.joint_offset) o = static_cast<float>(uniform(env, e, -offset, offset));
+  e.ground_features[6] = static_cast<float>(5.0 * (base_factor - 1.0));
+  e.ground_features[7] = drive.switch_tick / 20.0f - 1.0f;
+}
+
+void Task::hard_reset(int env, Env& e) {
+  const EpisodeSettings& s = config_.episode;
+  new_robot(env, e);
+  new_ground(env, e);
+  new_command(env, e);
+  e.step = 0;
+  e.action_1 = e.action_2 = {};
+  e.air_s = e.stance_s = {};
+  e.unloaded_steps = {};
+  sim::RobotState<float> state;
+  sim::RigidState<float>& x = state.rigid;
+  for (int j = 0; j < kNumJoints; ++j) {
+    x.q[j] = static_cast<float>(robot_.nominal_rad[j] + uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
+    e.drive.target_before[j] = e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]);
+  }
+  const auto draw = [&](double width) { return static_cast<float>(uniform(env, e, -width, width)); };
+  x.position = {draw(5.0), draw(5.0), 0.0f};
+  float height, slope_x, slope_y;
+  sim::rough_surface(e.ground, x.position.x, x.position.y, height, slope_x, slope_y);
+  x.position.z = static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * e.ground.roughness;
+  const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
+  x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
+  // Any heading: half a turn by two quarter turns at most keeps the series of `integrate` accurate.
+  const float yaw = draw(3.14159265);
+  for (int i = 0; i < 8; ++i) {
+    x.orientation = sim::integrate(x.orientation, sim::Vec3<float>{0.0f, 0.0f, yaw / 8.0f});
+  }
+  x.velocity = {draw(s.reset_speed_mps), draw(s.reset_speed_mps), draw(s.reset_speed_mps)};
+  x.angular_velocity = {draw(s.reset_rate_radps), draw(s.reset_rate_radps), draw(s.reset_rate_radps)};
+  batch_.set_state(env, state);
+  batch_.set_drive(env, e.drive);
+}
+
+void Task::push(int env, Env& e, sim::RobotState<float>& state) const {
+  const double v = config_.episode.push_speed_mps;
+  state.rigid.velocity.x += static_cast<float>(uniform(env, e, -v, v));
+  state.rigid.velocity.y += static_cast<float>(uniform(env, e, -v, v));
+}
+
+}  // namespace sandrunner::train
