@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "policy/embedded.h"
 #include "policy/safetensors.h"
 #include "policy/text.h"
 
@@ -232,6 +233,14 @@ PolicyFile read_policy_file(const std::string& path) {
 
 Policy load_policy(const std::string& path) {
   PolicyFile file = read_policy_file(path);
+  return {std::move(file.spec), Network(file.parameters)};
+}
+
+bool has_shipped_policy() noexcept { return !embedded_policy_file("raibo.safetensors").empty(); }
+
+Policy load_shipped_policy() {
+  const std::string name = "raibo.safetensors (built in)";
+  PolicyFile file = decode(name, parse_safetensors(embedded_policy_file("raibo.safetensors"), name));
   return {std::move(file.spec), Network(file.parameters)};
 }
 

@@ -25,6 +25,10 @@ PolicyFile read_policy_file(const std::string& path);
 /// The policy of a file, ready to run. Errors as read_policy_file.
 Policy load_policy(const std::string& path);
 
+/// The policy that ships (policy/trained/raibo.safetensors), built into the program.
+bool has_shipped_policy() noexcept;
+Policy load_shipped_policy();
+
 /// Checks `file` as read_policy_file would, then writes it; `path` is whole or untouched. Throws
 /// InputError.
 void write_policy_file(const std::string& path, const PolicyFile& file);

@@ -194,7 +194,10 @@ class TemporaryFile {
 }  // namespace
 
 TensorFile read_safetensors(const std::string& path) {
-  const std::string bytes = read_bytes(path);
+  return parse_safetensors(read_bytes(path), path);
+}
+
+TensorFile parse_safetensors(std::string_view bytes, const std::string& path) {
   std::uint64_t header_bytes = 0;
   if (bytes.size() < kLengthBytes) {
     fail_file(path, "{} bytes are too few for a safetensors file", bytes.size());
@@ -205,9 +208,8 @@ TensorFile read_safetensors(const std::string& path) {
               "a header of {} bytes does not fit in a file of {} (truncated, or not safetensors)",
               header_bytes, bytes.size());
   }
-  const std::string_view content(bytes);
-  const std::string_view data = content.substr(kLengthBytes + header_bytes);
-  const Json header = parse_header(path, content.substr(kLengthBytes, header_bytes));
+  const std::string_view data = bytes.substr(kLengthBytes + header_bytes);
+  const Json header = parse_header(path, bytes.substr(kLengthBytes, header_bytes));
   if (!header.is_object()) fail_file(path, "header is not a JSON object");
 
   TensorFile file;

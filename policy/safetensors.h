@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sandrunner {
@@ -26,6 +27,9 @@ struct TensorFile {
 /// Reads a whole file. Throws InputError, naming the file and the tensor, for anything that is not
 /// a well-formed file of finite float32 tensors that fill the data area without gap or overlap.
 TensorFile read_safetensors(const std::string& path);
+
+/// The same from memory; `name` stands for the file in errors.
+TensorFile parse_safetensors(std::string_view bytes, const std::string& name);
 
 /// Writes a temporary file beside `path` and renames it, so that `path` is whole or untouched.
 /// Throws InputError if the target cannot be written or a tensor is malformed.

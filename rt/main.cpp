@@ -49,7 +49,11 @@ int run(int argc, char** argv) {
   if (!options) return kExitOk;
   const CommandSource command(options->command);
   std::optional<Policy> policy;
-  if (!options->policy_path.empty()) policy.emplace(load_policy(options->policy_path));
+  if (!options->policy_path.empty()) {
+    policy.emplace(load_policy(options->policy_path));
+  } else if (has_shipped_policy()) {
+    policy.emplace(load_shipped_policy());
+  }
   ConfigTree tree;
   sim::add_terrain_layer(tree, options->terrain);
   for (const std::string& file : options->config_files) tree.add_file(file);
