@@ -1,19 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/run.sh [arguments]: installs what is missing, builds everything in release, runs sandrunner with the
-# arguments in the present folder. Only the program writes to stdout.
+# tools/run.sh [arguments]: installs what is missing, builds, and runs sandrunner with the arguments in the present
+# folder. Only the program writes to stdout.
 set -euo pipefail
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
-build=$root/build/release
-bash "$root/tools/install_packages.sh"
-
-# Configured, and for this very folder (a copied tree brings the build of its original along)?
-if [[ ! -f $build/build.ninja ]] ||
-  ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
-  (cd "$root" && cmake --fresh --preset release) >&2
-fi
-if [[ $(ninja -C "$build" -n) != *"no work to do"* ]]; then
-  cmake --build "$build" >&2
-fi
-exec "$build/bin/sandrunner" "$@"
+bash "$root/tools/build.sh"
+exec "$root/build/release/bin/sandrunner" "$@"
