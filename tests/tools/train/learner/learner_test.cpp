@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/train/learner/learner.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "rt/core/errors.h"
+#include "toy_task.h"
+
+namespace sandrunner::learner {
+namespace {
+
+LearnerConfig small_config() {
+  LearnerConfig config;
+  config.network = {12, {10}, {16, 12}, {14}};
+  config.block_envs = 8;
+  return config;
+}
+const RolloutShape kSmallShape{64, 8, kToyPrivileged};
+
+/// A training on the toy task.
+struct Training {
+  Training(int threads, std::uint64_t seed, const LearnerConfig& config = small_config())
+      : pool(threads), learner(config, kSmallShape, seed, pool), task(learner, pool) {}
+
+  void run(int windows) {
+    for (int i = 0; i < windows; ++i) {
+      task.run_window();
+      last = learner.update();
+    }
+  }
+
+  WorkerPool pool;
+  Learner learner;
+  ToyTask task;
+  UpdateStats last;
+};
+
+TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfThreads) {
+  Training one(1, 4);
+  Training again(1, 4);
+  Training three(3, 4);
+  Training other_seed(1, 5);
+  for (Training* training : {&one, &again, &three, &other_seed}) training->run(6);
+  EXPECT_EQ(one.learner.parameters(), again.learner.parameters());
+  EXPECT_EQ(one.learner.parameters(), three.learner.parameters());
+  EXPECT_NE(one.learner.parameters(), other_seed.learner.parameters());
+  EXPECT_EQ(one.learner.updates(), 6u);
+  EXPECT_EQ(one.learner.transitions(), 6u * 64u * 8u);
+}
+
+TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
+  const std::string path =
+      (std::filesystem::path(testing::TempDir()) / "learner_resume.bin").string();
+  Training whole(1, 4);
+  whole.run(7);
+  {
+    Training first(2, 4);
+    first.run(2);
+    Checkpoint checkpoint;
+    first.learner.save(checkpoint);
+    checkpoint.put("task", first.task.states.data(), first.task.states.size());
+    save_checkpoint(checkpoint, path);
+    first.run(1);  // lost with the kill
+  }
+  for (const int windows : {4, 1}) {
+    Training next(1, 77);  // the seed, too, comes from the checkpoint
+    const Checkpoint loaded = load_checkpoint(path);
+    next.learner.load(loaded);
+    loaded.get("task", next.task.states.data(), next.task.states.size());
+    next.run(windows);
+    Checkpoint checkpoint;
+    next.learner.save(checkpoint);
+    checkpoint.put("task", next.task.states.data(), next.task.states.size());
+    save_checkpoint(checkpoint, path);
+  }
+  Checkpoint expected;
+  whole.learner.save(expected);
+  expected.put("task", whole.task.states.data(), whole.task.states.size());
+  EXPECT_EQ(load_checkpoint(path).sections, expected.sections);
+  std::filesystem::remove(path);
+}
+
+TEST(LearnerTest, RefusesACheckpointOfAnotherArchitecture) {
+  Training training(1, 1);
+  Checkpoint checkpoint;
+  training.learner.save(checkpoint);
+  checkpoint.source = "a.bin";
+  LearnerConfig config = small_config();
+  config.network.actor = {16, 16};
+  Training other(1, 1, config);
+  const std::vector<float> before = other.learner.parameters();
+  try {
+    other.learner.load(checkpoint);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "a.bin: checkpoint is for envs 64 of 8, privileged 3, hidden 12, estimator 10, actor "
+        "16-12, critic 14; expected envs 64 of 8, privileged 3, hidden 12, estimator 10, "
+        "actor 16-16, critic 14");
+  }
+  EXPECT_EQ(other.learner.parameters(), before);
+}
+
+TEST(LearnerTest, LeavesParametersWhenALossIsNotFinite) {
+  Training training(2, 1);
+  training.run(2);
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(),
+                          1e30f /* its square is not finite */}) {
+    Checkpoint before;
+    training.learner.save(before);
+    training.task.run_window();
+    training.learner.rollout().reward(3, 40) = bad;
+    const UpdateStats stats = training.learner.update();
+    EXPECT_FALSE(stats.finite) << bad;
+    Checkpoint after;
+    training.learner.save(after);
+    for (const char* section : {"learner.parameters", "learner.adam_m", "learner.adam_v"}) {
+      EXPECT_EQ(after.sections.at(section), before.sections.at(section)) << section;
+    }
+  }
+  training.run(1);
+  EXPECT_TRUE(training.last.finite);
+}
+
+TEST(LearnerTest, FirstMinibatchMeetsThePolicyThatActed) {
+  LearnerConfig config = small_config();
+  config.epochs = 1;
+  config.minibatches = 1;
+  Training training(1, 2, config);
+  training.run(3);  // memories carried over from earlier windows, and resets
+  EXPECT_LT(std::abs(training.last.kl), 1e-10);
+  EXPECT_EQ(training.last.clip_fraction, 0.0);
+}
+
+TEST(LearnerTest, SampledActionsHaveTheStatedMeanAndDeviation) {
+  Training training(1, 3);
+  double sum = 0.0;
+  double square = 0.0;
+  double log_prob_error = 0.0;
+  int count = 0;
+  const Rollout& rollout = training.learner.rollout();
+  const double expected_norm =
+      kActionSize * (std::log(0.6) + 0.5 * std::log(2.0 * 3.14159265358979));
+  training.task.run_window();
+  for (int t = 0; t < kSmallShape.steps; ++t) {
+    for (int env = 0; env < kSmallShape.envs; ++env) {
+      double squares = 0.0;
+      for (int k = 0; k < kActionSize; ++k) {
+        const double z = (rollout.action(t)(k, env) - rollout.mean(t)(k, env)) / 0.6;
+        sum += z;
+        squares += z * z;
+        ++count;
+      }
+      square += squares;
+      log_prob_error = std::max(
+          log_prob_error,
+          std::abs(static_cast<double>(rollout.log_prob(t, env)) + 0.5 * squares + expected_norm));
+    }
+  }
+  EXPECT_NEAR(sum / count, 0.0, 5.0 / std::sqrt(count));
+  EXPECT_NEAR(square / count, 1.0, 5.0 * std::sqrt(2.0 / count));
+  EXPECT_LT(log_prob_error, 1e-4);
+
+  const float first_noise = rollout.action(0)(0, 0) - rollout.mean(0)(0, 0);
+  training.learner.update();
+  training.task.run_window();
+  const float next_noise = rollout.action(0)(0, 0) - rollout.mean(0)(0, 0);
+  EXPECT_GT(std::abs(next_noise - first_noise), 0.05f);  // not the same noise in every window
+}
+
+TEST(LearnerTest, LearningRateFollowsTheDivergence) {
+  const LearnerConfig config;  // target 0.02
+  EXPECT_DOUBLE_EQ(adapted_learning_rate(1e-3, 0.009, config), 1.2e-3);
+  EXPECT_DOUBLE_EQ(adapted_learning_rate(1e-3, 0.011, config), 1e-3);
+  EXPECT_DOUBLE_EQ(adapted_learning_rate(1e-3, 0.039, config), 1e-3);
+  EXPECT_DOUBLE_EQ(adapted_learning_rate(1e-3, 0.041, config), 1e-3 / 1.3);
+  EXPECT_DOUBLE_EQ(adapted_learning_rate(1.9e-3, 0.0, config), 2e-3);
+  EXPECT_DOUBLE_EQ(adapted_learning_rate(2.1e-5, 1.0, config), 2e-5);
+}
+
+TEST(LearnerTest, DeviationStopsAtItsFloor) {
+  LearnerConfig config = small_config();
+  config.loss.entropy_weight = -1.0;  // pays for a narrow policy
+  config.action_std_start = 0.21;
+  config.kl_target = 10.0;
+  Training training(1, 1, config);
+  training.run(10);
+  EXPECT_NEAR(training.last.action_std, 0.2, 1e-6);
+}
+
+TEST(LearnerTest, NamesTheConstantThatCannotWork) {
+  WorkerPool pool(1);
+  const auto message = [&](const LearnerConfig& config, const RolloutShape& shape) -> std::string {
+    try {
+      const Learner learner(config, shape, 1, pool);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  LearnerConfig config = small_config();
+  EXPECT_EQ(message(config, kSmallShape), "");
+  EXPECT_EQ(message(config, {60, 8, kToyPrivileged}),
+            "learner: envs is 60, expected a multiple of block_envs, 8");
+  EXPECT_EQ(message(config, {16, 8, kToyPrivileged}),
+            "learner: envs is 16, expected at least a block of 8 for each of 4 minibatches");
+  config.gamma = 1.5;
+  EXPECT_EQ(message(config, kSmallShape), "learner: gamma is 1.5, expected in [0, 1)");
+  config = small_config();
+  config.network.critic = {16, 0};
+  EXPECT_EQ(message(config, kSmallShape),
+            "learner: critic is 0, expected layer widths of at least 1");
+}
+
+}  // namespace
+}  // namespace sandrunner::learner
