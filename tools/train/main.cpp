@@ -53,7 +53,8 @@ std::string processor_name() {
   return "unknown";
 }
 
-// What a checkpoint belongs to: another configuration or seed would not continue to the same weights.
+// What a checkpoint belongs to: another configuration or seed would not continue to the same
+// weights.
 std::uint64_t config_hash(const std::string& text, std::uint64_t seed) {
   std::uint64_t h = 14695981039346656037u ^ seed;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
@@ -68,18 +69,22 @@ class Training {
         arguments_(arguments),
         pool_(arguments.threads),
         task_(config, arguments.seed),
-        learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()}, arguments.seed, pool_),
+        learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
+                 arguments.seed, pool_),
         checkpoint_path_(arguments.out + "/checkpoint.bin"),
         config_hash_(config_hash(config.effective, arguments.seed)) {}
 
   void start() {
-    pool_.run(learner_.blocks(), [&](int block, int) { task_.observe(block, 0, learner_.rollout()); });
+    pool_.run(learner_.blocks(),
+              [&](int block, int) { task_.observe(block, 0, learner_.rollout()); });
   }
 
   void resume() {
     const learner::Checkpoint checkpoint = learner::load_checkpoint(checkpoint_path_);
     if (checkpoint.config_hash != config_hash_) {
-      throw InputError(fmt::format("{}: was made with another config or seed; continue with the same ones", checkpoint_path_));
+      throw InputError(
+          fmt::format("{}: was made with another config or seed; continue with the same ones",
+                      checkpoint_path_));
     }
     restore(checkpoint);
   }
@@ -93,9 +98,12 @@ class Training {
     checkpoint.put("run.cpu_seconds", &cpu, 1);
     // The first observation of the next window was made with noise that is not drawn again.
     const learner::Rollout& rollout = learner_.rollout();
-    checkpoint.put("run.observation", rollout.observation(0).data(), static_cast<std::size_t>(rollout.observation(0).size()));
-    checkpoint.put("run.privileged", rollout.privileged(0).data(), static_cast<std::size_t>(rollout.privileged(0).size()));
-    checkpoint.put("run.target", rollout.estimate_target(0).data(), static_cast<std::size_t>(rollout.estimate_target(0).size()));
+    checkpoint.put("run.observation", rollout.observation(0).data(),
+                   static_cast<std::size_t>(rollout.observation(0).size()));
+    checkpoint.put("run.privileged", rollout.privileged(0).data(),
+                   static_cast<std::size_t>(rollout.privileged(0).size()));
+    checkpoint.put("run.target", rollout.estimate_target(0).data(),
+                   static_cast<std::size_t>(rollout.estimate_target(0).size()));
     checkpoint.config_hash = config_hash_;
     learner::save_checkpoint(checkpoint, checkpoint_path_);
     write_policy_file(arguments_.out + "/policy.safetensors", policy_file());
@@ -145,20 +153,26 @@ class Training {
     checkpoint.get("run.cpu_seconds", &cpu_before_, 1);
     cpu_before_ -= cpu_seconds();
     learner::Rollout& rollout = learner_.rollout();
-    checkpoint.get("run.observation", rollout.observation(0).data(), static_cast<std::size_t>(rollout.observation(0).size()));
-    checkpoint.get("run.privileged", rollout.privileged(0).data(), static_cast<std::size_t>(rollout.privileged(0).size()));
-    checkpoint.get("run.target", rollout.estimate_target(0).data(), static_cast<std::size_t>(rollout.estimate_target(0).size()));
+    checkpoint.get("run.observation", rollout.observation(0).data(),
+                   static_cast<std::size_t>(rollout.observation(0).size()));
+    checkpoint.get("run.privileged", rollout.privileged(0).data(),
+                   static_cast<std::size_t>(rollout.privileged(0).size()));
+    checkpoint.get("run.target", rollout.estimate_target(0).data(),
+                   static_cast<std::size_t>(rollout.estimate_target(0).size()));
   }
 
   void fall_back() {
     if (!std::filesystem::exists(checkpoint_path_) || ++fallbacks_ > 3) {
-      throw std::runtime_error("the update is not finite and there is no good checkpoint to go back to");
+      throw std::runtime_error(
+          "the update is not finite and there is no good checkpoint to go back to");
     }
-    fmt::print(stderr, "update {} is not finite: back to {}\n", learner_.updates(), checkpoint_path_);
+    fmt::print(stderr, "update {} is not finite: back to {}\n", learner_.updates(),
+               checkpoint_path_);
     restore(learner::load_checkpoint(checkpoint_path_));
   }
 
-  ProgressRow make_row(const WindowStats& w, const learner::UpdateStats& u, double simulation_s, double total_s) const {
+  ProgressRow make_row(const WindowStats& w, const learner::UpdateStats& u, double simulation_s,
+                       double total_s) const {
     ProgressRow r;
     const auto& deviation = task_.scales().estimate_deviation;
     r.iteration = static_cast<double>(learner_.updates());
@@ -204,14 +218,15 @@ class Training {
       spec.estimate_mean[i] = scales.estimate_mean[i];
       spec.estimate_variance[i] = scales.estimate_deviation[i] * scales.estimate_deviation[i];
     }
-    spec.provenance = {{"config", config_.effective},
-                       {"seed", std::to_string(arguments_.seed)},
-                       {"threads", std::to_string(arguments_.threads)},
-                       {"transitions", std::to_string(learner_.transitions())},
-                       {"core_hours", fmt::format("{:.3f}", (cpu_before_ + cpu_seconds()) / 3600.0)},
-                       {"processor", processor_name()},
-                       {"commit", SANDRUNNER_COMMIT},
-                       {"origin", "sandrunner-train, from random weights"}};
+    spec.provenance = {
+        {"config", config_.effective},
+        {"seed", std::to_string(arguments_.seed)},
+        {"threads", std::to_string(arguments_.threads)},
+        {"transitions", std::to_string(learner_.transitions())},
+        {"core_hours", fmt::format("{:.3f}", (cpu_before_ + cpu_seconds()) / 3600.0)},
+        {"processor", processor_name()},
+        {"commit", SANDRUNNER_COMMIT},
+        {"origin", "sandrunner-train, from random weights"}};
     NetworkParameters& p = file.parameters;
     p.observation_clip = scales.clip;
     p.observation_mean.assign(scales.mean.begin(), scales.mean.end());
@@ -244,10 +259,19 @@ class Training {
 int run(int argc, char** argv) {
   Arguments a;
   CLI::App app{"Trains a policy from random weights on randomised deformable ground."};
-  app.add_option("--out", a.out, "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png")->required()->type_name("DIR");
-  app.add_option("--config", a.config_file, "TOML with settings that differ from the built-in raibo.toml")->type_name("FILE");
-  app.add_option("--set", a.assignments, "one setting; may be repeated")->type_name("PATH=VALUE")->allow_extra_args(false);
-  app.add_option("--threads", a.threads, "worker threads")->check(CLI::Range(1, 256))->capture_default_str();
+  app.add_option("--out", a.out,
+                 "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png")
+      ->required()
+      ->type_name("DIR");
+  app.add_option("--config", a.config_file,
+                 "TOML with settings that differ from the built-in raibo.toml")
+      ->type_name("FILE");
+  app.add_option("--set", a.assignments, "one setting; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--threads", a.threads, "worker threads")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
   app.add_option("--seed", a.seed, "of weights and environments")->capture_default_str();
   app.add_flag("--resume", a.resume, "continue from the checkpoint in --out");
   app.set_version_flag("--version", std::string("sandrunner-train ") + SANDRUNNER_VERSION);
@@ -267,7 +291,8 @@ int run(int argc, char** argv) {
   std::filesystem::create_directories(a.out, error);
   if (error) throw InputError(fmt::format("--out: folder '{}' cannot be written", a.out));
   if (!a.resume && std::filesystem::exists(a.out + "/checkpoint.bin")) {
-    throw InputError(fmt::format("--out: '{}' holds a training; give --resume or another folder", a.out));
+    throw InputError(
+        fmt::format("--out: '{}' holds a training; give --resume or another folder", a.out));
   }
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });

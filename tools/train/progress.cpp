@@ -60,11 +60,14 @@ void Progress::load(const learner::Checkpoint& checkpoint) {
 
 std::string Progress::line(const ProgressRow& r, double eta_s) {
   return fmt::format(
-      "{:5.0f}  {:6.2f} M  {:5.1f} k/s ({:2.0f} % sim)  reward {:.4f}  track {:.2f}/{:.2f}  falls {:.2f}/{:.2f}  "
-      "v/cmd {:.2f}/{:.2f}  est {:.2f} m/s  vmax {:.2f}  soft {:.2f}  h {:.3f}  {:.1f} Hz  std {:.2f}  eta {:.0f} min",
-      r.iteration, r.transitions / 1e6, r.transitions_per_s / 1e3, 100.0 * r.simulation_share, r.reward, r.kernel_rigid,
-      r.kernel_soil, r.falls_rigid, r.falls_soil, r.speed_ratio_rigid, r.speed_ratio_soil, r.estimate_vx_rms_mps,
-      r.command_speed_mps, r.ground_open, r.body_height_m, r.stride_hz, r.action_std, eta_s / 60.0);
+      "{:5.0f}  {:6.2f} M  {:5.1f} k/s ({:2.0f} % sim)  reward {:.4f}  track {:.2f}/{:.2f}  falls "
+      "{:.2f}/{:.2f}  "
+      "v/cmd {:.2f}/{:.2f}  est {:.2f} m/s  vmax {:.2f}  soft {:.2f}  h {:.3f}  {:.1f} Hz  std "
+      "{:.2f}  eta {:.0f} min",
+      r.iteration, r.transitions / 1e6, r.transitions_per_s / 1e3, 100.0 * r.simulation_share,
+      r.reward, r.kernel_rigid, r.kernel_soil, r.falls_rigid, r.falls_soil, r.speed_ratio_rigid,
+      r.speed_ratio_soil, r.estimate_vx_rms_mps, r.command_speed_mps, r.ground_open,
+      r.body_height_m, r.stride_hz, r.action_std, eta_s / 60.0);
 }
 
 void Progress::write(const std::string& dir) const {
@@ -94,16 +97,23 @@ void Progress::write(const std::string& dir) const {
     return s;
   };
   figure.panels.push_back({"Reward", "a step", {series("reward", kBlue, &ProgressRow::reward)}});
-  figure.panels.push_back({"Velocity tracking", "kernel, 0 to 1",
-                           {series("rigid", kBlue, &ProgressRow::kernel_rigid), series("soil", kOrange, &ProgressRow::kernel_soil)}});
-  figure.panels.push_back({"Falls", "per robot and 4 s",
-                           {series("rigid", kBlue, &ProgressRow::falls_rigid), series("soil", kOrange, &ProgressRow::falls_soil)}});
-  figure.panels.push_back({"Curricula", "m/s; 0 to 1",
+  figure.panels.push_back({"Velocity tracking",
+                           "kernel, 0 to 1",
+                           {series("rigid", kBlue, &ProgressRow::kernel_rigid),
+                            series("soil", kOrange, &ProgressRow::kernel_soil)}});
+  figure.panels.push_back({"Falls",
+                           "per robot and 4 s",
+                           {series("rigid", kBlue, &ProgressRow::falls_rigid),
+                            series("soil", kOrange, &ProgressRow::falls_soil)}});
+  figure.panels.push_back({"Curricula",
+                           "m/s; 0 to 1",
                            {series("commanded speed", kBlue, &ProgressRow::command_speed_mps),
                             series("softness of the ground", kOrange, &ProgressRow::ground_open)}});
-  figure.panels.push_back({"Estimator", "rms error",
-                           {series("vx, m/s", kBlue, &ProgressRow::estimate_vx_rms_mps),
-                            series("body height, m", kOrange, &ProgressRow::estimate_height_rms_m)}});
+  figure.panels.push_back(
+      {"Estimator",
+       "rms error",
+       {series("vx, m/s", kBlue, &ProgressRow::estimate_vx_rms_mps),
+        series("body height, m", kOrange, &ProgressRow::estimate_height_rms_m)}});
   figure.views.push_back({"", figure.x.front(), figure.x.back()});
   plot::draw(figure, dir + "/curve.png");
 }

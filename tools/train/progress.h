@@ -21,7 +21,8 @@ struct ProgressRow {
   double learning_rate = 0, kl = 0, action_std = 0, explained_variance = 0;
 };
 
-/// The learning curve as a trivially copyable list: part of the checkpoint, so that curve and CSV survive a resume.
+/// The learning curve as a trivially copyable list: part of the checkpoint, so that curve and CSV
+/// survive a resume.
 class Progress {
  public:
   void add(const ProgressRow& row) { rows_.push_back(row); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fixed scales of the network's input and estimate. Running statistics would change the meaning of the input while the
-// curriculum moves; round numbers do not.
+// Fixed scales of the network's input and estimate. Running statistics would change the meaning of
+// the input while the curriculum moves; round numbers do not.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,9 @@ struct InputScales {
   float clip = 6.0f;
 };
 
-/// Gravity x 8 (z about 0.98), angular velocity x 1, (q - nominal) x 3, joint velocity x 1/3, 1/4, 1/7 (HAA, HFE, KFE),
-/// command x 1, 2, 1. Estimate: height 0.05 m about 0.48, velocity 0.7, 0.3, 0.2 m/s, foot heights 0.07 m about 0.03.
+/// Gravity x 8 (z about 0.98), angular velocity x 1, (q - nominal) x 3, joint velocity x 1/3, 1/4,
+/// 1/7 (HAA, HFE, KFE), command x 1, 2, 1. Estimate: height 0.05 m about 0.48, velocity 0.7, 0.3,
+/// 0.2 m/s, foot heights 0.07 m about 0.03.
 inline InputScales make_scales(const JointArray<double>& nominal_rad, double clip) {
   InputScales s;
   s.clip = static_cast<float>(clip);
@@ -36,7 +37,8 @@ inline InputScales make_scales(const JointArray<double>& nominal_rad, double cli
   return s;
 }
 
-/// (x - mean) / deviation, limited: what the policy file's mean and variance make the robot compute too.
+/// (x - mean) / deviation, limited: what the policy file's mean and variance make the robot compute
+/// too.
 inline float normalised(const InputScales& s, int i, float x) {
   return std::clamp((x - s.mean[i]) * s.inverse_deviation[i], -s.clip, s.clip);
 }

@@ -38,9 +38,11 @@ void Task::new_command(int env, Env& e) const {
   double wz = uniform(env, e, -c.yaw_radps, c.yaw_radps);
   if (uniform(env, e) >= c.yaw_share) wz = 0.0;
   e.command = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
-  e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1], static_cast<float>(c.centripetal_mps2));
+  e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1],
+                                static_cast<float>(c.centripetal_mps2));
   if (uniform(env, e) < c.zero_share) e.command = {};
-  e.command_steps_left = static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
+  e.command_steps_left =
+      static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
 }
 
 void Task::new_ground(int env, Env& e) {
@@ -59,10 +61,13 @@ void Task::new_ground(int env, Env& e) {
     const double open = curriculum_.ground;
     const double flat_low = log_between(g.sigma_flat_low_start, g.sigma_flat_low, open, 1.0);
     const double cone_low = log_between(g.sigma_cone_low_start, g.sigma_cone_low, open, 1.0);
-    p.sigma_flat_npm3 = log_between(flat_low, g.sigma_flat_high, uniform(env, e), g.softness_exponent);
-    p.sigma_cone_npm3 = log_between(cone_low, g.sigma_cone_high, uniform(env, e), g.softness_exponent);
+    p.sigma_flat_npm3 =
+        log_between(flat_low, g.sigma_flat_high, uniform(env, e), g.softness_exponent);
+    p.sigma_cone_npm3 =
+        log_between(cone_low, g.sigma_cone_high, uniform(env, e), g.softness_exponent);
     p.recruitment *= uniform(env, e, 1.0 - g.recruitment_spread, 1.0 + g.recruitment_spread);
-    p.cone_angle_rad += uniform(env, e, -1.0, 1.0) * g.cone_angle_spread_deg * (3.14159265358979 / 180.0);
+    p.cone_angle_rad +=
+        uniform(env, e, -1.0, 1.0) * g.cone_angle_spread_deg * (3.14159265358979 / 180.0);
     inertial = uniform(env, e, g.inertial_low, g.inertial_high);
     p.grain_density_kgpm3 *= inertial;
     p.stroke_stiffness_npm = uniform(env, e, 50.0, std::fmax(50.0, g.stroke_stiffness_high));
@@ -75,14 +80,15 @@ void Task::new_ground(int env, Env& e) {
   batch_.set_terrain(env, lanes);
   e.ground = lanes.ground[0];
   const bool rigid = is_rigid(env);
-  e.ground_features = {rigid ? 1.0f : 0.0f,
-                       rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),
-                       rigid ? 2.0f : static_cast<float>(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
-                       static_cast<float>(3.0 * (p.friction - 0.75)),
-                       static_cast<float>(2.0 * (inertial - 0.65)),
-                       static_cast<float>(100.0 * p.roughness_m),
-                       e.ground_features[6],
-                       e.ground_features[7]};
+  e.ground_features = {
+      rigid ? 1.0f : 0.0f,
+      rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),
+      rigid ? 2.0f : static_cast<float>(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
+      static_cast<float>(3.0 * (p.friction - 0.75)),
+      static_cast<float>(2.0 * (inertial - 0.65)),
+      static_cast<float>(100.0 * p.roughness_m),
+      e.ground_features[6],
+      e.ground_features[7]};
 }
 
 void Task::new_robot(int env, Env& e) {
@@ -104,7 +110,8 @@ void Task::new_robot(int env, Env& e) {
     scale(leg.thigh, spread(r.link_mass_spread));
     scale(leg.shank, spread(r.link_mass_spread));
     const double d = r.foot_position_m;
-    leg.foot = leg.foot + sim::Vec3<double>{uniform(env, e, -d, d), uniform(env, e, -d, d), uniform(env, e, -d, d)};
+    leg.foot = leg.foot + sim::Vec3<double>{uniform(env, e, -d, d), uniform(env, e, -d, d),
+                                            uniform(env, e, -d, d)};
   }
   batch_.set_model(env, sim::convert_model<float>(m));
   sim::BatchDrive<float>& drive = e.drive;
@@ -134,14 +141,18 @@ void Task::hard_reset(int env, Env& e) {
   sim::RobotState<float> state;
   sim::RigidState<float>& x = state.rigid;
   for (int j = 0; j < kNumJoints; ++j) {
-    x.q[j] = static_cast<float>(robot_.nominal_rad[j] + uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
+    x.q[j] = static_cast<float>(robot_.nominal_rad[j] +
+                                uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
     e.drive.target_before[j] = e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]);
   }
-  const auto draw = [&](double width) { return static_cast<float>(uniform(env, e, -width, width)); };
+  const auto draw = [&](double width) {
+    return static_cast<float>(uniform(env, e, -width, width));
+  };
   x.position = {draw(5.0), draw(5.0), 0.0f};
   float height, slope_x, slope_y;
   sim::rough_surface(e.ground, x.position.x, x.position.y, height, slope_x, slope_y);
-  x.position.z = static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * e.ground.roughness;
+  x.position.z =
+      static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * e.ground.roughness;
   const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
   x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
   // Any heading: half a turn by two quarter turns at most keeps the series of `integrate` accurate.
@@ -150,7 +161,8 @@ void Task::hard_reset(int env, Env& e) {
     x.orientation = sim::integrate(x.orientation, sim::Vec3<float>{0.0f, 0.0f, yaw / 8.0f});
   }
   x.velocity = {draw(s.reset_speed_mps), draw(s.reset_speed_mps), draw(s.reset_speed_mps)};
-  x.angular_velocity = {draw(s.reset_rate_radps), draw(s.reset_rate_radps), draw(s.reset_rate_radps)};
+  x.angular_velocity = {draw(s.reset_rate_radps), draw(s.reset_rate_radps),
+                        draw(s.reset_rate_radps)};
   batch_.set_state(env, state);
   batch_.set_drive(env, e.drive);
 }

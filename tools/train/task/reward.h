@@ -12,23 +12,28 @@ namespace sandrunner::train {
 
 /// What a policy step (10 ms) is judged by. Velocities in the heading frame.
 struct StepOutcome {
-  std::array<float, 3> command{};      ///< vx, vy, wz
-  float vx = 0, vy = 0, vz = 0;        ///< base origin, m/s
-  float yaw_rate = 0;                  ///< about world z, rad/s
-  float roll_rate = 0, pitch_rate = 0; ///< body frame, rad/s
-  float up_z = 1;                      ///< cosine of the tilt
-  float body_height = 0;               ///< above the deformed ground, m
+  std::array<float, 3> command{};       ///< vx, vy, wz
+  float vx = 0, vy = 0, vz = 0;         ///< base origin, m/s
+  float yaw_rate = 0;                   ///< about world z, rad/s
+  float roll_rate = 0, pitch_rate = 0;  ///< body frame, rad/s
+  float up_z = 1;                       ///< cosine of the tilt
+  float body_height = 0;                ///< above the deformed ground, m
   JointArray<float> q{}, nominal{};
-  JointArray<float> action{}, action_1{}, action_2{};  ///< now, one and two steps ago; network units
-  float torque_squared = 0, power = 0, speed_squared = 0, speed_excess = 0;  ///< means over the period's ticks
-  float slip = 0;                      ///< mean sum over feet in contact of v_xy^2
-  std::array<float, kNumLegs> air_s{}, stance_s{};     ///< how long each foot has been in the air / loaded
+  JointArray<float> action{}, action_1{},
+      action_2{};  ///< now, one and two steps ago; network units
+  float torque_squared = 0, power = 0, speed_squared = 0,
+        speed_excess = 0;  ///< means over the period's ticks
+  float slip = 0;          ///< mean sum over feet in contact of v_xy^2
+  std::array<float, kNumLegs> air_s{},
+      stance_s{};  ///< how long each foot has been in the air / loaded
   std::array<bool, kNumLegs> contact{};
-  std::array<float, kNumLegs> foot_clearance{};        ///< of the foot's lowest point above the surface, m
-  std::array<float, kNumLegs> foot_speed{};            ///< horizontal, m/s
+  std::array<float, kNumLegs>
+      foot_clearance{};                      ///< of the foot's lowest point above the surface, m
+  std::array<float, kNumLegs> foot_speed{};  ///< horizontal, m/s
 };
 
-/// How well the commanded velocity is kept: 1 exactly, towards 0 far from it. The curricula look at this too.
+/// How well the commanded velocity is kept: 1 exactly, towards 0 far from it. The curricula look at
+/// this too.
 inline float velocity_kernel(const StepOutcome& s, double width, double width_per_speed2) {
   const double ex = s.command[0] - s.vx, ey = s.command[1] - s.vy;
   const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
@@ -39,16 +44,19 @@ inline float velocity_kernel(const StepOutcome& s, double width, double width_pe
 inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
   const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
   const double yaw_error = s.command[2] - s.yaw_rate;
-  double sum = r.velocity_weight * velocity_kernel(s, r.velocity_width, r.velocity_width_per_speed2);
+  double sum =
+      r.velocity_weight * velocity_kernel(s, r.velocity_width, r.velocity_width_per_speed2);
   if (speed2 > 0.01) {
     const double along = s.vx * s.command[0] + s.vy * s.command[1];
     sum += r.progress_weight * std::clamp(along / speed2, -1.0, 1.0);
   }
   sum += r.yaw_weight * std::exp(-yaw_error * yaw_error / r.yaw_width);
   if (std::fabs(s.command[2]) > 0.1f) {
-    sum += r.yaw_progress_weight * std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
+    sum += r.yaw_progress_weight *
+           std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
   }
-  sum += r.precise_weight * velocity_kernel(s, r.precise_velocity_width, r.precise_velocity_width_per_speed2) *
+  sum += r.precise_weight *
+         velocity_kernel(s, r.precise_velocity_width, r.precise_velocity_width_per_speed2) *
          std::exp(-yaw_error * yaw_error / r.precise_yaw_width);
   const bool still = speed2 < 1e-4 && std::fabs(s.command[2]) < 1e-2f;
   double air = 0.0;
@@ -56,7 +64,8 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
     if (still) {
       air += std::clamp<double>(s.stance_s[l] - s.air_s[l], -r.air_target_s, r.air_target_s);
     } else if (s.contact[l]) {
-      if (s.stance_s[l] < r.stance_longest_s) air += std::min<double>(s.stance_s[l], r.air_target_s);
+      if (s.stance_s[l] < r.stance_longest_s)
+        air += std::min<double>(s.stance_s[l], r.air_target_s);
     } else if (s.air_s[l] < r.air_longest_s) {
       air += std::min<double>(s.air_s[l], r.air_target_s);
     }
@@ -66,10 +75,14 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
 
 /// Sum of what is charged, before its weight.
 inline double cost(const StepOutcome& s, const RewardSettings& r) {
-  double sum = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f) + r.joint_speed * s.speed_squared +
+  const double commanded =
+      std::hypot(static_cast<double>(s.command[0]), static_cast<double>(s.command[1]));
+  double sum = r.torque * (1.0 + r.torque_slow / (0.5 + commanded)) * s.torque_squared +
+               r.power * std::max(s.power, 0.0f) + r.joint_speed * s.speed_squared +
                r.speed_excess * s.speed_excess + r.slip * s.slip;
   double first = 0.0, second = 0.0, pose = 0.0, overrun = 0.0;
-  const bool still = std::fabs(s.command[0]) + std::fabs(s.command[1]) + std::fabs(s.command[2]) < 1e-3f;
+  const bool still =
+      std::fabs(s.command[0]) + std::fabs(s.command[1]) + std::fabs(s.command[2]) < 1e-3f;
   for (int j = 0; j < kNumJoints; ++j) {
     const double d1 = s.action[j] - s.action_1[j];
     const double d2 = d1 - (s.action_1[j] - s.action_2[j]);
@@ -77,7 +90,8 @@ inline double cost(const StepOutcome& s, const RewardSettings& r) {
     second += d2 * d2;
     const double off = s.q[j] - s.nominal[j];
     pose += (j % 3 == 0 ? 1.0 : r.pose_flexion_share) * off * off;
-    if (j % 3 == 2) overrun += std::max(std::max(s.q[j] - r.knee_high_rad, r.knee_low_rad - s.q[j]), 0.0);
+    if (j % 3 == 2)
+      overrun += std::max(std::max(s.q[j] - r.knee_high_rad, r.knee_low_rad - s.q[j]), 0.0);
   }
   sum += r.smoothness_1 * first + r.smoothness_2 * second + (still ? 2.0 : 1.0) * r.pose * pose +
          r.joint_margin * overrun;
@@ -94,9 +108,10 @@ inline double cost(const StepOutcome& s, const RewardSettings& r) {
   return sum;
 }
 
-/// Reward of a step; `ramp` in [0, 1] is the share of the costs that counts yet.
+/// Reward of a step; `ramp`: factor of the costs, which grows during training.
 inline float reward(const StepOutcome& s, const RewardSettings& r, double ramp) {
-  return static_cast<float>(r.scale * std::max(positive_reward(s, r) - r.cost_weight * ramp * cost(s, r), 0.0));
+  return static_cast<float>(
+      r.scale * std::max(positive_reward(s, r) - r.cost_weight * ramp * cost(s, r), 0.0));
 }
 
 }  // namespace sandrunner::train

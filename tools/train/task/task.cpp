@@ -12,17 +12,20 @@ namespace sandrunner::train {
 namespace {
 
 constexpr float kStep_s = 1.0f / kPolicyHz;
-// A foot is loaded when it carried more than this in the last two policy steps: on sand the normal force comes in pulses.
+// A foot is loaded when it carried more than this in the last two policy steps: on sand the normal
+// force comes in pulses.
 constexpr float kLoaded_n = 3.0f;
 constexpr int kUnloadedSteps = 2;
 
 sim::FootProfile<double> tyre(const sim::Robot& robot) {
-  return sim::fit_foot_profile(sim::FootShape::kTyre, robot.model.foot_radius_m, robot.model.foot_width_m, 4.0);
+  return sim::fit_foot_profile(sim::FootShape::kTyre, robot.model.foot_radius_m,
+                               robot.model.foot_width_m, 4.0);
 }
 
 sim::StepSettings batch_settings() {
   sim::StepSettings s;
-  s.max_sweeps = 40;  // a tumbling robot's contact problem need not be solved to the end: its episode is over
+  s.max_sweeps =
+      40;  // a tumbling robot's contact problem need not be solved to the end: its episode is over
   return s;
 }
 
@@ -62,7 +65,8 @@ std::array<float, kEstimateSize> Task::truth(const Env& e, const sim::RobotState
   for (int l = 0; l < kNumLegs; ++l) {
     if (state.feet[l].active > 0.0f) deepest = std::max(deepest, state.feet[l].memory_depth);
     const sim::LegModel<double>& leg = robot_.model.legs[l];
-    const sim::LegPose<double> p = sim::leg_pose(leg, double(x.q[3 * l]), double(x.q[3 * l + 1]), double(x.q[3 * l + 2]));
+    const sim::LegPose<double> p =
+        sim::leg_pose(leg, double(x.q[3 * l]), double(x.q[3 * l + 1]), double(x.q[3 * l + 2]));
     const sim::Vec3<double> foot = sim::hip_to_base(leg, p, p.foot);
     out[4 + l] = x.position.z - surface +
                  static_cast<float>(r.r2.x * foot.x + r.r2.y * foot.y + r.r2.z * foot.z);
@@ -78,13 +82,14 @@ void Task::privileged(int, const Env& e, const sim::RobotState<float>& state,
                       const sim::BatchReport<float>& report, float* out) const {
   const sim::RigidState<float>& x = state.rigid;
   const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
-  const auto clean = make_observation<float>(e.command, {r.r2.x, r.r2.y, r.r2.z},
-                                             {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z},
-                                             x.q, x.qd);
+  const auto clean = make_observation<float>(
+      e.command, {r.r2.x, r.r2.y, r.r2.z},
+      {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z}, x.q, x.qd);
   for (int i = 0; i < kObservationSize; ++i) *out++ = normalised(scales_, i, clean[i]);
   const auto estimate = truth(e, state, report);
   for (int i = 0; i < kEstimateSize; ++i) {
-    *out++ = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i], -6.0f, 6.0f);
+    *out++ = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i],
+                        -6.0f, 6.0f);
   }
   for (int l = 0; l < kNumLegs; ++l) {
     *out++ = e.unloaded_steps[l] < kUnloadedSteps ? 1.0f : 0.0f;
@@ -102,9 +107,12 @@ void Task::observe_env(int env, int t, learner::Rollout& rollout) {
   const sim::BatchReport<float> report = batch_.report(env);
   const sim::RigidState<float>& x = state.rigid;
   const NoiseSettings& n = config_.noise;
-  const auto noisy = [&](float value, double sigma) { return value + static_cast<float>(sigma * normal(env, e)); };
+  const auto noisy = [&](float value, double sigma) {
+    return value + static_cast<float>(sigma * normal(env, e));
+  };
   const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
-  std::array<float, 3> up{noisy(r.r2.x, n.gravity), noisy(r.r2.y, n.gravity), noisy(r.r2.z, n.gravity)};
+  std::array<float, 3> up{noisy(r.r2.x, n.gravity), noisy(r.r2.y, n.gravity),
+                          noisy(r.r2.z, n.gravity)};
   const float length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
   for (float& u : up) u /= length;
   const std::array<float, 3> rate{noisy(x.angular_velocity.x, n.angular_velocity_radps),
@@ -122,7 +130,8 @@ void Task::observe_env(int env, int t, learner::Rollout& rollout) {
   const auto estimate = truth(e, state, report);
   auto target = rollout.estimate_target(t).col(env);
   for (int i = 0; i < kEstimateSize; ++i) {
-    target[i] = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i], -6.0f, 6.0f);
+    target[i] = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i],
+                           -6.0f, 6.0f);
   }
 }
 
@@ -140,7 +149,8 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     e.drive.target_before = e.drive.target;
     const auto action = rollout.action(t).col(env);
     for (int j = 0; j < kNumJoints; ++j) {
-      e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]) + scale * std::clamp(action[j], -clip, clip);
+      e.drive.target[j] =
+          static_cast<float>(robot_.nominal_rad[j]) + scale * std::clamp(action[j], -clip, clip);
     }
     batch_.set_drive(env, e.drive);
   }
@@ -187,7 +197,9 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     double lift_offs = 0.0;
     for (int l = 0; l < kNumLegs; ++l) {
       const bool was = e.unloaded_steps[l] < kUnloadedSteps;
-      e.unloaded_steps[l] = batch_sums.foot_load[l] * kPerTick > kLoaded_n ? 0 : std::min(e.unloaded_steps[l] + 1, 1000);
+      e.unloaded_steps[l] = batch_sums.foot_load[l] * kPerTick > kLoaded_n
+                                ? 0
+                                : std::min(e.unloaded_steps[l] + 1, 1000);
       const bool loaded = e.unloaded_steps[l] < kUnloadedSteps;
       e.air_s[l] = loaded ? 0.0f : e.air_s[l] + kStep_s;
       e.stance_s[l] = loaded ? e.stance_s[l] + kStep_s : 0.0f;
@@ -200,16 +212,19 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     s.air_s = e.air_s;
     s.stance_s = e.stance_s;
 
-    const float speed = std::fabs(x.velocity.x) + std::fabs(x.velocity.y) + std::fabs(x.velocity.z) +
-                        std::fabs(x.angular_velocity.x) + std::fabs(x.angular_velocity.y) + std::fabs(x.angular_velocity.z);
+    const float speed = std::fabs(x.velocity.x) + std::fabs(x.velocity.y) +
+                        std::fabs(x.velocity.z) + std::fabs(x.angular_velocity.x) +
+                        std::fabs(x.angular_velocity.y) + std::fabs(x.angular_velocity.z);
     const bool absurd = !(speed < 100.0f) || !(std::fabs(x.position.z) < 10.0f);
-    const bool fell = batch_sums.base_contact > 0.0f || batch_sums.thigh_contact > 0.0f || r.r2.z < tilt_end_cos_ || absurd;
+    const bool fell = batch_sums.base_contact > 0.0f || batch_sums.thigh_contact > 0.0f ||
+                      r.r2.z < tilt_end_cos_ || absurd;
     const float value = absurd ? 0.0f : reward(s, config_.reward, cost_ramp_);
     rollout.reward(t, env) = value;
 
     const int kind = is_rigid(env) ? 0 : 1;
     if (!absurd) {
-      const double kernel = velocity_kernel(s, config_.reward.velocity_width, config_.reward.velocity_width_per_speed2);
+      const double kernel = velocity_kernel(s, config_.reward.velocity_width,
+                                            config_.reward.velocity_width_per_speed2);
       sums.steps += 1.0;
       sums.reward += value;
       sums.torque_squared += s.torque_squared;
@@ -248,7 +263,8 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
         // Soft reset: the robot goes on as it is, perhaps on other ground.
         e.step = 0;
         new_command(env, e);
-        if (e.ground.roughness == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground) new_ground(env, e);
+        if (e.ground.roughness == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground)
+          new_ground(env, e);
       } else {
         hard_reset(env, e);
         learner.reset_memory(env);
@@ -310,7 +326,12 @@ WindowStats Task::end_window(double transitions) {
     curriculum_.ground = std::min(curriculum_.ground + g.open_step, 1.0);
   }
   const RewardSettings& r = config_.reward;
-  cost_ramp_ = std::min(r.cost_ramp_start + (1.0 - r.cost_ramp_start) * transitions / r.cost_ramp_transitions, 1.0);
+  const double rise = std::min(transitions / r.cost_ramp_transitions, 1.0);
+  const double late =
+      std::clamp((transitions - r.cost_ramp_transitions) /
+                     std::max(r.cost_end_transitions - r.cost_ramp_transitions, 1.0),
+                 0.0, 1.0);
+  cost_ramp_ = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late;
   return w;
 }
 
@@ -327,7 +348,8 @@ void Task::load(const learner::Checkpoint& checkpoint) {
   checkpoint.get("task.envs", envs_.data(), envs_.size());
   std::vector<sim::BatchRobot<float>> robots(static_cast<std::size_t>(batch_.size()));
   checkpoint.get("task.robots", robots.data(), robots.size());
-  for (int env = 0; env < batch_.size(); ++env) batch_.set_robot(env, robots[static_cast<std::size_t>(env)]);
+  for (int env = 0; env < batch_.size(); ++env)
+    batch_.set_robot(env, robots[static_cast<std::size_t>(env)]);
   checkpoint.get("task.curriculum", &curriculum_, 1);
   checkpoint.get("task.cost_ramp", &cost_ramp_, 1);
 }

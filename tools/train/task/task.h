@@ -19,21 +19,24 @@ struct Curriculum {
   double ground = 0.0;
 };
 
-/// Means of a window, for the progress line, the learning curve and the curricula. [0] rigid, [1] soil.
+/// Means of a window, for the progress line, the learning curve and the curricula. [0] rigid, [1]
+/// soil.
 struct WindowStats {
   double reward = 0.0;
-  std::array<double, 2> kernel{};           ///< velocity kernel
-  std::array<double, 2> falls{};            ///< per 4 s and robot
-  std::array<double, 2> speed_ratio{};      ///< speed along the command over the command, where it is above 0.3 m/s
-  double top_kernel = 0.0;                  ///< on soil, commands above 3/4 of the curriculum's speed
+  std::array<double, 2> kernel{};  ///< velocity kernel
+  std::array<double, 2> falls{};   ///< per 4 s and robot
+  std::array<double, 2>
+      speed_ratio{};        ///< speed along the command over the command, where it is above 0.3 m/s
+  double top_kernel = 0.0;  ///< on soil, commands above 3/4 of the curriculum's speed
   double top_count = 0.0;
-  double body_height_m = 0.0;               ///< on rigid ground
+  double body_height_m = 0.0;  ///< on rigid ground
   double torque_squared = 0.0, power_w = 0.0;
-  double stride_hz = 0.0;                   ///< lift-offs of a foot per second
+  double stride_hz = 0.0;  ///< lift-offs of a foot per second
 };
 
-/// Trotting on randomised ground: the environments of the training. Robots live in a Batch; a block of environments is
-/// stepped by one thread. Same seed and actions: same bits, for any number of threads and width of the batch.
+/// Trotting on randomised ground: the environments of the training. Robots live in a Batch; a block
+/// of environments is stepped by one thread. Same seed and actions: same bits, for any number of
+/// threads and width of the batch.
 class Task {
  public:
   Task(const TrainConfig& config, std::uint64_t seed);
@@ -44,11 +47,12 @@ class Task {
 
   /// Writes observation(t), privileged(t) and estimate_target(t) of a block.
   void observe(int block, int t, learner::Rollout& rollout);
-  /// Takes action(t) of a block, moves its robots 10 ms on, writes reward(t), end(t), resets whom it must, and writes what
-  /// observe(t + 1) would.
+  /// Takes action(t) of a block, moves its robots 10 ms on, writes reward(t), end(t), resets whom
+  /// it must, and writes what observe(t + 1) would.
   void step(int block, int t, learner::Learner& learner, int worker);
 
-  /// Means of the window just done; clears them and moves the curricula. `transitions`: total, for the ramp of the costs.
+  /// Means of the window just done; clears them and moves the curricula. `transitions`: total, for
+  /// the ramp of the costs.
   WindowStats end_window(double transitions);
   const Curriculum& curriculum() const { return curriculum_; }
 
@@ -56,7 +60,8 @@ class Task {
   void load(const learner::Checkpoint& checkpoint);
 
  private:
-  static constexpr int kPrivileged = kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
+  static constexpr int kPrivileged =
+      kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
 
   // One environment beside its robot in the batch. Trivially copyable: a checkpoint.
   struct Env {
@@ -72,7 +77,8 @@ class Task {
     sim::Ground<float> ground;
   };
   struct Sums {  // of one block and window
-    double steps = 0, reward = 0, torque_squared = 0, power = 0, height = 0, height_steps = 0, lift_offs = 0;
+    double steps = 0, reward = 0, torque_squared = 0, power = 0, height = 0, height_steps = 0,
+           lift_offs = 0;
     std::array<double, 2> kernel{}, kind_steps{}, falls{}, ratio{}, ratio_steps{};
     double top_kernel = 0, top_steps = 0;
   };
@@ -100,7 +106,7 @@ class Task {
   sim::FootProfile<double> foot_;
   sim::Batch batch_;
   std::vector<Env> envs_;
-  std::vector<Sums> sums_;         // one a block
+  std::vector<Sums> sums_;  // one a block
   Curriculum curriculum_;
   double cost_ramp_;
   double tilt_end_cos_;

@@ -20,13 +20,16 @@ TrainConfig read_train_config(ConfigTree& config) {
     needed(key);
     value = static_cast<int>(config.integer(key, value, min, max));
   };
-  const auto triple = [&](const std::string& key, std::array<double, 3>& value, double min, double max) {
+  const auto triple = [&](const std::string& key, std::array<double, 3>& value, double min,
+                          double max) {
     needed(key);
     const auto read = config.numbers(key, {}, 3, min, max);
     for (std::size_t i = 0; i < 3; ++i) value[i] = read[i];
   };
   const auto ordered = [](const char* low_key, double low, const char* high_key, double high) {
-    if (low > high) throw InputError(fmt::format("training config: {} = {} above {} = {}", low_key, low, high_key, high));
+    if (low > high)
+      throw InputError(
+          fmt::format("training config: {} = {} above {} = {}", low_key, low, high_key, high));
   };
 
   number("run.transitions", c.run.transitions, 1.0, 1e13);
@@ -128,6 +131,8 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.cost_weight", c.reward.cost_weight, 0.0, 1e9);
   number("reward.cost_ramp_start", c.reward.cost_ramp_start, 0.0, 1e9);
   number("reward.cost_ramp_transitions", c.reward.cost_ramp_transitions, 1.0, 1e12);
+  number("reward.cost_end", c.reward.cost_end, 0.0, 1e9);
+  number("reward.cost_end_transitions", c.reward.cost_end_transitions, 0.0, 1e9);
   number("reward.velocity_weight", c.reward.velocity_weight, 0.0, 1e9);
   number("reward.velocity_width", c.reward.velocity_width, 1e-6, 1e3);
   number("reward.velocity_width_per_speed2", c.reward.velocity_width_per_speed2, 0.0, 1e9);
@@ -137,13 +142,15 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.yaw_progress_weight", c.reward.yaw_progress_weight, 0.0, 1e9);
   number("reward.precise_weight", c.reward.precise_weight, 0.0, 1e9);
   number("reward.precise_velocity_width", c.reward.precise_velocity_width, 1e-6, 1e3);
-  number("reward.precise_velocity_width_per_speed2", c.reward.precise_velocity_width_per_speed2, 0.0, 1e9);
+  number("reward.precise_velocity_width_per_speed2", c.reward.precise_velocity_width_per_speed2,
+         0.0, 1e9);
   number("reward.precise_yaw_width", c.reward.precise_yaw_width, 1e-6, 1e3);
   number("reward.air_weight", c.reward.air_weight, 0.0, 1e9);
   number("reward.air_target_s", c.reward.air_target_s, 1e-3, 10.0);
   number("reward.air_longest_s", c.reward.air_longest_s, 0.0, 1e9);
   number("reward.stance_longest_s", c.reward.stance_longest_s, 0.0, 1e9);
   number("reward.torque", c.reward.torque, 0.0, 1e9);
+  number("reward.torque_slow", c.reward.torque_slow, 0.0, 1e9);
   number("reward.power", c.reward.power, 0.0, 1e9);
   number("reward.joint_speed", c.reward.joint_speed, 0.0, 1e9);
   number("reward.speed_excess", c.reward.speed_excess, 0.0, 1e9);
@@ -163,18 +170,25 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.height", c.reward.height, 0.0, 1e9);
   number("reward.height_m", c.reward.height_m, 0.0, 1e9);
 
-  ordered("ground.sigma_flat_low", c.ground.sigma_flat_low, "ground.sigma_flat_high", c.ground.sigma_flat_high);
-  ordered("ground.sigma_cone_low", c.ground.sigma_cone_low, "ground.sigma_cone_high", c.ground.sigma_cone_high);
-  ordered("ground.friction_low", c.ground.friction_low, "ground.friction_high", c.ground.friction_high);
-  ordered("ground.inertial_low", c.ground.inertial_low, "ground.inertial_high", c.ground.inertial_high);
-  ordered("command.speed_start_mps", c.command.speed_start_mps, "command.speed_max_mps", c.command.speed_max_mps);
+  ordered("ground.sigma_flat_low", c.ground.sigma_flat_low, "ground.sigma_flat_high",
+          c.ground.sigma_flat_high);
+  ordered("ground.sigma_cone_low", c.ground.sigma_cone_low, "ground.sigma_cone_high",
+          c.ground.sigma_cone_high);
+  ordered("ground.friction_low", c.ground.friction_low, "ground.friction_high",
+          c.ground.friction_high);
+  ordered("ground.inertial_low", c.ground.inertial_low, "ground.inertial_high",
+          c.ground.inertial_high);
+  ordered("command.speed_start_mps", c.command.speed_start_mps, "command.speed_max_mps",
+          c.command.speed_max_mps);
   if (c.run.envs % l.block_envs != 0) {
-    throw InputError(fmt::format("training config: run.envs = {}, expected a multiple of learner.block_envs = {}",
-                                 c.run.envs, l.block_envs));
+    throw InputError(fmt::format(
+        "training config: run.envs = {}, expected a multiple of learner.block_envs = {}",
+        c.run.envs, l.block_envs));
   }
   if (c.ground.rigid_envs > l.block_envs) {
-    throw InputError(fmt::format("training config: ground.rigid_envs = {}, expected at most learner.block_envs = {}",
-                                 c.ground.rigid_envs, l.block_envs));
+    throw InputError(fmt::format(
+        "training config: ground.rigid_envs = {}, expected at most learner.block_envs = {}",
+        c.ground.rigid_envs, l.block_envs));
   }
   config.reject_unknown();
   c.effective = config.effective();
