@@ -33,7 +33,7 @@ struct BatchSums {
   S stop_excess{};                        ///< sum over joints of the distance past the stop, rad
   S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
   S slip{};                               ///< sum over feet in contact of |v_xy|^2, m^2/s^2
-  std::array<S, kNumLegs> foot_load{};  ///< normal force of each foot, N
+  std::array<S, kNumLegs> foot_load{};    ///< normal force of each foot, N
   S base_contact{}, thigh_contact{};      ///< 1: touched the ground in the period
 };
 

@@ -117,44 +117,88 @@ inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& t
 }
 
 /// Exact impulse of one hard contact: given b, its velocity without own impulse, finds lambda_n >=
-/// 0 with v_n >= 0 and lambda_n v_n = 0, and lambda_t on the disc mu lambda_n. Friction changes the
-/// normal velocity as much as the normal impulse does when a leg is steep (mu G_nt > G_nn), so that
-/// treating the two in turn need not converge: here lambda_t/lambda_n is held while lambda_n is
-/// solved for, until neither changes. `impulse`: start, result.
+/// 0 with v_n >= 0 and lambda_n v_n = 0, and lambda_t on the disc mu lambda_n whose velocity
+/// opposes it.
+///
+/// Friction changes the normal velocity as much as the normal impulse does when a leg is steep (mu
+/// G_nt > G_nn), so that treating the two in turn may cycle. Here lambda(s) = -(G + s diag(1, 1,
+/// 0))^-1 b has v_n = 0 and v_t = -s lambda_t for every s >= 0; s = 0 sticks, and if that lies
+/// outside the cone, |lambda_t| - mu lambda_n has a root, bracketed by s = 0 (positive) and s =
+/// infinity (negative). Illinois iteration on u = s/(s + m), which maps the bracket to [0, 1].
 template <typename S>
 inline void solve_hard(const Sym3<S>& g, const std::array<S, 3>& b, S friction, S tolerance,
                        std::array<S, 3>& impulse) noexcept {
-  const S zero = S(0.0), tiny = S(1e-12);
+  const S zero = S(0.0), one = S(1.0), tiny = S(1e-20);
   const Mask<S> closed = b[2] < zero;
-  S n = max(impulse[2], zero);
-  // Ratio of tangential to normal impulse: that of the start, or against the sliding velocity.
-  const Mask<S> warm = n > tiny;
-  const S speed = max(sqrt(fma(b[0], b[0], b[1] * b[1])), tiny);
-  const S inverse_n = S(1.0) / max(n, tiny);
-  S rx = select(warm, impulse[0] * inverse_n, -(friction * b[0]) / speed);
-  S ry = select(warm, impulse[1] * inverse_n, -(friction * b[1]) / speed);
-  S tx = zero, ty = zero;
-  Mask<S> running = closed;
-  constexpr int kMaxIterations = 12;
+  // Without lambda_n, which v_n = 0 gives: (A + s 1) lambda_t = -c.
+  const S inverse_zz = one / g.zz;
+  const S axx = fma(-(g.xz * g.xz), inverse_zz, g.xx);
+  const S axy = fma(-(g.xz * g.yz), inverse_zz, g.xy);
+  const S ayy = fma(-(g.yz * g.yz), inverse_zz, g.yy);
+  const S lift = b[2] * inverse_zz;
+  const S cx = fma(-g.xz, lift, b[0]), cy = fma(-g.yz, lift, b[1]);
+  S x, y, n;
+  // Impulse for s, and its excess over the cone.
+  const auto excess = [&](S s) {
+    const S a = axx + s, d = ayy + s;
+    const S inverse_det = one / max(diff_of_products(a, d, axy, axy), tiny);
+    x = diff_of_products(axy, cy, d, cx) * inverse_det;
+    y = diff_of_products(axy, cx, a, cy) * inverse_det;
+    n = -fma(fma(g.xz, x, g.yz * y), inverse_zz, lift);
+    return fma(-friction, n, sqrt(fma(x, x, y * y)));
+  };
+  S f_low = excess(zero);
+  const S f_start = f_low;
+  S tx = x, ty = y, tn = n;
+  const S scale = S(0.5) * (axx + ayy);
+  S low = zero, high = one, f_high = friction * lift;
+  Mask<S> running = both(closed, f_low > zero);
+  constexpr int kMaxIterations = 30;
   for (int i = 0; i < kMaxIterations && any(running); ++i) {
-    // A jammed contact (friction presses it in faster than the normal impulse lifts it) has no
-    // sliding solution at this ratio; the floor lets lambda_n grow until the contact sticks.
-    const S lift = max(fma(g.xz, rx, fma(g.yz, ry, g.zz)), S(0.1) * g.zz);
-    const S next = -b[2] / lift;
-    S x, y;
-    solve_on_disc(g.xx, g.xy, g.yy, fma(g.xz, next, b[0]), fma(g.yz, next, b[1]), friction * next,
-                  x, y);
-    const Mask<S> settled = abs(next - n) < tolerance;
-    n = select(running, next, n);
+    // The ends' values have opposite signs, so the quotient lies between them.
+    const S u = fma(high - low, f_low / max(f_low - f_high, tiny), low);
+    const S f = excess(scale * (u / max(one - u, tiny)));
+    const Mask<S> outside = f > zero;
+    // Illinois: the end that stays has its value halved, so that the other one moves as well.
+    const S kept = S(0.5);
+    const S next_low = select(outside, u, low), next_high = select(outside, high, u);
+    const S next_f_low = select(outside, f, kept * f_low),
+            next_f_high = select(outside, kept * f_high, f);
     tx = select(running, x, tx);
     ty = select(running, y, ty);
-    const S inverse = S(1.0) / max(n, tiny);
-    rx = select(running, tx * inverse, rx);
-    ry = select(running, ty * inverse, ry);
-    running = both(running, no(settled));
+    tn = select(running, n, tn);
+    low = select(running, next_low, low);
+    high = select(running, next_high, high);
+    f_low = select(running, next_f_low, f_low);
+    f_high = select(running, next_f_high, f_high);
+    running = both(running, abs(f) >= tolerance);
   }
-  impulse = {select(closed, tx, zero), select(closed, ty, zero), select(closed, n, zero)};
+  // What the iteration left is taken up radially: a sliding impulse lies on the cone.
+  const Mask<S> slides = f_start > zero;
+  const S size = sqrt(fma(tx, tx, ty * ty));
+  const S to_cone = select(slides, (friction * tn) / max(size, tiny), one);
+  impulse = {select(closed, tx * to_cone, zero), select(closed, ty * to_cone, zero),
+             select(closed, max(tn, zero), zero)};
 }
+
+/// One visit of the paper's iteration (algorithm S1, constants of the authors' code): a gradient
+/// step of half the contact's own curvature, projected onto lambda_n >= 0 and the friction disc. v:
+/// velocity with all impulses.
+template <typename S>
+inline std::array<S, 3> projected_step(const PointContact<S>& c, const Mask<S>& hard, S vx, S vy,
+                                       S vz) noexcept {
+  const S normal = max(fma(S(-0.5) / c.g.zz, vz, c.impulse[2]), S(0.0));
+  const S disc = select(hard, c.friction * normal, c.disc);
+  const S step = S(0.5) / max(c.g.xx, c.g.yy);
+  const S x = fma(-step, vx, c.impulse[0]), y = fma(-step, vy, c.impulse[1]);
+  const S n = sqrt(fma(x, x, y * y));
+  const S scale = select(n > disc, disc / max(n, S(1e-30)), S(1.0));
+  return {x * scale, y * scale, select(hard, normal, c.impulse[2])};
+}
+
+/// Sweeps with exact visits, before the paper's projected steps take over: exact visits in turn can
+/// cycle where a soft foot and a hard knee share a leg, the paper's shorter steps do not.
+inline constexpr int kExactSweeps = 50;
 
 /// Solves in place; `sum` comes back as the effect of all impulses. Returns the number of sweeps of
 /// the slowest lane. Each lane stops once a sweep changed its impulses by less than `tolerance` (N
@@ -203,14 +247,22 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
       const S by = fma(-c.g.xy, before[0], fma(-c.g.yy, before[1], vy));
       std::array<S, 3> next = before;
       const Mask<S> hard = both(visit, c.hard);
-      if (any(no(hard))) solve_on_disc(c.g.xx, c.g.xy, c.g.yy, bx, by, c.disc, next[0], next[1]);
-      if (any(hard)) {
+      if (sweep > kExactSweeps) {
         const S vz = row_velocity(c.w[2], c.p[2], c.leg, c.free[2], sum);
-        const S bz = fma(-c.g.xz, before[0], fma(-c.g.yz, before[1], fma(-c.g.zz, before[2], vz)));
-        std::array<S, 3> solved = before;
-        solve_hard(c.g, {fma(-c.g.xz, before[2], bx), fma(-c.g.yz, before[2], by), bz}, c.friction,
-                   S(0.1) * tolerance, solved);
-        for (int r = 0; r < 3; ++r) next[r] = select(hard, solved[r], next[r]);
+        next = projected_step(c, hard, vx, vy, vz);
+      } else {
+        if (any(no(hard))) solve_on_disc(c.g.xx, c.g.xy, c.g.yy, bx, by, c.disc, next[0], next[1]);
+        if (any(hard)) {
+          const S vz = row_velocity(c.w[2], c.p[2], c.leg, c.free[2], sum);
+          const S bz =
+              fma(-c.g.xz, before[0], fma(-c.g.yz, before[1], fma(-c.g.zz, before[2], vz)));
+          std::array<S, 3> solved = before;
+          solve_hard(c.g, {fma(-c.g.xz, before[2], bx), fma(-c.g.yz, before[2], by), bz},
+                     c.friction, S(0.01) * tolerance, solved);
+          for (int r = 0; r < 3; ++r) next[r] = select(hard, solved[r], next[r]);
+        }
+      }
+      if (any(hard)) {
         const S dz = select(hard, next[2] - before[2], zero);
         c.impulse[2] = before[2] + dz;
         add_impulse(c.w[2], c.j[2], c.leg, dz, sum);
@@ -249,19 +301,7 @@ inline int solve_by_projection(std::array<PointContact<S>, kPoints>& points, int
       if (!any(c.active)) continue;
       std::array<S, 3> v;
       for (int r = 0; r < 3; ++r) v[r] = row_velocity(c.w[r], c.p[r], c.leg, c.free[r], sum);
-      std::array<S, 3> next = c.impulse;
-      S disc = c.disc;
-      if (any(c.hard)) {
-        next[2] = max(fma(S(-0.5) / c.g.zz, v[2], c.impulse[2]), S(0.0));
-        disc = c.friction * next[2];
-      }
-      const S step = S(0.5) / max(c.g.xx, c.g.yy);
-      next[0] = fma(-step, v[0], c.impulse[0]);
-      next[1] = fma(-step, v[1], c.impulse[1]);
-      const S n = sqrt(fma(next[0], next[0], next[1] * next[1]));
-      const S scale = select(n > disc, disc / max(n, S(1e-30)), S(1.0));
-      next[0] = next[0] * scale;
-      next[1] = next[1] * scale;
+      const std::array<S, 3> next = projected_step(c, c.hard, v[0], v[1], v[2]);
       for (int r = 0; r < 3; ++r) add_impulse(c.w[r], c.j[r], c.leg, next[r] - c.impulse[r], sum);
       const S dx = next[0] - c.impulse[0], dy = next[1] - c.impulse[1];
       change = change + abs(next[2] - c.impulse[2]) + sqrt(fma(dx, dx, dy * dy));

@@ -47,7 +47,7 @@ inline S diff_of_products(S a, S b, S c, S d) noexcept {
 }
 
 /// Sine and cosine for |x| < 1e4 (Cody-Waite reduction to +-pi/4, then the polynomials of Cephes:
-/// float; fdlibm: double). Error below 1.5 ulp in double, 1e-7 in float. Own code because libm's
+/// float; fdlibm: double). Error below 2.5 ulp in double, 1e-7 in float. Own code because libm's
 /// bits depend on the machine.
 template <typename S>
 inline void sincos(S x, S& sine, S& cosine) noexcept {
@@ -56,7 +56,7 @@ inline void sincos(S x, S& sine, S& cosine) noexcept {
   S r, s, c;
   if constexpr (kIsDouble) {
     r = fma(k, S(-1.5707963267341256e+00), x);
-    r = fma(k, S(-6.0771005063039200e-11), r);
+    r = fma(k, S(-6.07710050630396597660e-11), r);
     r = fma(k, S(-2.0222662487959506e-21), r);
     const S z = r * r;
     S p = fma(z, S(1.58969099521155010221e-10), S(-2.50507602534068634195e-08));

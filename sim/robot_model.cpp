@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/robot_model.h"
 
+#include <console_bridge/console.h>
 #include <fmt/format.h>
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "rt/core/config_tree.h"
@@ -20,6 +22,29 @@ namespace {
 using Vec = Vec3<double>;
 
 Vec to_vec(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+// urdfdom reports through console_bridge and returns null. The first thing it says names the
+// element; the rest would be noise beside our one line.
+class FirstMessage : public console_bridge::OutputHandler {
+ public:
+  FirstMessage() { console_bridge::useOutputHandler(this); }
+  ~FirstMessage() override { console_bridge::restorePreviousOutputHandler(); }
+  void log(const std::string& message, console_bridge::LogLevel level, const char*, int) override {
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR || !text.empty()) return;
+    for (const char c : message) text += c == '\n' ? ' ' : c;
+  }
+  mutable std::string text;
+};
+
+// Exporters write blanks inside numbers' quotes and <dynamics> without the attributes that urdfdom
+// insists on; neither means anything to us.
+std::string tolerable(const std::string& text) {
+  static const std::regex dynamics(R"(<dynamics[^>]*/>)"), before(R"(="\s+)"),
+      after(R"(\s+"(\s|/|>))");
+  std::string t = std::regex_replace(text, dynamics, "");
+  t = std::regex_replace(t, before, "=\"");
+  return std::regex_replace(t, after, "\"$1");
+}
 
 std::string read_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -34,10 +59,12 @@ std::string read_text(const std::string& path) {
 class UrdfReader {
  public:
   UrdfReader(const std::string& text, std::string name) : name_(std::move(name)) {
-    // urdfdom reports through console_bridge and returns null; its own lines would be noise beside
-    // ours.
-    urdf_ = text.find("<robot") == std::string::npos ? nullptr : urdf::parseURDF(text);
-    if (!urdf_) fail("not a valid URDF");
+    if (text.find("<robot") == std::string::npos) fail("not a URDF: has no robot element");
+    const FirstMessage message;
+    urdf_ = urdf::parseURDF(tolerable(text));
+    if (!urdf_) {
+      fail(message.text.empty() ? "not a valid URDF" : "not a valid URDF: " + message.text);
+    }
   }
 
   [[noreturn]] void fail(const std::string& what) const {

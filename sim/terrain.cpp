@@ -94,9 +94,7 @@ TerrainDescription read_terrain(ConfigTree& config) {
   terrain.foot_shape = shape == "tyre"     ? FootShape::kTyre
                        : shape == "sphere" ? FootShape::kSphere
                                            : FootShape::kDisc;
-  terrain.hydraulic_factor =
-      config.number("terrain.foot.hydraulic_factor",
-                    terrain.foot_shape == FootShape::kTyre ? 4.0 : 2.0, 0.1, 10.0);
+  terrain.hydraulic_factor = config.number("terrain.foot.hydraulic_factor", 0.0, 0.0, 10.0);
   TerrainPatch first;
   read_ground(config, "terrain.", first.ground);
   terrain.patches.push_back(first);
@@ -131,7 +129,10 @@ FootProfile<double> make_foot_profile(const TerrainDescription& terrain,
   const FootShape shape = terrain.foot_shape == FootShape::kTyre && !(model.foot_width_m > 0.0)
                               ? FootShape::kSphere
                               : terrain.foot_shape;
-  return fit_foot_profile(shape, model.foot_radius_m, model.foot_width_m, terrain.hydraulic_factor);
+  const double factor = terrain.hydraulic_factor > 0.0 ? terrain.hydraulic_factor
+                        : shape == FootShape::kTyre    ? 4.0
+                                                       : 2.0;
+  return fit_foot_profile(shape, model.foot_radius_m, model.foot_width_m, factor);
 }
 
 Terrain<double> make_terrain(const TerrainDescription& description, const FootProfile<double>& foot,

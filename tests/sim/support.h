@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What several tests of the simulator need: reproducible draws, random states of the robot, the
+// step without the program around it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "rt/core/safety_gate.h"
+#include "sim/ground.h"
+#include "sim/random.h"
+#include "sim/robot_model.h"
+#include "sim/robot_step.h"
+#include "sim/terrain.h"
+
+namespace sandrunner::sim {
+
+/// Uniform draws from a seed.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : seed_(seed) {}
+  double operator()(double low, double high) {
+    return low + (high - low) * random_uniform(seed_, 0, counter_++);
+  }
+  Vec3<double> vector(double size) {
+    return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
+  }
+
+ private:
+  std::uint64_t seed_;
+  std::uint64_t counter_ = 0;
+};
+
+/// Any orientation and joint angles; speeds up to those of a fast run.
+inline RigidState<double> random_state(Draw& draw) {
+  RigidState<double> x;
+  x.position = draw.vector(2.0);
+  Quaternion<double> q{draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)};
+  const double n = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  x.orientation = {q.w / n, q.x / n, q.y / n, q.z / n};
+  x.velocity = draw.vector(4.0);
+  x.angular_velocity = draw.vector(6.0);
+  for (int j = 0; j < kNumJoints; ++j) {
+    x.q[j] = draw(-3.0, 3.0);
+    x.qd[j] = draw(-20.0, 20.0);
+  }
+  return x;
+}
+
+template <typename To>
+Vec3<To> convert(const Vec3<double>& v) {
+  return {To(v.x), To(v.y), To(v.z)};
+}
+template <typename To>
+RigidState<To> convert(const RigidState<double>& from) {
+  RigidState<To> to;
+  to.position = convert<To>(from.position);
+  to.orientation = {To(from.orientation.w), To(from.orientation.x), To(from.orientation.y),
+                    To(from.orientation.z)};
+  to.velocity = convert<To>(from.velocity);
+  to.angular_velocity = convert<To>(from.angular_velocity);
+  for (int j = 0; j < kNumJoints; ++j) {
+    to.q[j] = To(from.q[j]);
+    to.qd[j] = To(from.qd[j]);
+  }
+  return to;
+}
+template <typename S>
+std::array<double, 18> flat(const Motion<S>& m) {
+  std::array<double, 18> f{m.linear.x,  m.linear.y,  m.linear.z,
+                           m.angular.x, m.angular.y, m.angular.z};
+  for (int j = 0; j < kNumJoints; ++j) f[6 + j] = m.joint[j];
+  return f;
+}
+
+/// |a - b| / |b| over all elements.
+template <typename A, typename B>
+double relative_error(const A& a, const B& b) {
+  double difference = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    difference += d * d;
+    size += static_cast<double>(b[i]) * static_cast<double>(b[i]);
+  }
+  return std::sqrt(difference / size);
+}
+
+/// Kinetic and potential energy, and momenta about the centre of mass, in world axes.
+struct Invariants {
+  double energy_j;
+  Vec3<double> com, linear, angular;
+};
+inline Invariants invariants(const RobotModel<double>& model, const RigidState<double>& x) {
+  Dynamics<double> dynamics;
+  dynamics.update(model, x);
+  std::array<double, 324> mass;
+  std::array<double, 18> bias;
+  dynamics.dense(mass, bias);
+  const Mat3<double> r = rotation_matrix(x.orientation);
+  Motion<double> velocity;
+  velocity.linear = transposed_times(r, x.velocity);
+  velocity.angular = x.angular_velocity;
+  velocity.joint = x.qd;
+  const std::array<double, 18> v = flat(velocity);
+  std::array<double, 18> momentum{};
+  double kinetic = 0.0;
+  for (int i = 0; i < 18; ++i) {
+    for (int k = 0; k < 18; ++k) momentum[i] += mass[18 * i + k] * v[k];
+    kinetic += 0.5 * momentum[i] * v[i];
+  }
+  // First moment about the base origin from the mass matrix: its angular-linear block is [h]x.
+  const double m = mass[0];
+  const Vec3<double> com_base =
+      (1.0 / m) * Vec3<double>{mass[18 * 5 + 1], mass[18 * 3 + 2], mass[18 * 4 + 0]};
+  Invariants i;
+  i.com = x.position + r * com_base;
+  i.linear = r * Vec3<double>{momentum[0], momentum[1], momentum[2]};
+  const Vec3<double> about_base = r * Vec3<double>{momentum[3], momentum[4], momentum[5]};
+  i.angular = about_base - cross(i.com - x.position, i.linear);
+  i.energy_j = kinetic + m * kGravity_mps2 * i.com.z;
+  return i;
+}
+
+/// What the gate makes of a joint command.
+inline SafeCommand pass_gate(const JointCommand& command) {
+  static const SafetyGate gate{GateConfig{}, 1.0};
+  GateState state;
+  return gate.pass(command, true, state);
+}
+inline JointCommand pd_command(const JointArray<double>& target_rad, double kp, double kd) {
+  JointCommand c;
+  c.position_rad = target_rad;
+  c.kp_nmprad.fill(kp);
+  c.kd_nmsprad.fill(kd);
+  return c;
+}
+
+/// A terrain of one patch.
+inline TerrainDescription one_patch(const GroundParameters& ground) {
+  TerrainDescription t;
+  t.patches.push_back({0.0, ground});
+  return t;
+}
+inline GroundParameters ground_of_kind(GroundKind kind) {
+  GroundParameters g;
+  g.kind = kind;
+  return g;
+}
+
+/// RobotStepper with all that one step needs.
+struct Bench {
+  explicit Bench(const GroundParameters& ground = ground_of_kind(GroundKind::kRigid))
+      : robot(load_raibo()) {
+    const TerrainDescription description = one_patch(ground);
+    foot = make_foot_profile(description, robot.model);
+    terrain = make_terrain(description, foot, robot.model);
+    state.rigid.position.z = robot.nominal_height_m;
+    state.rigid.q = robot.nominal_rad;
+  }
+  void step(const std::array<double, kNumJoints>& torque_nm) {
+    stepper.step(robot.model, foot, terrain, settings, torque_nm, state, report);
+  }
+
+  void remove_stops() {
+    robot.model.lower_rad.fill(-1e3);
+    robot.model.upper_rad.fill(1e3);
+  }
+
+  Robot robot;
+  FootProfile<double> foot;
+  Terrain<double> terrain;
+  StepSettings settings;
+  RobotState<double> state;
+  StepReport<double> report;
+  RobotStepper<double> stepper;
+};
+
+}  // namespace sandrunner::sim
