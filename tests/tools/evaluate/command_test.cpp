@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program sandrunner-evaluate, as a user runs it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/policy/random_policy.h"
+#include "tests/policy/temporary_folder.h"
+
+namespace sandrunner {
+namespace {
+
+class EvaluateCommandTest : public testing::Test {
+ protected:
+  EvaluateCommandTest() { write_policy_file(folder_.path("p"), random_policy_file()); }
+
+  int run(const std::string& arguments) {
+    const std::string command = "cd '" + folder_.path("") +
+                                "' && '" SANDRUNNER_EVALUATE_PROGRAM "' " + arguments +
+                                " >text 2>errors";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string read(const std::string& name) const { return read_file(folder_.path(name)); }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(EvaluateCommandTest, WritesAllFilesTheSameForAnyThreads) {
+  write_policy_file(folder_.path("q"), random_policy_file(2));
+  const std::string common = "--policy p --against q --runs 2 --grid-runs 1 ";
+  ASSERT_EQ(run(common + "--threads 1 --out one"), 0) << read("errors");
+  EXPECT_EQ(read("errors"), "");
+  ASSERT_EQ(run(common + "--threads 3 --out three"), 0) << read("errors");
+  for (const char* name : {"evaluation.json", "straight.csv", "grid.csv", "turn.csv", "robust.csv",
+                           "straight_speed.png", "straight_cost.png", "grid.png"}) {
+    const std::string file = read(std::string("one/") + name);
+    EXPECT_GT(file.size(), 100u) << name;
+    EXPECT_EQ(file, read(std::string("three/") + name)) << name;
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path("one")), {}), 8);
+
+  const auto json = nlohmann::json::parse(read("one/evaluation.json"));
+  EXPECT_EQ(json["policies"].size(), 2u);
+  EXPECT_NE(json["policies"][0]["name"], json["policies"][1]["name"]);
+  const auto& policy = json["policies"][1];
+  EXPECT_EQ(policy["straight"].size(), 6u * 8u);
+  EXPECT_EQ(policy["grid"].size(), 100u);
+  EXPECT_EQ(policy["grid"][99]["sigma_cone_npm3"], 0.6e6);
+  EXPECT_EQ(policy["turn"].size(), 20u);
+  const auto& survival = policy["turn"][0]["survival"];
+  EXPECT_EQ(survival["n"], 2);
+  EXPECT_LE(survival["low"], survival["value"]);
+  EXPECT_GE(survival["high"], survival["value"]);
+}
+
+TEST_F(EvaluateCommandTest, OnlySomeParts) {
+  ASSERT_EQ(run("--policy p --only turn --runs 1 --grid-runs 1 --out dir"), 0) << read("errors");
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("dir/turn.csv")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("dir/grid.csv")));
+  EXPECT_NE(read("text").find("sideways"), std::string::npos);
+}
+
+TEST_F(EvaluateCommandTest, RefusesBadInputInOneLine) {
+  write_file(folder_.path("broken"), "no policy");
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "--policy"},
+      {"--policy absent", "absent"},
+      {"--policy broken", "broken"},
+      {"--policy p --against absent", "absent"},
+      {"--policy p --runs 0", "--runs: 0"},
+      {"--policy p --grid-runs -3", "--grid-runs: -3"},
+      {"--policy p --threads 0", "--threads: 0"},
+      {"--policy p --seed 0", "--seed: 0"},
+      {"--policy p --runs many", "--runs"},
+      {"--policy p --only turn,jump", "'jump'"},
+      {"--policy p --torque-speed-line perhaps", "'perhaps'"},
+      {"--policy p --out p", "--out: folder 'p'"},
+      {"--policy p --unknown", "--unknown"},
+  };
+  for (const auto& [arguments, cause] : cases) {
+    EXPECT_EQ(run(arguments), 2) << arguments;
+    const std::string error = read("errors");
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_NE(error.find(cause), std::string::npos) << error;
+    EXPECT_EQ(read("text"), "") << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/evaluate/runner.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+
+#include "rt/core/floating_point.h"
+#include "rt/run.h"
+#include "support.h"
+
+namespace sandrunner::evaluate {
+namespace {
+
+// Some of each kind of trial, so that packs mix grounds, disturbances, falls and lengths.
+std::vector<Trial> mixed_trials(Study& study) {
+  std::vector<Trial> trials;
+  for (const Part& part : {study.straight(), study.turn(), study.robust(), study.grid()}) {
+    for (std::size_t g = 0; g < part.groups.size(); g += 9) {
+      Trial trial = part.groups[g].trials.back();
+      trial.duration_s = 0.5 + 0.1 * static_cast<double>(g % 4);
+      trial.longest_s = 1.0;
+      trials.push_back(trial);
+    }
+  }
+  return trials;
+}
+
+class RunnerTest : public testing::Test {
+ protected:
+  RunnerTest() : study_({.runs = 3, .grid_runs = 2, .seed = 7}) {}
+
+  std::vector<std::vector<std::uint64_t>> run(const std::vector<Trial>& trials,
+                                              const Policy& policy, int threads,
+                                              sim::BatchWidth width) {
+    std::vector<std::vector<std::uint64_t>> bits;
+    for (const TrialFigures& f :
+         run_trials(study_.robot(), study_.foot(), policy, trials, {threads, true, width})) {
+      bits.push_back(bits_of(f));
+    }
+    return bits;
+  }
+
+  Study study_;
+};
+
+TEST_F(RunnerTest, SameBitsForAnyThreadsAndWidth) {
+  const std::vector<Trial> trials = mixed_trials(study_);
+  const Policy policy = standing_policy();
+  const auto expected = run(trials, policy, 1, sim::BatchWidth::kEight);
+  EXPECT_NE(expected[0], expected[1]);
+  EXPECT_EQ(run(trials, policy, 3, sim::BatchWidth::kEight), expected);
+  EXPECT_EQ(run(trials, policy, 2, sim::BatchWidth::kOne), expected);
+  if (sim::best_batch_width() == sim::BatchWidth::kSixteen) {
+    EXPECT_EQ(run(trials, policy, 2, sim::BatchWidth::kSixteen), expected);
+  }
+}
+
+TEST_F(RunnerTest, NeighboursDoNotMatter) {
+  const std::vector<Trial> trials = mixed_trials(study_);
+  const Policy policy = standing_policy();
+  const auto all = run(trials, policy, 1, sim::BatchWidth::kEight);
+  const auto one = run({trials[5]}, policy, 1, sim::BatchWidth::kEight);
+  EXPECT_EQ(one[0], all[5]);
+}
+
+TEST_F(RunnerTest, DisturbancesActAndFollowTheSeed) {
+  Trial trial;
+  trial.terrain = study_.add(Study::preset("rigid"));
+  trial.start = &study_.start(0);
+  trial.duration_s = 1.5;
+  trial.seed = 3;
+  std::vector<Trial> trials(6, trial);
+  trials[1].noise_scale = 3.0;
+  trials[2].push_speed_mps = 0.6;
+  trials[3].push_speed_mps = 0.6;
+  trials[3].seed = 4;
+  trials[4].latency_ticks = 40;
+  trials[5].push_speed_mps = 0.6;
+  const auto bits = run(trials, standing_policy(), 1, sim::BatchWidth::kEight);
+  for (int i = 1; i <= 4; ++i) EXPECT_NE(bits[i], bits[0]) << i;
+  EXPECT_NE(bits[3], bits[2]);
+  EXPECT_EQ(bits[5], bits[2]);
+}
+
+TEST_F(RunnerTest, LooseStepSinksIn) {
+  // The second patch is out of reach; only LooseStep puts a foot on it.
+  sim::TerrainDescription ground = Study::preset("dry-sand");
+  sim::TerrainPatch soft{1e9, ground.patches[0].ground};
+  soft.ground.sigma_flat_npm3 /= 4.0;
+  soft.ground.sigma_cone_npm3 /= 4.0;
+  ground.patches.push_back(soft);
+  // Dropped, so that the feet touch down once after the start of the run.
+  sim::RobotState<float> start = study_.start(0);
+  start.rigid.position.z += 0.02f;
+  start.rigid.velocity.x = 0.5f;
+  Trial trial;
+  trial.terrain = study_.add(ground);
+  trial.start = &start;
+  trial.duration_s = 0.5;
+  std::vector<Trial> trials(2, trial);
+  trials[1].loose_step.from_m = 1e-6;
+  const std::vector<TrialFigures> f =
+      run_trials(study_.robot(), study_.foot(), standing_policy(), trials, {});
+  EXPECT_GT(f[1].tilt_rms_rad, f[0].tilt_rms_rad + 0.02);
+}
+
+TEST_F(RunnerTest, ProgressReachesTheEnd) {
+  const std::vector<Trial> trials = mixed_trials(study_);
+  std::size_t last = 0;
+  run_trials(study_.robot(), study_.foot(), standing_policy(), trials, {.threads = 2},
+             [&](std::size_t done) {
+               EXPECT_GT(done, last);
+               last = done;
+             });
+  EXPECT_EQ(last, trials.size());
+}
+
+TEST_F(RunnerTest, FactsOfTheRobot) {
+  PolicySpec spec;
+  spec.torque_limit_nm = 40.0;
+  const RobotFacts facts = robot_facts(study_.robot(), spec);
+  EXPECT_NEAR(facts.mass_kg, 26.817, 1e-3);
+  EXPECT_NEAR(facts.foot_diagonal_m, 0.7011, 1e-3);
+  EXPECT_EQ(facts.torque_limit_nm[5], 40.0);
+}
+
+// The control process in double and the evaluation in float are two programs around the same steps.
+TEST_F(RunnerTest, AgreesWithTheControlProcess) {
+  const std::string path = SANDRUNNER_SHARED_DIR "/reference-policy/reference.safetensors";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference policy at " << path;
+  flush_denormals_to_zero();
+  Policy policy = published_policy(path);
+  for (const char* ground : {"dry-sand", "rigid"}) {
+    SCOPED_TRACE(ground);
+    ConfigTree tree;
+    sim::add_terrain_layer(tree, ground);
+    const ProcessConfig config = read_process_config(tree, &policy.spec());
+    const std::atomic<bool> interrupt{false};
+    const RunResult process =
+        run_lockstep(config, &policy, CommandSource("1.5,0,0"),
+                     {.walk_s = 5.0, .start_walking = true}, false, interrupt, {});
+    ASSERT_TRUE(process.survived);
+    const sandrunner::RunFigures& p = process.figures;
+
+    Trial trial;
+    trial.terrain = study_.add(Study::preset(ground));
+    trial.start = &study_.start(0);
+    trial.command = {{1.5, 0.0, 0.0}, 0.0, INFINITY};
+    trial.duration_s = 5.0;
+    const TrialFigures e =
+        run_trials(study_.robot(), study_.foot(), policy, {trial}, {.torque_speed_line = false})[0];
+    ASSERT_FALSE(e.fell);
+    EXPECT_NEAR(e.vx_mps, p.mean_velocity_mps[0], 0.02);
+    EXPECT_NEAR(e.vy_mps, p.mean_velocity_mps[1], 0.02);
+    EXPECT_NEAR(e.yaw_rate_radps, p.mean_yaw_rate_radps, 0.02);
+    EXPECT_NEAR(e.power_w, p.mechanical_power_w, 0.04 * p.mechanical_power_w + 1.0);
+    EXPECT_NEAR(e.torque_squared_nm2, p.torque_squared_nm2, 0.04 * p.torque_squared_nm2);
+    EXPECT_NEAR(e.cot, *p.cost_of_transport, 0.04 * *p.cost_of_transport);
+    EXPECT_NEAR(e.clearance_iqr_m, p.foot_clearance_iqr_m, 0.003);
+    EXPECT_NEAR(e.velocity_rmse_mps, p.velocity_rmse_mps, 0.01);
+    EXPECT_NEAR(e.body_height_rmse_m, p.body_height_rmse_m, 0.001);
+    EXPECT_NEAR(e.foot_height_rmse_m, p.foot_height_rmse_m, 0.002);
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner::evaluate

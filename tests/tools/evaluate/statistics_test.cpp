@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/evaluate/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace sandrunner::evaluate {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Wilson's intervals as tabulated, e.g. by R's prop.test(correct = FALSE).
+TEST(StatisticsTest, WilsonIntervalOfRates) {
+  const Estimate half = rate_interval(50, 100);
+  EXPECT_EQ(half.value, 0.5);
+  EXPECT_NEAR(half.low, 0.4038, 1e-4);
+  EXPECT_NEAR(half.high, 0.5962, 1e-4);
+  const Estimate none = rate_interval(0, 10);
+  EXPECT_EQ(none.low, 0.0);
+  EXPECT_NEAR(none.high, 0.2775, 1e-4);
+  const Estimate all = rate_interval(360, 360);
+  EXPECT_NEAR(all.low, 0.9894, 1e-4);
+  EXPECT_EQ(all.high, 1.0);
+  EXPECT_EQ(rate_interval(0, 0).n, 0);
+}
+
+TEST(StatisticsTest, StudentQuantiles) {
+  const std::pair<int, double> table[] = {{1, 12.7062}, {2, 4.3027},  {5, 2.5706},  {6, 2.4469},
+                                          {9, 2.2622},  {15, 2.1314}, {30, 2.0423}, {359, 1.9666}};
+  for (const auto& [degrees, expected] : table) {
+    EXPECT_NEAR(student_t_975(degrees), expected, 0.002 * expected) << degrees;
+  }
+}
+
+TEST(StatisticsTest, MeanIntervalLeavesOutWhatIsNotDefined) {
+  const Estimate e = mean_interval({1.0, kNan, 2.0, 3.0, 4.0, kNan, 5.0});
+  EXPECT_EQ(e.n, 5);
+  EXPECT_EQ(e.value, 3.0);
+  EXPECT_NEAR(e.high - e.value, 1.9632, 1e-4);  // 2.7764 sqrt(2.5/5)
+  EXPECT_NEAR(e.value - e.low, 1.9632, 1e-4);
+  EXPECT_EQ(mean_interval({kNan}).n, 0);
+  EXPECT_TRUE(std::isnan(mean_interval({}).value));
+  EXPECT_EQ(mean_interval({2.0}).high, 2.0);
+}
+
+TEST(StatisticsTest, RmsPoolsSquares) {
+  const Estimate e = rms_interval({3.0, 4.0, kNan});
+  EXPECT_EQ(e.n, 2);
+  EXPECT_NEAR(e.value, std::sqrt(12.5), 1e-12);
+  EXPECT_EQ(e.low, 0.0);  // the interval of the mean square reaches below zero
+  EXPECT_GT(e.high, e.value);
+}
+
+TEST(StatisticsTest, QuantilesLieBetweenValues) {
+  EXPECT_EQ(quantile({1.0, 2.0, 4.0}, 0.0), 1.0);
+  EXPECT_EQ(quantile({1.0, 2.0, 4.0}, 0.75), 3.0);
+  EXPECT_EQ(quantile({1.0, 2.0, 4.0}, 1.0), 4.0);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
+}  // namespace
+}  // namespace sandrunner::evaluate

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sandrunner-bench: how fast parts of sandrunner are on this machine.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "rt/core/errors.h"
+#include "tools/bench/batch_bench.h"
+
+namespace sandrunner {
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app("Measures how fast sandrunner is on this machine.", "sandrunner-bench");
+  app.set_version_flag("--version", "sandrunner-bench " SANDRUNNER_VERSION);
+  app.require_subcommand(1);
+
+  std::string json_path;
+  int rounds = 11;
+  CLI::App* batch = app.add_subcommand(
+      "batch", "steps per second of robots trotting on sand, against MuJoCo in the same run");
+  batch->add_option("--json", json_path, "file for the figures")->type_name("FILE");
+  batch->add_option("--rounds", rounds, "interleaved rounds")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {
+    return app.exit(done);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("command line: {}", error.what()));
+  }
+  std::optional<bench::ReportFile> file;
+  if (!json_path.empty()) file.emplace(json_path);
+  const bench::Report report = bench::run_batch_bench(rounds);
+  print(report);
+  if (file) file->write(report);
+  return kExitOk;
+}
+
+}  // namespace
+}  // namespace sandrunner
+
+int main(int argc, char** argv) {
+  try {
+    return sandrunner::run(argc, argv);
+  } catch (const sandrunner::InputError& error) {
+    fmt::print(stderr, "sandrunner-bench: {}\n", error.what());
+    return sandrunner::kExitBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sandrunner-bench: internal error: {}\n", error.what());
+    return sandrunner::kExitInternal;
+  }
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/bench/report.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "rt/core/errors.h"
+
+namespace sandrunner::bench {
+
+void print(const Report& report) {
+  for (const auto& [name, text] : report.facts) fmt::print("{:<12}{}\n", name, text);
+  fmt::print("\n{:<32}{:>12}{:>12}{:>12}{:>7}\n", "steps/s", "median", "q1", "q3", "runs");
+  for (const auto& [name, q] : report.rates) {
+    fmt::print("{:<32}{:>12.0f}{:>12.0f}{:>12.0f}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
+  }
+  fmt::print("\n{:<32}{:>12}{:>12}{:>12}{:>7}\n", "ratio", "median", "q1", "q3", "runs");
+  for (const auto& [name, q] : report.ratios) {
+    fmt::print("{:<32}{:>12.2f}{:>12.2f}{:>12.2f}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
+  }
+}
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+ReportFile::ReportFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
+  if (std::filesystem::is_directory(path_) || !std::ofstream(part_)) {
+    throw InputError(fmt::format("--json: '{}' cannot be written", path_));
+  }
+}
+
+ReportFile::~ReportFile() {
+  std::error_code ignored;
+  std::filesystem::remove(part_, ignored);
+}
+
+void ReportFile::write(const Report& report) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, text] : report.facts) json[name] = text;
+  const auto values = [](const Quartiles& q) {
+    return nlohmann::ordered_json{
+        {"median", q.median}, {"q1", q.q1}, {"q3", q.q3}, {"runs", q.runs}};
+  };
+  for (const auto& [name, q] : report.ratios) json[name] = values(q);
+  for (const auto& [name, q] : report.rates) json["steps_per_s"][name] = values(q);
+  std::ofstream out(part_);
+  out << json.dump(2) << '\n';
+  out.close();
+  if (!out || std::rename(part_.c_str(), path_.c_str()) != 0) {
+    throw InputError(fmt::format("--json: '{}' cannot be written", path_));
+  }
+}
+
+}  // namespace sandrunner::bench

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/evaluate/files.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "rt/core/errors.h"
+
+namespace sandrunner::evaluate {
+
+std::string results_json(const Results& results, const Options& options) {
+  using Json = nlohmann::ordered_json;
+  Json j;
+  j["version"] = SANDRUNNER_VERSION;
+  j["settings"] = {{"policy", options.policy_path},
+                   {"against", options.against_path.empty() ? Json() : Json(options.against_path)},
+                   {"seed", options.study.seed},
+                   {"runs", options.study.runs},
+                   {"grid_runs", options.study.grid_runs},
+                   {"torque_speed_line", options.torque_speed_line}};
+  j["policies"] = Json::array();
+  for (std::size_t p = 0; p < results.policies.size(); ++p) {
+    Json policy;
+    policy["name"] = results.policies[p];
+    for (const PartResults& part : results.parts) {
+      Json groups = Json::array();
+      for (std::size_t g = 0; g < part.part.groups.size(); ++g) {
+        const Group& group = part.part.groups[g];
+        Json out;
+        out["ground"] = group.ground;
+        if (part.part.name == "grid") {
+          out["sigma_flat_npm3"] = group.sigma_flat_npm3;
+          out["sigma_cone_npm3"] = group.sigma_cone_npm3;
+        } else {
+          if (!group.scenario.empty()) out["scenario"] = group.scenario;
+          out["command"] = {{"vx_mps", group.command.vx_mps},
+                            {"vy_mps", group.command.vy_mps},
+                            {"wz_radps", group.command.wz_radps}};
+        }
+        out["runs"] = part.runs[p][g].size();
+        for (const Metric& m : metrics()) {
+          const Estimate e = pool(m, part.runs[p][g]);
+          if (e.n == 0) {
+            out[m.key] = Json();
+          } else {
+            out[m.key] = {{"value", e.value}, {"low", e.low}, {"high", e.high}, {"n", e.n}};
+          }
+        }
+        groups.push_back(std::move(out));
+      }
+      policy[part.part.name] = std::move(groups);
+    }
+    j["policies"].push_back(std::move(policy));
+  }
+  return j.dump(1) + "\n";
+}
+
+std::string part_csv(const PartResults& results, const std::vector<std::string>& policies) {
+  std::string text =
+      "policy,ground,scenario,vx_mps,vy_mps,wz_radps,sigma_flat_npm3,sigma_cone_npm3,runs";
+  for (const Metric& m : metrics()) text += fmt::format(",{0},{0}_low,{0}_high", m.key);
+  text += "\n";
+  for (std::size_t g = 0; g < results.part.groups.size(); ++g) {
+    const Group& group = results.part.groups[g];
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      text += fmt::format("{},{},{},{},{},{},{},{},{}", policies[p], group.ground, group.scenario,
+                          group.command.vx_mps, group.command.vy_mps, group.command.wz_radps,
+                          group.sigma_flat_npm3, group.sigma_cone_npm3, results.runs[p][g].size());
+      for (const Metric& m : metrics()) {
+        const Estimate e = pool(m, results.runs[p][g]);
+        text += e.n == 0 ? ",,," : fmt::format(",{:.6g},{:.6g},{:.6g}", e.value, e.low, e.high);
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  const std::string part = path + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file << text;
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(part, path, error);
+  if (!file || error) {
+    std::remove(part.c_str());
+    throw InputError(fmt::format("{}: cannot be written, expected a folder with room", path));
+  }
+}
+
+}  // namespace sandrunner::evaluate

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Results as files: evaluation.json and a CSV a part.
+#pragma once
+
+#include <string>
+
+#include "tools/evaluate/metrics.h"
+#include "tools/evaluate/options.h"
+
+namespace sandrunner::evaluate {
+
+/// Everything: settings, and every figure of every group with its interval.
+std::string results_json(const Results& results, const Options& options);
+
+/// One row a group and policy, columns `key`, `key_low`, `key_high`; empty where there is none.
+std::string part_csv(const PartResults& results, const std::vector<std::string>& policies);
+
+/// Writes beside `path` and renames, so that no half file is left. Throws InputError.
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace sandrunner::evaluate

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sandrunner-evaluate: what a policy is worth. This file wires and reports progress.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "policy/policy_file.h"
+#include "rt/core/errors.h"
+#include "tools/evaluate/files.h"
+#include "tools/evaluate/options.h"
+#include "tools/evaluate/pictures.h"
+#include "tools/evaluate/runner.h"
+#include "tools/evaluate/tables.h"
+
+namespace {
+
+using namespace sandrunner;
+using namespace sandrunner::evaluate;
+
+// Fails now rather than after the runs.
+void prepare_folder(const std::string& dir) {
+  std::error_code error;
+  std::filesystem::create_directories(dir, error);
+  if (error || !std::filesystem::is_directory(dir) || access(dir.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(fmt::format("--out: folder '{}' cannot be written", dir));
+  }
+}
+
+Part make_part(Study& study, const std::string& name) {
+  if (name == "straight") return study.straight();
+  if (name == "grid") return study.grid();
+  if (name == "turn") return study.turn();
+  return study.robust();
+}
+
+std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& part,
+                                                const Policy& policy, const std::string& name,
+                                                const RunnerSettings& settings) {
+  std::vector<Trial> trials;
+  for (const Group& group : part.groups) {
+    trials.insert(trials.end(), group.trials.begin(), group.trials.end());
+  }
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const auto progress = [&](std::size_t done) {
+    fmt::print(stderr, "\r{:<8} {:<20} {:6} of {} runs ", part.name, name, done, trials.size());
+    std::fflush(stderr);
+  };
+  const std::vector<TrialFigures> all =
+      run_trials(study.robot(), study.foot(), policy, trials, settings,
+                 terminal ? progress : std::function<void(std::size_t)>());
+  if (terminal) fmt::print(stderr, "\r{:60}\r", "");
+  std::vector<std::vector<TrialFigures>> groups;
+  auto at = all.begin();
+  for (const Group& group : part.groups) {
+    const auto end = at + static_cast<std::ptrdiff_t>(group.trials.size());
+    groups.emplace_back(at, end);
+    at = end;
+  }
+  return groups;
+}
+
+int run(int argc, char** argv) {
+  const std::optional<Options> options = parse_options(argc, argv);
+  if (!options) return kExitOk;
+  std::vector<Policy> policies = {load_policy(options->policy_path)};
+  if (!options->against_path.empty()) policies.push_back(load_policy(options->against_path));
+  const std::string dir = options->out_dir + "/";
+  const bool out = !options->out_dir.empty();
+  if (out) prepare_folder(options->out_dir);
+
+  Results results;
+  for (const Policy& policy : policies) {
+    const bool taken = !results.policies.empty() && results.policies[0] == policy.spec().name;
+    results.policies.push_back(policy.spec().name + (taken ? " (2)" : ""));
+  }
+  Study study(options->study);
+  RunnerSettings settings;
+  settings.threads = options->threads;
+  settings.torque_speed_line = options->torque_speed_line;
+  for (const std::string& name : options->parts) {
+    PartResults part{make_part(study, name), {}};
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      part.runs.push_back(run_part(study, part.part, policies[p], results.policies[p], settings));
+    }
+    fmt::print("{}\n", tables(part, results.policies));
+    std::fflush(stdout);
+    if (out) {
+      write_text(dir + name + ".csv", part_csv(part, results.policies));
+      draw_part(part, results.policies, options->out_dir);
+    }
+    results.parts.push_back(std::move(part));
+  }
+  if (out) {
+    write_text(dir + "evaluation.json", results_json(results, *options));
+    fmt::print("wrote {0}/evaluation.json, {0}/*.csv, {0}/*.png\n", options->out_dir);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "sandrunner-evaluate: {}\n", error.what());
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sandrunner-evaluate: internal error: {}\n", error.what());
+    return kExitInternal;
+  }
+}

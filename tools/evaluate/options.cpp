@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/evaluate/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
+#include "rt/core/errors.h"
+
+namespace sandrunner::evaluate {
+namespace {
+
+void check(const char* name, long long value, long long low, long long high) {
+  if (value < low || value > high) {
+    throw InputError(fmt::format("{}: {}, expected {} to {}", name, value, low, high));
+  }
+}
+
+}  // namespace
+
+std::optional<Options> parse_options(int argc, const char* const* argv) {
+  Options o;
+  o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const std::vector<std::string> all_parts = o.parts;
+  long long seed = static_cast<long long>(o.study.seed);
+  std::string line = "on";
+  CLI::App app{
+      "Measures what a policy is worth, in simulation; two policies side by side from the "
+      "same seeds."};
+  app.option_defaults()->always_capture_default();
+  app.add_option("--policy", o.policy_path, "policy file")->type_name("FILE")->required();
+  app.add_option("--against", o.against_path, "policy file to compare with")->type_name("FILE");
+  app.add_option("--out", o.out_dir, "folder for evaluation.json, CSV files and pictures")
+      ->type_name("DIR");
+  app.add_option("--threads", o.threads, "worker threads; the results do not depend on them")
+      ->type_name("N");
+  app.add_option("--runs", o.study.runs, "runs of each ground, command and scenario")
+      ->type_name("N");
+  app.add_option("--grid-runs", o.study.grid_runs, "robots in each cell of the stiffness grid")
+      ->type_name("N");
+  app.add_option("--seed", seed, "of starts, noise, pushes and random commands")->type_name("N");
+  app.add_option("--only", o.parts, "some of " + fmt::format("{}", fmt::join(all_parts, ",")))
+      ->delimiter(',')
+      ->type_name("PART,...")
+      ->always_capture_default(false);
+  app.add_option("--torque-speed-line", line, "drives lose torque towards their no-load speed")
+      ->type_name("on|off");
+  app.set_version_flag("--version", std::string("sandrunner-evaluate ") + SANDRUNNER_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {  // --help, --version
+    app.exit(done);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("command line: {}", error.what()));
+  }
+  check("--threads", o.threads, 1, 1024);
+  check("--runs", o.study.runs, 1, 100000);
+  check("--grid-runs", o.study.grid_runs, 1, 100000);
+  check("--seed", seed, 1, 1'000'000'000);
+  o.study.seed = static_cast<std::uint64_t>(seed);
+  for (const std::string& part : o.parts) {
+    if (std::find(all_parts.begin(), all_parts.end(), part) == all_parts.end()) {
+      throw InputError(
+          fmt::format("--only: '{}', expected some of {}", part, fmt::join(all_parts, ", ")));
+    }
+  }
+  std::vector<std::string> chosen;  // in the order of all, each once
+  for (const std::string& part : all_parts) {
+    if (std::find(o.parts.begin(), o.parts.end(), part) != o.parts.end()) chosen.push_back(part);
+  }
+  o.parts = chosen;
+  if (line != "on" && line != "off") {
+    throw InputError(fmt::format("--torque-speed-line: '{}', expected on or off", line));
+  }
+  o.torque_speed_line = line == "on";
+  return o;
+}
+
+}  // namespace sandrunner::evaluate

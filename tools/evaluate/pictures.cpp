@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/evaluate/pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+
+#include "rt/plot.h"
+
+namespace sandrunner::evaluate {
+namespace {
+
+constexpr plot::Color kPolicyColors[] = {{0.05, 0.35, 0.70}, {0.80, 0.40, 0.05}};
+constexpr plot::Color kLightColors[] = {{0.45, 0.65, 0.90}, {0.95, 0.70, 0.45}};
+
+// Grounds in their order, each with the indices of its groups.
+std::vector<std::pair<std::string, std::vector<std::size_t>>> by_ground(const Part& part) {
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> out;
+  for (std::size_t g = 0; g < part.groups.size(); ++g) {
+    if (out.empty() || out.back().first != part.groups[g].ground) {
+      out.push_back({part.groups[g].ground, {}});
+    }
+    out.back().second.push_back(g);
+  }
+  return out;
+}
+
+void draw_speed(const PartResults& results, const std::vector<std::string>& policies,
+                const std::string& path) {
+  plot::Figure figure;
+  figure.title = "Straight run: speed against command";
+  figure.x_label = "commanded speed, m/s";
+  figure.width_px = 1100;
+  figure.panel_height_px = 220;
+  for (const auto& [ground, groups] : by_ground(results.part)) {
+    plot::Panel panel{ground, "m/s", {}, 1e-3};
+    figure.x.clear();
+    for (const std::size_t g : groups) figure.x.push_back(results.part.groups[g].command.vx_mps);
+    panel.series.push_back({"command", plot::kFaintInk, figure.x, false, true});
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      plot::Series track{policies[p] + ", track", kPolicyColors[p], {}};
+      plot::Series top{"top", kLightColors[p], {}};
+      for (const std::size_t g : groups) {
+        track.y.push_back(pool(metric("track_speed_mps"), results.runs[p][g]).value);
+        top.y.push_back(pool(metric("top_speed_mps"), results.runs[p][g]).value);
+      }
+      panel.series.push_back(track);
+      panel.series.push_back(top);
+    }
+    figure.panels.push_back(panel);
+  }
+  figure.views = {{"", figure.x.front(), figure.x.back(), 1.0}};
+  plot::draw(figure, path);
+}
+
+void draw_cost(const PartResults& results, const std::vector<std::string>& policies,
+               const std::string& path) {
+  constexpr double kStep_mps = 0.01, kEnd_mps = 4.5;
+  plot::Figure figure;
+  figure.title = "Straight run: cost of transport against steady speed";
+  figure.x_label = "steady speed, m/s";
+  figure.width_px = 1100;
+  figure.panel_height_px = 220;
+  for (int i = 0; i * kStep_mps <= kEnd_mps; ++i) figure.x.push_back(i * kStep_mps);
+  for (const auto& [ground, groups] : by_ground(results.part)) {
+    plot::Panel panel{ground, "CoT", {}, 1e-3};
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      std::map<double, double> points;
+      for (const std::size_t g : groups) {
+        const Estimate speed = pool(metric("vx_mps"), results.runs[p][g]);
+        const Estimate cot = pool(metric("cot"), results.runs[p][g]);
+        if (cot.n > 0) points[speed.value] = cot.value;
+      }
+      plot::Series line{policies[p], kPolicyColors[p], {}};
+      for (const double x : figure.x) {
+        const auto right = points.lower_bound(x);
+        double y = kNotDefined;
+        if (right != points.end() && right != points.begin()) {
+          const auto left = std::prev(right);
+          y = left->second +
+              (x - left->first) / (right->first - left->first) * (right->second - left->second);
+        }
+        line.y.push_back(y);
+      }
+      panel.series.push_back(line);
+    }
+    figure.panels.push_back(panel);
+  }
+  figure.views = {{"", 0.0, kEnd_mps, 1.0}};
+  plot::draw(figure, path);
+}
+
+// Light yellow (0) over green to dark blue (1), ends after ColorBrewer's YlGnBu.
+plot::Color shade(double share) {
+  constexpr plot::Color kStops[] = {
+      {1.00, 1.00, 0.85}, {0.78, 0.91, 0.71}, {0.25, 0.71, 0.77}, {0.13, 0.37, 0.66}};
+  const double at = 3.0 * std::clamp(share, 0.0, 1.0);
+  const auto i = std::min(static_cast<std::size_t>(at), std::size_t{2});
+  const double t = at - static_cast<double>(i);
+  const auto mix = [&](double a, double b) { return a + t * (b - a); };
+  return {mix(kStops[i].red, kStops[i + 1].red), mix(kStops[i].green, kStops[i + 1].green),
+          mix(kStops[i].blue, kStops[i + 1].blue)};
+}
+
+struct Map {
+  const char* key;
+  const char* title;
+  bool more_is_better;
+};
+
+void draw_map(const plot::Canvas& canvas, double left, double top, const std::string& title,
+              const std::vector<double>& values, double low, double high, const Metric& m,
+              bool more_is_better) {
+  constexpr double kCellWidth_px = 47.0, kCellHeight_px = 26.0;
+  canvas.text(left, top - 10.0, title, 14.0, 0.0, plot::kInk, true);
+  for (int flat = 0; flat < kGridSize; ++flat) {
+    for (int cone = 0; cone < kGridSize; ++cone) {
+      const double value = values[static_cast<std::size_t>(flat * kGridSize + cone)];
+      const double x = left + flat * kCellWidth_px;
+      const double y = top + (kGridSize - 1 - cone) * kCellHeight_px;
+      double share = high > low ? (value - low) / (high - low) : 0.0;
+      if (more_is_better) share = 1.0 - share;
+      canvas.set_color(std::isnan(value) ? plot::Color{0.2, 0.2, 0.2} : shade(share));
+      cairo_rectangle(canvas.cairo(), x, y, kCellWidth_px, kCellHeight_px);
+      cairo_fill(canvas.cairo());
+      if (std::isnan(value)) continue;
+      const plot::Color ink = share > 0.7 ? plot::Color{1.0, 1.0, 1.0} : plot::kInk;
+      canvas.text(x + 0.5 * kCellWidth_px, y + 0.5 * kCellHeight_px + 4.0,
+                  fmt::format("{:.{}f}", value, m.digits), 11.0, 0.5, ink);
+    }
+  }
+  for (int i = 0; i < kGridSize; ++i) {
+    canvas.text(left + (i + 0.5) * kCellWidth_px, top + kGridSize * kCellHeight_px + 15.0,
+                fmt::format("{:.0f}", 1.0 + i), 11.0, 0.5, plot::kFaintInk);
+    canvas.text(left - 6.0, top + (kGridSize - 0.5 - i) * kCellHeight_px + 4.0,
+                fmt::format("{:.2f}", 0.15 + 0.05 * i), 11.0, 1.0, plot::kFaintInk);
+  }
+  canvas.text(left + 0.5 * kGridSize * kCellWidth_px, top + kGridSize * kCellHeight_px + 32.0,
+              "sigma_flat across, sigma_cone up, MN/m\u00b3", 11.0, 0.5, plot::kFaintInk);
+}
+
+void draw_grid(const PartResults& results, const std::vector<std::string>& policies,
+               const std::string& path) {
+  constexpr Map kMaps[] = {{"survival", "survival, %", true},
+                           {"velocity_error_mps", "velocity error, m/s", false},
+                           {"yaw_error_radps", "yaw rate error, rad/s", false},
+                           {"clearance_iqr_m", "foot clearance (IQR), mm", false}};
+  constexpr int kLeft_px = 56, kTop_px = 86, kAcross_px = 560, kDown_px = 350;
+  const auto count = static_cast<int>(policies.size());
+  const plot::Canvas canvas(kLeft_px + kAcross_px * count,
+                            kTop_px + kDown_px * static_cast<int>(std::size(kMaps)));
+  canvas.text(kLeft_px, 32.0, "Stiffness grid", 20.0, 0.0, plot::kInk, true);
+  for (int row = 0; const Map& map : kMaps) {
+    const Metric& m = metric(map.key);
+    std::vector<std::vector<double>> values(policies.size());
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      for (const auto& runs : results.runs[p]) {
+        values[p].push_back(pool(m, runs).value * m.table_scale);
+        low = std::fmin(low, values[p].back());
+        high = std::fmax(high, values[p].back());
+      }
+    }
+    for (int p = 0; p < count; ++p) {
+      draw_map(canvas, kLeft_px + p * kAcross_px, kTop_px + row * kDown_px,
+               fmt::format("{}: {}", policies[p], map.title), values[p], low, high, m,
+               map.more_is_better);
+    }
+    ++row;
+  }
+  canvas.save_png(path);
+}
+
+}  // namespace
+
+void draw_part(const PartResults& results, const std::vector<std::string>& policies,
+               const std::string& dir) {
+  if (results.part.name == "straight") {
+    draw_speed(results, policies, dir + "/straight_speed.png");
+    draw_cost(results, policies, dir + "/straight_cost.png");
+  }
+  if (results.part.name == "grid") draw_grid(results, policies, dir + "/grid.png");
+}
+
+}  // namespace sandrunner::evaluate

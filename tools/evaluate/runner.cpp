@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/evaluate/runner.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "estimator/observation.h"
+#include "rt/core/command_shaping.h"
+#include "rt/core/floating_point.h"
+#include "sim/actuator.h"
+#include "sim/random.h"
+
+namespace sandrunner::evaluate {
+namespace {
+
+enum Stream : std::uint64_t { kNoiseStream = 11, kPushStream = 12 };
+constexpr std::uint64_t kDrawsPerStep = 64;
+
+// Standard deviations of the training's observation noise (tools/train/raibo.toml).
+constexpr double kGravityNoise = 0.03, kRateNoise_radps = 0.1, kPositionNoise_rad = 0.02,
+                 kVelocityNoise_radps = 0.3;
+
+StateEstimate truth_of(const sim::RobotModel<double>& model, const sim::RobotState<float>& state) {
+  const sim::RigidState<float>& x = state.rigid;
+  const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
+  const sim::Vec3<float> v = sim::transposed_times(r, x.velocity);
+  StateEstimate truth;
+  truth.velocity_mps = {v.x, v.y, v.z};
+  float deepest = 0.0f;
+  for (int l = 0; l < kNumLegs; ++l) {
+    if (state.feet[l].active > 0.0f) deepest = std::max(deepest, state.feet[l].memory_depth);
+    const sim::LegPose<double> pose =
+        sim::leg_pose<double>(model.legs[l], x.q[3 * l], x.q[3 * l + 1], x.q[3 * l + 2]);
+    const sim::Vec3<double> foot = sim::hip_to_base(model.legs[l], pose, pose.foot);
+    truth.foot_height_m[l] = x.position.z + r.r2.x * foot.x + r.r2.y * foot.y + r.r2.z * foot.z;
+  }
+  truth.body_height_m = x.position.z + deepest;
+  return truth;
+}
+
+// The robots of one pack from start to end.
+class PackRun {
+ public:
+  PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, Policy& policy,
+          const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count)
+      : robot_(robot),
+        policy_(policy),
+        facts_(facts),
+        trials_(trials),
+        batch_(static_cast<int>(settings.width), foot, sim::StepSettings{}, settings.width),
+        lanes_(static_cast<std::size_t>(count)) {
+    sim::RobotModel<double> model = robot.model;
+    model.torque_limit_nm = facts.torque_limit_nm;
+    const PolicySpec& spec = policy.spec();
+    sim::BatchDrive<float> drive;
+    const sim::TorqueSpeedLine line;
+    drive.kp = static_cast<float>(spec.kp_nmprad);
+    drive.kd = static_cast<float>(spec.kd_nmsprad);
+    drive.stall_torque_nm =
+        settings.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
+    drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+    for (int i = 0; i < batch_.size(); ++i) {
+      // Lanes without a trial of their own idle far above the ground.
+      const Trial& trial = trials_[std::min(i, count - 1)];
+      batch_.set_model(i, sim::convert_model<float>(model));
+      batch_.set_terrain(i, *trial.terrain);
+      batch_.set_state(i, *trial.start);
+      if (i >= count) {
+        park(i);
+        batch_.set_drive(i, drive);
+        continue;
+      }
+      drive.switch_tick = static_cast<float>(trial.latency_ticks);
+      lanes_[i].drive = drive;
+      lanes_[i].target_rad = robot.nominal_rad;
+    }
+  }
+
+  void run(TrialFigures* figures) {
+    int running = static_cast<int>(lanes_.size());
+    for (std::uint64_t step = 0; running > 0; ++step) {
+      for (std::size_t i = 0; i < lanes_.size(); ++i) {
+        if (!lanes_[i].done) act(static_cast<int>(i), step);
+      }
+      batch_.advance(0, kTicksPerPolicyStep);
+      for (std::size_t i = 0; i < lanes_.size(); ++i) {
+        Lane& lane = lanes_[i];
+        if (lane.done) continue;
+        const sim::BatchSums<float> sums = batch_.sums(static_cast<int>(i));
+        lane.recorder.end_period(sums);
+        const bool fell = sums.base_contact > 0.0f || sums.thigh_contact > 0.0f ||
+                          !std::isfinite(sums.torque_squared);
+        if (!fell && !finished(trials_[i], lane.recorder)) continue;
+        figures[i] = lane.recorder.figures(trials_[i], fell, facts_);
+        lane.done = true;
+        lane.recorder = {};
+        park(static_cast<int>(i));
+        --running;
+      }
+    }
+  }
+
+ private:
+  struct Lane {
+    bool done = false;
+    NetworkState memory;
+    JointArray<double> target_rad{};
+    sim::BatchDrive<float> drive;
+    TrialRecorder recorder;
+    bool in_air = false, loosened = false;  // for LooseStep
+  };
+
+  static bool finished(const Trial& trial, const TrialRecorder& recorder) {
+    if (recorder.time_s() < trial.duration_s) return false;
+    if (!trial.has_track() || recorder.time_s() >= trial.longest_s) return true;
+    // One period more, so that the end of the track lies inside of the record.
+    return recorder.distance_m() >= trial.track_end_m + 0.1;
+  }
+
+  // In free fall far from the ground a robot costs the least; 100 km last for over two minutes.
+  void park(int i) {
+    sim::RobotState<float> state;
+    for (int j = 0; j < kNumJoints; ++j) {
+      state.rigid.q[j] = static_cast<float>(robot_.nominal_rad[j]);
+    }
+    state.rigid.position.z = 1e5f;
+    batch_.set_state(i, state);
+  }
+
+  // One policy step of a robot.
+  void act(int i, std::uint64_t step) {
+    Lane& lane = lanes_[i];
+    const Trial& trial = trials_[i];
+    sim::RobotState<float> state = batch_.state(i);
+    if (disturb(trial, step, lane, state)) batch_.set_state(i, state);
+    VelocityCommand command = trial.command.at(static_cast<double>(step) / kPolicyHz);
+    command.wz_radps = shape_yaw_rate(command.wz_radps, command.vx_mps, command.vy_mps,
+                                      policy_.spec().yaw_command_clip_mps2);
+    policy_.set_state(lane.memory);
+    const PolicyStep answer = policy_.step(observe(trial, step, command, state));
+    lane.memory = policy_.state();
+    lane.recorder.begin_period(state, truth_of(robot_.model, state), answer.estimate, command,
+                               lane.target_rad, answer.target_rad, policy_.spec().kp_nmprad,
+                               policy_.spec().kd_nmsprad, facts_);
+    for (int j = 0; j < kNumJoints; ++j) {
+      lane.drive.target_before[j] = static_cast<float>(lane.target_rad[j]);
+      lane.drive.target[j] = static_cast<float>(answer.target_rad[j]);
+    }
+    lane.target_rad = answer.target_rad;
+    batch_.set_drive(i, lane.drive);
+  }
+
+  std::array<float, kObservationSize> observe(const Trial& trial, std::uint64_t step,
+                                              const VelocityCommand& command,
+                                              const sim::RobotState<float>& state) const {
+    const sim::RigidState<float>& x = state.rigid;
+    const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
+    std::array<float, 3> up{r.r2.x, r.r2.y, r.r2.z};
+    std::array<float, 3> rate{x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
+    JointArray<float> q = x.q, qd = x.qd;
+    if (trial.noise_scale > 0.0) {
+      std::uint64_t counter = step * kDrawsPerStep;
+      const auto noise = [&](double sigma) {
+        return static_cast<float>(trial.noise_scale * sigma *
+                                  sim::random_normal(trial.seed, kNoiseStream, counter++));
+      };
+      for (float& u : up) u += noise(kGravityNoise);
+      const float length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
+      for (float& u : up) u /= length;
+      for (float& w : rate) w += noise(kRateNoise_radps);
+      for (float& v : q) v += noise(kPositionNoise_rad);
+      for (float& v : qd) v += noise(kVelocityNoise_radps);
+    }
+    return make_observation<float>(
+        {static_cast<float>(command.vx_mps), static_cast<float>(command.vy_mps),
+         static_cast<float>(command.wz_radps)},
+        up, rate, q, qd);
+  }
+
+  // Pushes and the loose step. True if the state changed.
+  static bool disturb(const Trial& trial, std::uint64_t step, Lane& lane,
+                      sim::RobotState<float>& state) {
+    bool changed = false;
+    if (trial.push_speed_mps > 0.0 && step > 0 && step % kPolicyHz == 0) {
+      // A direction without sine and cosine: the first of a few points that lies in the unit disc.
+      double x = 1.0, y = 0.0;
+      for (std::uint64_t draw = 0; draw < kDrawsPerStep; draw += 2) {
+        const std::uint64_t counter = step * kDrawsPerStep + draw;
+        x = 2.0 * sim::random_uniform(trial.seed, kPushStream, counter) - 1.0;
+        y = 2.0 * sim::random_uniform(trial.seed, kPushStream, counter + 1) - 1.0;
+        const double square = x * x + y * y;
+        if (square <= 1.0 && square > 1e-4) break;
+      }
+      const double scale = trial.push_speed_mps / std::sqrt(x * x + y * y);
+      state.rigid.velocity.x += static_cast<float>(scale * x);
+      state.rigid.velocity.y += static_cast<float>(scale * y);
+      changed = true;
+    }
+    if (trial.loose_step.from_m > 0.0) changed = loosen(trial, lane, state) || changed;
+    return changed;
+  }
+
+  // Moves the foot to the loose patch when its turn has come.
+  static bool loosen(const Trial& trial, Lane& lane, sim::RobotState<float>& state) {
+    sim::FootContact<float>& contact = state.feet[trial.loose_step.leg];
+    const bool was_in_air = lane.in_air;
+    lane.in_air = contact.active == 0.0f;
+    if (lane.loosened || !was_in_air || lane.in_air ||
+        lane.recorder.distance_m() < trial.loose_step.from_m) {
+      return false;
+    }
+    contact.region = 1.0f;
+    lane.loosened = true;
+    return true;
+  }
+
+  const sim::Robot& robot_;
+  Policy& policy_;
+  const RobotFacts& facts_;
+  const Trial* trials_;
+  sim::Batch batch_;
+  std::vector<Lane> lanes_;
+};
+
+}  // namespace
+
+RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
+  RobotFacts facts;
+  facts.mass_kg = robot.model.mass();
+  facts.torque_limit_nm = robot.model.torque_limit_nm;
+  if (policy.torque_limit_nm > 0.0) {
+    for (double& limit : facts.torque_limit_nm) limit = std::min(limit, policy.torque_limit_nm);
+  }
+  const auto foot = [&](int l) {
+    const JointArray<double>& q = robot.nominal_rad;
+    const sim::LegModel<double>& leg = robot.model.legs[l];
+    const auto pose = sim::leg_pose<double>(leg, q[3 * l], q[3 * l + 1], q[3 * l + 2]);
+    return sim::hip_to_base(leg, pose, pose.foot);
+  };
+  const sim::Vec3<double> diagonal = foot(0) - foot(3);
+  facts.foot_diagonal_m = std::sqrt(dot(diagonal, diagonal));
+  return facts;
+}
+
+std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootProfile<double>& foot,
+                                     const Policy& policy, const std::vector<Trial>& trials,
+                                     const RunnerSettings& settings,
+                                     const std::function<void(std::size_t)>& progress) {
+  const auto width = static_cast<std::size_t>(settings.width);
+  const RobotFacts facts = robot_facts(robot, policy.spec());
+  std::vector<TrialFigures> figures(trials.size());
+  std::atomic<std::size_t> next{0};
+  std::size_t done = 0;
+  std::mutex mutex;  // of `done`, `error` and the call of `progress`
+  std::exception_ptr error;
+  const auto work = [&] {
+    flush_denormals_to_zero();
+    try {
+      Policy own = policy;  // shares the weights
+      while (true) {
+        const std::size_t first = next.fetch_add(width);
+        if (first >= trials.size()) return;
+        const std::size_t count = std::min(width, trials.size() - first);
+        PackRun(robot, foot, own, settings, facts, trials.data() + first, static_cast<int>(count))
+            .run(figures.data() + first);
+        const std::lock_guard lock(mutex);
+        done += count;
+        if (progress) progress(done);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!error) error = std::current_exception();
+      next = trials.size();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int t = 0; t < settings.threads; ++t) threads.emplace_back(work);
+  for (std::thread& thread : threads) thread.join();
+  if (error) std::rethrow_exception(error);
+  return figures;
+}
+
+}  // namespace sandrunner::evaluate

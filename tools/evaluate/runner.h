@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs trials of a policy on the batch: observation, network and joint targets at 100 Hz, robots at
+// 4 kHz in packs.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "policy/policy.h"
+#include "sim/robot_model.h"
+#include "tools/evaluate/trial.h"
+#include "tools/evaluate/trial_figures.h"
+
+namespace sandrunner::evaluate {
+
+struct RunnerSettings {
+  int threads = 1;
+  bool torque_speed_line = true;
+  /// Packs of robots; the results have the same bits at every width.
+  sim::BatchWidth width = sim::best_batch_width();
+};
+
+/// Figures of each trial, in their order; the same bits for any number of threads. `progress`, if
+/// any, is called with the number of trials done so far, by one thread at a time.
+std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootProfile<double>& foot,
+                                     const Policy& policy, const std::vector<Trial>& trials,
+                                     const RunnerSettings& settings,
+                                     const std::function<void(std::size_t done)>& progress = {});
+
+/// Facts of the robot that figures need. `policy` may limit the torque further.
+RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy);
+
+}  // namespace sandrunner::evaluate

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/evaluate/study.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "sim/simulator.h"
+
+namespace sandrunner::evaluate {
+namespace {
+
+sim::RigidState<float> in_float(const sim::RigidState<double>& from) {
+  const auto number = [](double v) { return static_cast<float>(v); };
+  const auto vec = [&](const sim::Vec3<double>& v) {
+    return sim::Vec3<float>{number(v.x), number(v.y), number(v.z)};
+  };
+  sim::RigidState<float> to;
+  to.position = vec(from.position);
+  to.velocity = vec(from.velocity);
+  to.angular_velocity = vec(from.angular_velocity);
+  to.orientation = {number(from.orientation.w), number(from.orientation.x),
+                    number(from.orientation.y), number(from.orientation.z)};
+  for (int j = 0; j < kNumJoints; ++j) {
+    to.q[j] = number(from.q[j]);
+    to.qd[j] = number(from.qd[j]);
+  }
+  return to;
+}
+
+}  // namespace
+
+Study::Study(const StudySettings& settings)
+    : settings_(settings),
+      robot_(sim::load_raibo()),
+      foot_(sim::make_foot_profile(preset("dry-sand"), robot_.model)) {
+  // All grounds are level, so a start serves for all of them. The simulator makes it, so that there
+  // is one definition.
+  sim::SimulatorConfig config;
+  config.terrain = preset("rigid");
+  for (int run = 0; run < std::max(settings.runs, settings.grid_runs); ++run) {
+    config.seed = run == 0 ? 0 : run_seed(run);
+    sim::RobotState<float> start;
+    start.rigid = in_float(sim::Simulator(robot_, config).state().robot.rigid);
+    starts_.push_back(start);
+  }
+}
+
+std::uint64_t Study::run_seed(int run) const noexcept {
+  return (settings_.seed - 1) * 1'000'000 + static_cast<std::uint64_t>(run);
+}
+
+sim::TerrainDescription Study::preset(const std::string& name) {
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, name);
+  return sim::read_terrain(tree);
+}
+
+const sim::Terrain<float>* Study::add(const sim::TerrainDescription& terrain) {
+  terrains_.push_back(sim::convert_terrain<float>(sim::make_terrain(terrain, foot_, robot_.model)));
+  return &terrains_.back();
+}
+
+Group Study::group(const std::string& ground, const std::string& scenario,
+                   const Trial& like) const {
+  Group g;
+  g.ground = ground;
+  g.scenario = scenario;
+  g.command = like.command.target;
+  for (int run = 0; run < settings_.runs; ++run) {
+    Trial trial = like;
+    trial.start = &start(run);
+    trial.seed = run_seed(run);
+    g.trials.push_back(trial);
+  }
+  return g;
+}
+
+}  // namespace sandrunner::evaluate
