@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const InputError& error) {
-    fmt::print(stderr, "sandrunner: {}\n", error.what());
+    fmt::print(stderr, "sandrunner: {}\n", one_line(error.what()));
     return kExitBadInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "sandrunner: internal error: {}\n", error.what());

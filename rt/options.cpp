@@ -35,6 +35,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
          "stand: lies, stands up, walks, stands again; walk: walks at once from the nominal pose")
       ->check(CLI::IsMember({"stand", "walk"}));
   app.add_option("--seed", o.seed, "0: exactly the nominal start; above 0: a disturbed one")
+      ->check(CLI::Range(0.0, 9e15))
       ->type_name("N");
   app.add_option("--config", o.config_files,
                  "TOML file with settings; may be repeated, later ones win")

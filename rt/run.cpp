@@ -125,7 +125,8 @@ RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const Comman
     }
   }
   const auto fail = [&](const std::string& reason) {
-    if (!result.survived) return;
+    // Who interrupts a run lets the robot down: what it touches then is no fall.
+    if (!result.survived || result.interrupted) return;
     result.survived = false;
     result.fall_reason = reason;
     result.fall_time_s = op.walked_s();

@@ -71,13 +71,6 @@ constexpr std::string_view kBareWordCharacters =
 /// Letters, digits, _, - and the dot.
 constexpr std::string_view kPathCharacters = kBareWordCharacters.substr(0, 26 + 26 + 10 + 3);
 
-/// Errors are one line whatever stands in the input.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return text;
-}
-
 std::string toml_text(const std::string& value) {
   std::ostringstream out;
   out << toml::toml_formatter{toml::value<std::string>{value},

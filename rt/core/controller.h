@@ -43,7 +43,7 @@ struct StandConfig {
   double fold_s = 1.0;
   double extend_s = 1.5;
   double skip_fold_rad = 0.3;    ///< no folding if all joints are nearer than this to nominal
-  double blend_s = 1.5;          ///< from the posture in Walk to that of Stand
+  double blend_s = 0.5;          ///< from the posture in Walk to that of Stand
   double max_speed_radps = 4.0;  ///< of the targets: a longer way takes longer than the times above
 };
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace sandrunner {
 
@@ -12,6 +14,14 @@ class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// An error message as the one line that a program prints: names given by the user may hold line
+/// breaks.
+inline std::string one_line(std::string message) {
+  std::replace_if(
+      message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return message;
+}
 
 /// Exit codes of all programs.
 inline constexpr int kExitOk = 0;

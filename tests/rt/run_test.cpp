@@ -195,26 +195,38 @@ class PublishedNetworkTest : public testing::Test {
     ASSERT_EQ(std::system(import.c_str()), 0);
     policy_.emplace(load_policy(path));
   }
-  RunResult walk(const std::string& terrain, const std::string& command, double walk_s) {
+  RunResult run(const std::string& terrain, const std::string& command, const RunPlan& plan,
+                std::uint64_t seed = 0) {
     const std::atomic<bool> interrupt{false};
-    return run_lockstep(config_of(terrain, {}, &policy_->spec()), &*policy_, CommandSource(command),
-                        {.walk_s = walk_s, .start_walking = true}, false, interrupt, {});
+    ProcessConfig config = config_of(terrain, {}, &policy_->spec());
+    config.simulator.seed = seed;
+    return run_lockstep(config, &*policy_, CommandSource(command), plan, false, interrupt, {});
   }
   std::optional<Policy> policy_;
 };
 
 // The figures are those of an independent simulator.
 TEST_F(PublishedNetworkTest, WalksOnRigidGround) {
-  const RunResult result = walk("rigid", "1,0,0", 4.0);
+  const RunResult result = run("rigid", "1,0,0", {.walk_s = 4.0, .start_walking = true});
   EXPECT_TRUE(result.survived) << result.fall_reason;
   EXPECT_NEAR(result.figures.mean_velocity_mps[0], 0.974, 0.05 * 0.974);
 }
 
 TEST_F(PublishedNetworkTest, RunsOnDrySand) {
-  const RunResult result = walk("dry-sand", "2,0,0", 10.0);
+  const RunResult result = run("dry-sand", "2,0,0", {.walk_s = 10.0, .start_walking = true});
   EXPECT_TRUE(result.survived) << result.fall_reason;
   EXPECT_NEAR(result.figures.mean_velocity_mps[0], 1.481, 0.05 * 1.481);
   EXPECT_NEAR(1e3 * result.figures.sinkage_mean_m, 99.6, 0.1 * 99.6);
+}
+
+// At zero command this network trots on the spot, so that Stand takes over with two feet in the
+// air.
+TEST_F(PublishedNetworkTest, StandsAgainAfterTheWalk) {
+  for (const std::uint64_t seed : {0u, 7u, 11u, 15u}) {
+    const RunResult result = run("rigid", "1.5,0,0", {.walk_s = 6.0}, seed);
+    EXPECT_TRUE(result.survived) << result.fall_reason << " with seed " << seed;
+    EXPECT_EQ(result.walked_s, 6.0);
+  }
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   try {
     return sandrunner::run(argc, argv);
   } catch (const sandrunner::InputError& error) {
-    fmt::print(stderr, "sandrunner-bench: {}\n", error.what());
+    fmt::print(stderr, "sandrunner-bench: {}\n", sandrunner::one_line(error.what()));
     return sandrunner::kExitBadInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "sandrunner-bench: internal error: {}\n", error.what());

@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const InputError& error) {
-    fmt::print(stderr, "sandrunner-evaluate: {}\n", error.what());
+    fmt::print(stderr, "sandrunner-evaluate: {}\n", sandrunner::one_line(error.what()));
     return kExitBadInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "sandrunner-evaluate: internal error: {}\n", error.what());

@@ -312,7 +312,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const InputError& error) {
-    fmt::print(stderr, "sandrunner-train: {}\n", error.what());
+    fmt::print(stderr, "sandrunner-train: {}\n", one_line(error.what()));
     return kExitBadInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "sandrunner-train: internal error: {}\n", error.what());

@@ -120,30 +120,46 @@ TEST(ControllerTest, DoesNotFoldWhenNearlyStanding) {
   EXPECT_GT(nearest_to_fold_rad, 0.5);
 }
 
-TEST(ControllerTest, StopWalksOnAtZeroCommandThenStands) {
+TEST(ControllerTest, StopSlowsDownWaitsForRestThenStands) {
   FakeLoop loop;
   loop.reach(Mode::kWalk);
   EXPECT_EQ(loop.output.policy_input.command.vx_mps, 1.0);
   loop.request(ModeRequest::kStand);
-  for (std::uint64_t n = 0; n < ticks_from_s(1.5); ++n) {
+  // 1 m/s at 1 m/s^2, then 0.25 s at rest.
+  double before_mps = 1.0;
+  for (std::uint64_t n = 0; n < ticks_from_s(1.24); ++n) {
     ASSERT_EQ(loop.output.mode, Mode::kWalk);
-    ASSERT_EQ(loop.output.policy_input.command.vx_mps, 0.0);
+    const double now_mps = loop.output.policy_input.command.vx_mps;
+    ASSERT_NEAR(now_mps, std::max(before_mps - 0.25e-3, 0.0), 1e-9);
+    before_mps = now_mps;
     loop.tick();
   }
+  loop.run_s(0.02);
   EXPECT_EQ(loop.output.mode, Mode::kStand);
   loop.run_s(0.51);
   EXPECT_EQ(loop.output.command.joints().position_rad, loop.config.stand.nominal_rad);
 }
 
+TEST(ControllerTest, StopEndsAfterItsLongestWaitIfTheRobotNeverRests) {
+  FakeLoop loop;
+  loop.reach(Mode::kWalk);
+  loop.spoil = [&](ControllerInput& seen) { seen.sensors.joints.velocity_radps[7] = 1.5; };
+  loop.request(ModeRequest::kStand);
+  loop.run_s(1.0 + 2.98);
+  EXPECT_EQ(loop.output.mode, Mode::kWalk);
+  loop.run_s(0.04);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+}
+
 TEST(ControllerTest, StopWaitsForTheSlewToReachZero) {
   ControllerConfig config;
-  config.shaping.acceleration_limit_mps2 = 2.0;
+  config.shaping.acceleration_limit_mps2 = 0.5;  // slower than the stop's own
   FakeLoop loop(Mode::kPassive, config);
   loop.reach(Mode::kWalk);
-  loop.run_s(1.0);
+  loop.run_s(2.0);
   EXPECT_EQ(loop.output.policy_input.command.vx_mps, 1.0);
   loop.request(ModeRequest::kStand);
-  loop.run_s(0.5 + 1.49);
+  loop.run_s(2.0 + 0.24);
   EXPECT_EQ(loop.output.mode, Mode::kWalk);
   loop.run_s(0.02);
   EXPECT_EQ(loop.output.mode, Mode::kStand);

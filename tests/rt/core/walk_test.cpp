@@ -211,8 +211,13 @@ TEST(WalkTest, RobotStopsWhenItsOperatorIsLost) {
     loop.tick();
     ASSERT_EQ(loop.output.policy_input.command.vx_mps, 1.0);
   }
-  loop.tick();
-  EXPECT_EQ(loop.output.policy_input.command.vx_mps, 0.0);
+  // It slows down as in a stop: 1 m/s at 1 m/s^2.
+  for (int n = 0; n < 4000; ++n) {
+    const double before_mps = loop.output.policy_input.command.vx_mps;
+    loop.tick();
+    ASSERT_NEAR(loop.output.policy_input.command.vx_mps, std::max(before_mps - 0.25e-3, 0.0), 1e-9);
+  }
+  EXPECT_NEAR(loop.output.policy_input.command.vx_mps, 0.0, 1e-9);
   EXPECT_EQ(loop.output.mode, Mode::kWalk);
   loop.input.command.tick = loop.robot.now.tick;
   loop.tick();
