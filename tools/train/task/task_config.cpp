@@ -34,7 +34,7 @@ TrainConfig read_train_config(ConfigTree& config) {
 
   number("run.transitions", c.run.transitions, 1.0, 1e13);
   integer("run.envs", c.run.envs, 1, 1 << 20);
-  number("run.checkpoint_interval_s", c.run.checkpoint_interval_s, 1.0, 1e6);
+  number("run.checkpoint_interval_s", c.run.checkpoint_interval_s, 0.0, 1e6);
 
   learner::LearnerConfig& l = c.learner;
   integer("learner.window", c.window, 1, 4096);

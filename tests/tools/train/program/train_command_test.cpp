@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program sandrunner-train, run as a user runs it, on a training of a few seconds.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+
+#include "policy/policy_file.h"
+#include "tests/policy/temporary_folder.h"
+
+namespace sandrunner {
+namespace {
+
+// 64 robots, 25 windows of 8 steps, a checkpoint as often as there can be one.
+const std::vector<std::string> kShort = {"--set", "run.envs=64",
+                                         "--set", "run.transitions=12800",
+                                         "--set", "learner.window=8",
+                                         "--set", "learner.minibatches=1",
+                                         "--set", "run.checkpoint_interval_s=0.05"};
+
+class TrainCommandTest : public testing::Test {
+ protected:
+  /// Starts the program on the short training; returns its process.
+  pid_t start(const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> words = {SANDRUNNER_TRAIN_PROGRAM, "--out", folder_.path(out)};
+    words.insert(words.end(), kShort.begin(), kShort.end());
+    words.insert(words.end(), more.begin(), more.end());
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      if (!std::freopen(folder_.path("out.txt").c_str(), "a", stdout) ||
+          !std::freopen(folder_.path("err.txt").c_str(), "w", stderr)) {
+        ::_exit(9);
+      }
+      ::execv(arguments[0], arguments.data());
+      ::_exit(9);
+    }
+    return child;
+  }
+  static int wait_for(pid_t child) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  int run(const std::string& out, const std::vector<std::string>& more) {
+    return wait_for(start(out, more));
+  }
+  PolicyFile policy(const std::string& out) const {
+    return read_policy_file(folder_.path(out) + "/policy.safetensors");
+  }
+  void expect_same_weights(const PolicyFile& a, const PolicyFile& b) const {
+    EXPECT_EQ(a.parameters.encoder_weight_ih, b.parameters.encoder_weight_ih);
+    EXPECT_EQ(a.parameters.encoder_weight_hh, b.parameters.encoder_weight_hh);
+    EXPECT_EQ(a.parameters.encoder_bias_ih, b.parameters.encoder_bias_ih);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(a.parameters.estimator[i].weight, b.parameters.estimator[i].weight);
+      EXPECT_EQ(a.parameters.actor[i].weight, b.parameters.actor[i].weight);
+      EXPECT_EQ(a.parameters.actor[i].bias, b.parameters.actor[i].bias);
+    }
+  }
+  void expect_refused(const std::string& out, const std::vector<std::string>& more,
+                      const std::string& named) {
+    EXPECT_EQ(run(out, more), 2) << named;
+    const std::string error = read_file(folder_.path("err.txt"));
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_NE(error.find(named), std::string::npos) << error;
+  }
+  const TemporaryFolder folder_;
+};
+
+TEST_F(TrainCommandTest, FiveKillsAndResumesEndInTheWeightsOfAnUninterruptedRun) {
+  ASSERT_EQ(run("whole", {"--threads", "1"}), 0);
+  for (int kill = 0; kill < 5; ++kill) {
+    const bool begun = std::filesystem::exists(folder_.path("killed") + "/checkpoint.bin");
+    const pid_t child =
+        start("killed", begun ? std::vector<std::string>{"--threads", "1", "--resume"}
+                              : std::vector<std::string>{"--threads", "1"});
+    ::usleep(150'000 + 70'000 * static_cast<unsigned>(kill));
+    ::kill(child, SIGKILL);
+    wait_for(child);
+  }
+  ASSERT_TRUE(std::filesystem::exists(folder_.path("killed") + "/checkpoint.bin"));
+  ASSERT_EQ(run("killed", {"--threads", "1", "--resume"}), 0);
+  expect_same_weights(policy("whole"), policy("killed"));
+}
+
+TEST_F(TrainCommandTest, WeightsDoNotDependOnTheNumberOfThreads) {
+  const std::vector<std::string> two_blocks = {"--set", "run.envs=128"};
+  auto with = [&](const char* threads) {
+    std::vector<std::string> more = two_blocks;
+    more.insert(more.end(), {"--threads", threads});
+    return more;
+  };
+  ASSERT_EQ(run("one", with("1")), 0);
+  ASSERT_EQ(run("two", with("2")), 0);
+  expect_same_weights(policy("one"), policy("two"));
+}
+
+TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
+  expect_refused("a", {"--set", "reward.torqe=1"}, "reward.torqe");
+  expect_refused("a", {"--set", "learner.gamma=1.5"}, "learner.gamma");
+  expect_refused("a", {"--set", "ground.friction_low=2", "--set", "ground.friction_high=1"},
+                 "ground.friction_low");
+  expect_refused("a", {"--set", "run.envs=100"}, "run.envs");
+  expect_refused("a", {"--config", folder_.path("absent.toml")}, "absent.toml");
+  expect_refused("a", {"--resume"}, "checkpoint.bin");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("a") + "/policy.safetensors"));
+}
+
+TEST_F(TrainCommandTest, ForeignAndTruncatedCheckpointsAreRefusedAndLeftAlone) {
+  ASSERT_EQ(run("b", {"--set", "run.transitions=600"}), 0);
+  const std::string path = folder_.path("b") + "/checkpoint.bin";
+  const std::string good = read_file(path);
+  expect_refused("b", {}, "holds a training");
+  expect_refused("b", {"--resume"}, "another config or seed");  // other transitions
+  write_file(path, good.substr(0, good.size() / 2));
+  expect_refused("b", {"--resume", "--set", "run.transitions=600"}, "checkpoint.bin");
+  EXPECT_EQ(read_file(path).size(), good.size() / 2);
+}
+
+}  // namespace
+}  // namespace sandrunner
