@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot's trajectory in the batch has the same bits at every width, in any lane, beside any
+// neighbours and from any number of threads; and it is that of the simulator in double, to the
+// precision of float.
+#include "sim/batch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "rt/core/floating_point.h"
+#include "rt/core/state_hash.h"
+#include "sim/actuator.h"
+#include "tests/sim/support.h"
+
+namespace sandrunner::sim {
+namespace {
+
+constexpr int kRobots = 64;
+constexpr int kPeriods = 50;  // of 40 ticks: 2,000 ticks
+constexpr std::uint64_t kTargetStream = 1000;
+
+enum Kind { kSand, kFlatRock, kRoughRock, kSpring, kPatches, kNumKinds };
+
+const Robot& raibo() {
+  static const Robot robot = load_raibo();
+  return robot;
+}
+const FootProfile<double>& foot() {
+  static const FootProfile<double> profile =
+      make_foot_profile(one_patch(ground_of_kind(GroundKind::kGranular)), raibo().model);
+  return profile;
+}
+
+GroundParameters random_ground(Draw& draw, Kind kind) {
+  GroundParameters g;
+  g.friction = draw(0.4, 1.1);
+  g.kind = kind == kSand     ? GroundKind::kGranular
+           : kind == kSpring ? GroundKind::kLinear
+                             : GroundKind::kRigid;
+  g.sigma_flat_npm3 = draw(1e6, 1e7);
+  g.sigma_cone_npm3 = draw(0.15e6, 0.6e6);
+  g.recruitment = draw(1.5, 2.5);
+  g.stroke_stiffness_npm = draw(50.0, 2000.0);
+  g.stiffness_npm = draw(5e3, 30e3);
+  if (kind == kRoughRock) {
+    g.roughness_m = draw(0.005, 0.03);
+    g.roughness_seed = static_cast<std::uint64_t>(draw(1.0, 1e6));
+  }
+  return g;
+}
+
+Terrain<float> random_terrain(Draw& draw, Kind kind) {
+  TerrainDescription t = one_patch(random_ground(draw, kind == kPatches ? kSand : kind));
+  if (kind == kPatches) {
+    // Borders under and just beside the robot, so that its feet stand on different patches.
+    double from_x_m = -0.4;
+    for (const Kind next : {kFlatRock, kSand, kSpring, kRoughRock}) {
+      from_x_m += draw(0.1, 0.3);
+      t.patches.push_back({from_x_m, random_ground(draw, next)});
+    }
+  }
+  return convert_terrain<float>(make_terrain(t, foot(), raibo().model));
+}
+
+RobotModel<float> random_model(Draw& draw) {
+  RobotModel<double> m = raibo().model;
+  const auto scale = [&](Body<double>& body) {
+    const double f = draw(0.8, 1.2);
+    body.mass *= f;
+    body.inertia = {f * body.inertia.xx, f * body.inertia.xy, f * body.inertia.xz,
+                    f * body.inertia.yy, f * body.inertia.yz, f * body.inertia.zz};
+    body.com = body.com + draw.vector(0.01);
+  };
+  scale(m.base);
+  for (auto& leg : m.legs) {
+    scale(leg.hip);
+    scale(leg.thigh);
+    scale(leg.shank);
+    leg.foot = leg.foot + draw.vector(0.01);
+  }
+  return convert_model<float>(m);
+}
+
+RobotState<float> random_start(Draw& draw) {
+  RobotState<double> x;
+  x.rigid.position = {draw(-0.3, 0.3), draw(-0.3, 0.3), raibo().nominal_height_m + draw(0.0, 0.1)};
+  x.rigid.orientation = integrate(Quaternion<double>{}, draw.vector(0.2));
+  x.rigid.velocity = draw.vector(1.0);
+  x.rigid.angular_velocity = draw.vector(1.0);
+  for (int j = 0; j < kNumJoints; ++j) {
+    x.rigid.q[j] = raibo().nominal_rad[j] + draw(-0.3, 0.3);
+    x.rigid.qd[j] = draw(-2.0, 2.0);
+  }
+  RobotState<float> state;
+  state.rigid = convert<float>(x.rigid);
+  return state;
+}
+
+/// What happens to one robot: all of it follows from its number.
+struct Story {
+  explicit Story(int number) : draw(static_cast<std::uint64_t>(number) + 1) {
+    kind = static_cast<Kind>(number % kNumKinds);
+    model = random_model(draw);
+    terrain = random_terrain(draw, kind);
+    start = random_start(draw);
+    later_terrain = random_terrain(draw, static_cast<Kind>((number / kNumKinds) % kNumKinds));
+    terrain_changes = static_cast<int>(draw(5.0, 45.0));
+    reset = static_cast<int>(draw(5.0, 45.0));
+    rate_hz = draw(1.5, 3.0);
+    lift_rad = draw(0.0, 0.6);
+    noise_rad = draw(0.0, 0.2);
+    drive.kp = static_cast<float>(draw(40.0, 120.0));
+    drive.kd = static_cast<float>(draw(0.3, 3.0));
+    drive.torque_scale = static_cast<float>(draw(0.9, 1.1));
+    drive.switch_tick = std::floor(static_cast<float>(draw(0.0, 40.0)));
+    const TorqueSpeedLine line;
+    drive.stall_torque_nm = number % 3 ? static_cast<float>(line.stall_torque_nm) : 0.0f;
+    drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+    drive.target_before = drive.target = start.rigid.q;
+  }
+
+  /// Before a period: noisy targets of a trot, and what befalls it.
+  void act(int period, Batch& batch, int place) {
+    if (period == 0) {
+      batch.set_model(place, model);
+      batch.set_terrain(place, terrain);
+    }
+    if (period == 0 || period == reset) batch.set_state(place, start);
+    if (period == terrain_changes) batch.set_terrain(place, later_terrain);
+    drive.target_before = drive.target;
+    for (int l = 0; l < kNumLegs; ++l) {
+      const double phase = rate_hz * period / kPolicyHz + (l == 0 || l == 3 ? 0.0 : 0.5);
+      const double lift = phase - std::floor(phase) < 0.5 ? lift_rad : 0.0;
+      const double offset[3] = {0.0, lift, -2.0 * lift};
+      for (int j = 0; j < 3; ++j) {
+        const double target =
+            raibo().nominal_rad[3 * l + j] + offset[j] + draw(-noise_rad, noise_rad);
+        drive.target[3 * l + j] = static_cast<float>(target);
+      }
+    }
+    batch.set_drive(place, drive);
+  }
+
+  Draw draw;
+  Kind kind;
+  RobotModel<float> model;
+  Terrain<float> terrain, later_terrain;
+  RobotState<float> start;
+  BatchDrive<float> drive;
+  int terrain_changes, reset;
+  double rate_hz, lift_rad, noise_rad;
+};
+
+/// Hashes of everything of each robot after every period, by its number.
+using Hashes = std::vector<std::uint64_t>;
+
+/// Robot `order[i]` at place i, the packs shared out to the threads in turn.
+Hashes run(const std::vector<int>& order, BatchWidth width, int threads = 1) {
+  flush_denormals_to_zero();
+  Batch batch(static_cast<int>(order.size()), foot(), {}, width);
+  std::vector<Story> stories;
+  for (const int number : order) stories.emplace_back(number);
+  std::vector<StateHash> hashes(order.size());
+  for (int period = 0; period < kPeriods; ++period) {
+    for (int i = 0; i < batch.size(); ++i) stories[i].act(period, batch, i);
+    const auto work = [&](int worker) {
+      flush_denormals_to_zero();
+      for (int p = worker; p < batch.packs(); p += threads) batch.advance(p, kTicksPerPolicyStep);
+    };
+    std::vector<std::thread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(work, t);
+    work(0);
+    for (std::thread& other : others) other.join();
+    for (int i = 0; i < batch.size(); ++i) {
+      using Words = std::array<std::uint32_t, sizeof(BatchRobot<float>) / sizeof(float)>;
+      for (const std::uint32_t word : std::bit_cast<Words>(batch.robot(i))) {
+        hashes[i].add(std::uint64_t{word});
+      }
+    }
+  }
+  Hashes by_number(kRobots);
+  for (std::size_t i = 0; i < order.size(); ++i) by_number[order[i]] = hashes[i].value();
+  return by_number;
+}
+
+std::vector<int> in_order() {
+  std::vector<int> order(kRobots);
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+std::vector<int> shuffled(std::uint64_t seed) {
+  std::vector<int> order = in_order();
+  Draw draw(seed);
+  for (int i = kRobots - 1; i > 0; --i) {
+    std::swap(order[i], order[static_cast<int>(draw(0.0, i + 1.0))]);
+  }
+  return order;
+}
+
+/// Alone, one after the other: what all other runs are held against.
+const Hashes& alone() {
+  static const Hashes hashes = run(in_order(), BatchWidth::kOne);
+  return hashes;
+}
+
+/// Numbers of the robots whose trajectories are not those that they have alone.
+std::vector<int> different(const Hashes& hashes) {
+  std::vector<int> numbers;
+  for (int i = 0; i < kRobots; ++i) {
+    if (hashes[i] != alone()[i]) numbers.push_back(i);
+  }
+  return numbers;
+}
+const std::vector<int> kNone;
+
+/// The widths beside 1 that this processor runs.
+std::vector<BatchWidth> pack_widths() {
+  if (best_batch_width() == BatchWidth::kSixteen) {
+    return {BatchWidth::kEight, BatchWidth::kSixteen};
+  }
+  std::cout << "width 16 is left out: this processor has no AVX-512\n";
+  return {BatchWidth::kEight};
+}
+
+TEST(BatchTest, RobotsGoThroughAllThatTheyShould) {
+  // Otherwise the comparisons below would compare little.
+  flush_denormals_to_zero();
+  Batch batch(kRobots, foot(), {}, BatchWidth::kOne);
+  std::vector<Story> stories;
+  for (int i = 0; i < kRobots; ++i) stories.emplace_back(i);
+  std::array<int, kNumKinds> feet_down{};
+  int mixed = 0, knees_or_base = 0, past_stop = 0, finite = 0;
+  for (int period = 0; period < kPeriods; ++period) {
+    for (int i = 0; i < kRobots; ++i) {
+      stories[i].act(period, batch, i);
+      batch.advance(i, kTicksPerPolicyStep);
+      const RobotState<float> x = batch.state(i);
+      finite += std::isfinite(x.rigid.position.x + x.rigid.position.z + x.rigid.orientation.w);
+      const BatchSums<float> sums = batch.sums(i);
+      knees_or_base += sums.thigh_contact > 0.0f || sums.base_contact > 0.0f;
+      past_stop += sums.ticks_past_stop > 0.0f;
+      std::array<bool, kMaxRegions> stands_on{};
+      for (const FootContact<float>& f : x.feet) {
+        if (!(f.active > 0.0f)) continue;
+        ++feet_down[stories[i].kind];
+        stands_on[static_cast<int>(f.region)] = true;
+      }
+      mixed += std::count(stands_on.begin(), stands_on.end(), true) > 1;
+    }
+  }
+  EXPECT_EQ(finite, kRobots * kPeriods);
+  for (int kind = 0; kind < kNumKinds; ++kind) EXPECT_GT(feet_down[kind], 100) << kind;
+  EXPECT_GT(mixed, 50);
+  EXPECT_GT(knees_or_base, 50);
+  EXPECT_GT(past_stop, 10);
+  Hashes distinct = alone();
+  std::sort(distinct.begin(), distinct.end());
+  EXPECT_EQ(std::unique(distinct.begin(), distinct.end()), distinct.end());
+}
+
+TEST(BatchTest, SameBitsAtEveryWidth) {
+  for (const BatchWidth width : pack_widths()) {
+    EXPECT_EQ(different(run(in_order(), width)), kNone) << static_cast<int>(width);
+  }
+}
+
+TEST(BatchTest, SameBitsInAnyLaneBesideAnyNeighbours) {
+  for (const BatchWidth width : pack_widths()) {
+    for (const std::uint64_t seed : {1, 2}) {
+      EXPECT_EQ(different(run(shuffled(seed), width)), kNone)
+          << static_cast<int>(width) << ' ' << seed;
+    }
+  }
+}
+
+TEST(BatchTest, SameBitsInAPackThatIsNotFull) {
+  const std::vector<int> few{11, 5, 22};
+  for (const BatchWidth width : pack_widths()) {
+    const Hashes hashes = run(few, width);
+    for (const int number : few) EXPECT_EQ(hashes[number], alone()[number]) << number;
+  }
+}
+
+TEST(BatchTest, SameBitsFromTwoThreads) {
+  for (const BatchWidth width : pack_widths()) {
+    EXPECT_EQ(different(run(shuffled(3), width, 2)), kNone) << static_cast<int>(width);
+  }
+}
+
+TEST(BatchTest, AgreesWithTheStepInDouble) {
+  flush_denormals_to_zero();
+  constexpr int kTicks = 200;
+  for (const Kind kind : {kSand, kFlatRock, kRoughRock, kSpring}) {
+    Draw draw(static_cast<std::uint64_t>(kind) + 100);
+    const TerrainDescription ground = one_patch(random_ground(draw, kind));
+    const Terrain<double> terrain = make_terrain(ground, foot(), raibo().model);
+    const RobotModel<double>& model = raibo().model;
+    RobotState<double> x;
+    x.rigid.q = raibo().nominal_rad;
+    x.rigid.position.z = raibo().nominal_height_m + 0.01 + terrain.highest;
+    x.rigid.velocity = {0.5, 0.2, -0.5};
+    BatchDrive<float> drive;
+    drive.kp = 60.0f;
+    drive.kd = 1.0f;
+    drive.stall_torque_nm = 256.0f;
+    drive.inverse_no_load_speed = 1.0f / 28.1f;
+    drive.switch_tick = 120.0f;
+    for (int j = 0; j < kNumJoints; ++j) {
+      drive.target_before[j] = static_cast<float>(x.rigid.q[j]);
+      drive.target[j] = static_cast<float>(x.rigid.q[j] + draw(-0.2, 0.2));
+    }
+    Batch batch(1, foot(), {}, BatchWidth::kOne);
+    batch.set_model(0, convert_model<float>(model));
+    batch.set_terrain(0, convert_terrain<float>(terrain));
+    RobotState<float> start;
+    start.rigid = convert<float>(x.rigid);
+    batch.set_state(0, start);
+    batch.set_drive(0, drive);
+    batch.advance(0, kTicks);
+    const RobotState<float> narrow = batch.state(0);
+
+    RobotStepper<double> stepper;
+    StepReport<double> report;
+    double squared = 0.0, load = 0.0;
+    for (int tick = 0; tick < kTicks; ++tick) {
+      std::array<double, kNumJoints> torque_nm;
+      for (int j = 0; j < kNumJoints; ++j) {
+        const auto& target = tick < 120 ? drive.target_before : drive.target;
+        torque_nm[j] = drive_torque(x.rigid.q[j], x.rigid.qd[j], static_cast<double>(target[j]),
+                                    0.0, 60.0, 1.0, 0.0, model.torque_limit_nm[j], 256.0,
+                                    static_cast<double>(drive.inverse_no_load_speed));
+        squared += torque_nm[j] * torque_nm[j];
+      }
+      stepper.step(model, foot(), terrain, {}, torque_nm, x, report);
+      for (const auto& force : report.foot_force) load += force[2];
+    }
+    double position = 0.0, velocity = 0.0;
+    const Vec3<double> moved =
+        x.rigid.position -
+        convert<double>(Vec3<double>{narrow.rigid.position.x, narrow.rigid.position.y,
+                                     narrow.rigid.position.z});
+    position = std::sqrt(dot(moved, moved));
+    for (int j = 0; j < kNumJoints; ++j) {
+      position = std::fmax(position, std::fabs(x.rigid.q[j] - narrow.rigid.q[j]));
+      velocity = std::fmax(velocity, std::fabs(x.rigid.qd[j] - narrow.rigid.qd[j]));
+    }
+    EXPECT_GT(load / kTicks, 20.0) << kind;  // it stands on the ground
+    EXPECT_LT(position, 1e-5) << kind;       // m, rad
+    EXPECT_LT(velocity, 1e-3) << kind;       // rad/s
+    EXPECT_NEAR(batch.sums(0).torque_squared / squared, 1.0, 1e-5) << kind;
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner::sim
