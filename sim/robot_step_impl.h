@@ -294,7 +294,9 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   x.stop_impulse.fill(zero);
   for (int i = 0; i < num_stops_; ++i) {
     const int joint = stop_joints_[i];
-    x.stop_impulse[joint] = stops_[i].j[joint % 3] * stops_[i].impulse;
+    // Not the product alone: it is -0 for a lane that has left its upper stop, where one robot alone has +0.
+    x.stop_impulse[joint] =
+        select(stops_[i].impulse > zero, stops_[i].j[joint % 3] * stops_[i].impulse, zero);
   }
 
   // Stroke resistance acts beside the contact problem, on the flank of the foot: a radius outwards
