@@ -48,7 +48,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return sandrunner::run(argc, argv);
+    const int code = sandrunner::run(argc, argv);
+    if (std::fflush(stdout) == 0) return code;
+    fmt::print(stderr, "sandrunner-bench: standard output cannot be written\n");
+    return sandrunner::kExitInternal;
   } catch (const sandrunner::InputError& error) {
     fmt::print(stderr, "sandrunner-bench: {}\n", sandrunner::one_line(error.what()));
     return sandrunner::kExitBadInput;
