@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 #include "sim/dynamics.h"
 
@@ -62,54 +63,77 @@ inline void add_impulse(const std::array<S, 6>& w, const std::array<S, 3>& j, in
   for (int i = 0; i < 3; ++i) sum.joint[leg][i] = fma(j[i], impulse, sum.joint[leg][i]);
 }
 
+/// As above for the first `kRows` rows of a contact at once.
+template <int kRows, typename S>
+inline void add_impulses(const PointContact<S>& c, const std::array<S, std::size_t{kRows}>& impulse,
+                         ImpulseSum<S>& sum) noexcept {
+  for (int i = 0; i < 6; ++i) {
+    S y = sum.y[i];
+    for (int r = 0; r < kRows; ++r) y = fma(c.w[r][i], impulse[r], y);
+    sum.y[i] = y;
+  }
+  if (c.leg < 0) return;
+  for (int i = 0; i < 3; ++i) {
+    S u = sum.joint[c.leg][i];
+    for (int r = 0; r < kRows; ++r) u = fma(c.j[r][i], impulse[r], u);
+    sum.joint[c.leg][i] = u;
+  }
+}
+
 template <typename S>
 inline S row_velocity(const std::array<S, 6>& w, const std::array<S, 3>& p, int leg, S free,
                       const ImpulseSum<S>& sum) noexcept {
-  S a = fma(w[0], sum.y[0], free), b = w[1] * sum.y[1];
+  // The leg's part first: another leg's visit changes only y, so that this can be ready before.
+  S a = free, b = w[1] * sum.y[1];
+  if (leg >= 0) {
+    a = fma(p[0], sum.joint[leg][0], fma(p[1], sum.joint[leg][1], fma(p[2], sum.joint[leg][2], a)));
+  }
+  a = fma(w[0], sum.y[0], a);
   a = fma(w[2], sum.y[2], a);
   b = fma(w[3], sum.y[3], b);
   a = fma(w[4], sum.y[4], a);
   b = fma(w[5], sum.y[5], b);
-  if (leg >= 0) {
-    a = fma(p[0], sum.joint[leg][0], a);
-    b = fma(p[1], sum.joint[leg][1], b);
-    a = fma(p[2], sum.joint[leg][2], a);
-  }
   return a + b;
 }
 
+/// Newton steps of solve_on_disc that reach rounding.
+template <typename S>
+inline constexpr int kDiscIterations = std::is_same_v<S, double> ? 3 : 2;
+
 /// argmin 1/2 t^T G t + b^T t over the disc |t| <= radius: the tangential impulse whose velocity G
 /// t + b is zero inside the disc and opposes t on its rim. On the rim t = -(G + s 1)^-1 b with s >
-/// 0 from Newton's iteration on 1/|t(s)| = 1/radius, which is nearly linear in s: three steps from
-/// the isotropic guess reach rounding.
+/// 0 from Newton's iteration on 1/|t(s)| = 1/radius, which is nearly linear in s. The start has G's
+/// Rayleigh quotient along b for G, exact where b is an eigenvector; with the conditions that feet
+/// show (up to 2.3) the direction is then off by less than 2e-3, 1e-6, 1e-12 after 1, 2, 3 steps.
+/// With adj and det of G + s 1, which are linear and quadratic in s, t = -adj b / det needs no
+/// division on the way.
 template <typename S>
-inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& ty) noexcept {
+inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& ty,
+                          int iterations = kDiscIterations<S>) noexcept {
   const S zero = S(0.0);
-  const auto solve = [&](S s, S& x, S& y) {
-    const S a = gxx + s, d = gyy + s;
-    const S inverse_det = S(1.0) / diff_of_products(a, d, gxy, gxy);
-    x = diff_of_products(gxy, by, d, bx) * inverse_det;
-    y = diff_of_products(gxy, bx, a, by) * inverse_det;
-    return inverse_det;
-  };
-  solve(zero, tx, ty);
-  const Mask<S> slides = fma(tx, tx, ty * ty) > radius * radius;
+  const S det = diff_of_products(gxx, gyy, gxy, gxy), trace = gxx + gyy;
+  // p = -adj(G) b
+  const S px = diff_of_products(gxy, by, gyy, bx), py = diff_of_products(gxy, bx, gxx, by);
+  const S p2 = fma(px, px, py * py), b2 = fma(bx, bx, by * by);
+  const S inverse_det = S(1.0) / det, rim = radius * det;
+  tx = px * inverse_det;
+  ty = py * inverse_det;
+  const Mask<S> slides = p2 > rim * rim;
   if (!any(slides)) return;
-  const S tiny = S(1e-12);
-  const S r = max(radius, tiny);
-  const S b = sqrt(fma(bx, bx, by * by));
-  S s = max(b / r - S(0.5) * (gxx + gyy), zero);
-  S x, y;
-  for (int i = 0; i < 3; ++i) {
-    const S inverse_det = solve(s, x, y);
-    const S n2 = fma(x, x, y * y);
-    const S n = sqrt(n2);
-    // t^T (G + s)^-1 t
-    const S q = fma(x * x, gyy + s, fma(y * y, gxx + s, S(-2.0) * (gxy * (x * y)))) * inverse_det;
-    const S step = ((n - r) * n2) / max(r * q, tiny * tiny);
+  const S tiny = S(1e-30);
+  const S r = max(radius, S(1e-9));
+  const S pb = -fma(px, bx, py * by);
+  S s = max(sqrt(b2) * (S(1.0) / r) + (pb / max(b2, tiny) - trace), zero);
+  for (int i = 0; i < iterations; ++i) {
+    const S d = fma(s, s + trace, det), slope_d = fma(S(2.0), s, trace);
+    // n = |p - s b|^2, and half its slope.
+    const S slope_n = fma(s, b2, pb);
+    const S n = fma(s, slope_n + pb, p2);
+    const S curve = r * diff_of_products(n, slope_d, d, slope_n);
+    const S step = (fma(-r, d, sqrt(n)) * n) / max(curve, tiny);
     s = max(s + step, zero);
   }
-  solve(s, x, y);
+  const S x = fma(-s, bx, px), y = fma(-s, by, py);
   // What Newton left is taken up radially, so that the bound holds exactly.
   const S scale = radius / max(sqrt(fma(x, x, y * y)), tiny);
   tx = select(slides, x * scale, tx);
@@ -201,8 +225,9 @@ inline std::array<S, 3> projected_step(const PointContact<S>& c, const Mask<S>& 
 inline constexpr int kExactSweeps = 50;
 
 /// Solves in place; `sum` comes back as the effect of all impulses. Returns the number of sweeps of
-/// the slowest lane. Each lane stops once a sweep changed its impulses by less than `tolerance` (N
-/// s) in sum.
+/// the slowest lane. Each lane stops once a sweep other than its first changed its impulses by less
+/// than `tolerance` (N s) in sum, or the next one can be expected to: where only feet touch, the
+/// changes shrink to a hundredth from sweep to sweep.
 template <typename S, int kPoints, int kStops>
 inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_points,
                           std::array<StopRow<S>, kStops>& stops, int num_stops, S tolerance,
@@ -211,10 +236,8 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
   const S zero = S(0.0);
   for (int i = 0; i < num_points; ++i) {
     PointContact<S>& c = points[i];
-    for (int r = 0; r < 3; ++r) {
-      c.impulse[r] = select(c.active, c.impulse[r], zero);
-      add_impulse(c.w[r], c.j[r], c.leg, c.impulse[r], sum);
-    }
+    for (int r = 0; r < 3; ++r) c.impulse[r] = select(c.active, c.impulse[r], zero);
+    add_impulses<3>(c, c.impulse, sum);
   }
   for (int i = 0; i < num_stops; ++i) {
     StopRow<S>& c = stops[i];
@@ -222,6 +245,8 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
     add_impulse(c.w, c.j, c.leg, c.impulse, sum);
   }
   Mask<S> running = zero == zero;
+  S last_change = zero;
+  const S enough = S(0.3) * tolerance;  // of the change expected: they do not shrink evenly
   int sweep = 0;
   while (sweep < max_sweeps) {
     ++sweep;
@@ -251,7 +276,11 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
         const S vz = row_velocity(c.w[2], c.p[2], c.leg, c.free[2], sum);
         next = projected_step(c, hard, vx, vy, vz);
       } else {
-        if (any(no(hard))) solve_on_disc(c.g.xx, c.g.xy, c.g.yy, bx, by, c.disc, next[0], next[1]);
+        if (any(no(hard))) {
+          // What the first sweep finds is found again by the second: the start will do.
+          solve_on_disc(c.g.xx, c.g.xy, c.g.yy, bx, by, c.disc, next[0], next[1],
+                        sweep == 1 ? 0 : kDiscIterations<S>);
+        }
         if (any(hard)) {
           const S vz = row_velocity(c.w[2], c.p[2], c.leg, c.free[2], sum);
           const S bz =
@@ -272,11 +301,14 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
       const S dy = select(visit, next[1] - before[1], zero);
       c.impulse[0] = before[0] + dx;
       c.impulse[1] = before[1] + dy;
-      add_impulse(c.w[0], c.j[0], c.leg, dx, sum);
-      add_impulse(c.w[1], c.j[1], c.leg, dy, sum);
+      add_impulses<2>(c, {dx, dy}, sum);
       change = change + sqrt(fma(dx, dx, dy * dy));
     }
-    running = both(running, change >= tolerance);
+    if (sweep > 1) {
+      const Mask<S> more = change * change > enough * last_change;
+      running = both(running, both(change >= tolerance, more));
+    }
+    last_change = change;
     if (!any(running)) break;
   }
   return sweep;

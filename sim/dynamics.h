@@ -109,8 +109,14 @@ class Dynamics {
   /// Inverse of a leg's own 3x3 mass matrix.
   const Sym3<S>& leg_inverse(int l) const noexcept { return legs_[l].inverse; }
   /// Row j of Y = M_ll^-1 M_lb (joint j of leg l per base acceleration): linear part, angular part.
-  const Vec3<S>& y_linear(int l, int j) const noexcept { return legs_[l].y_linear[j]; }
-  const Vec3<S>& y_angular(int l, int j) const noexcept { return legs_[l].y_angular[j]; }
+  Vec3<S> y_linear(int l, int j) const noexcept {
+    const std::array<S, 6>& y = legs_[l].y[j];
+    return {y[0], y[1], y[2]};
+  }
+  Vec3<S> y_angular(int l, int j) const noexcept {
+    const std::array<S, 6>& y = legs_[l].y[j];
+    return {y[3], y[4], y[5]};
+  }
   /// D^-1/2 L^-1 b for a base force b (linear, angular): the square root in which Delassus blocks
   /// are inner products.
   std::array<S, 6> half_solve(const Vec3<S>& linear, const Vec3<S>& angular) const noexcept;
@@ -126,10 +132,9 @@ class Dynamics {
     LegPose<S> pose;
     Sym3<S> mass;  // M_ll with rotor inertia
     Sym3<S> inverse;
-    std::array<Vec3<S>, 3>
-        force;  // M_bl: force and torque about the base origin per joint acceleration
-    std::array<Vec3<S>, 3> torque;
-    std::array<Vec3<S>, 3> y_linear, y_angular;
+    // M_bl: force and torque about the base origin per joint acceleration.
+    std::array<std::array<S, 6>, 3> coupling;
+    std::array<std::array<S, 6>, 3> y;  // M_ll^-1 M_lb: per base acceleration, linear and angular
     std::array<S, 3> bias;
   };
   void update_leg(const RobotModel<S>& model, const RigidState<S>& x, int l,
@@ -144,7 +149,7 @@ class Dynamics {
   Vec3<S> bias_force_, bias_torque_;
   // Schur complement = L D L^T, L unit lower triangular packed by rows.
   std::array<S, 15> l_{};
-  std::array<S, 6> d_inverse_{}, d_inverse_sqrt_{};
+  std::array<S, 6> d_inverse_sqrt_{};
 };
 
 template <typename S>
@@ -154,65 +159,70 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   Leg& leg = legs_[l];
   leg.pose = leg_pose(m, x.q[3 * l], x.q[3 * l + 1], x.q[3 * l + 2]);
   const LegPose<S>& p = leg.pose;
-  const Vec3<S> thigh_arm = rotate_y(p.s2, p.c2, m.thigh.com);
-  const Vec3<S> shank_arm = rotate_y(p.s23, p.c23, m.shank.com);
-  const Vec3<S> knee_from_hfe = p.knee - m.hfe;
-  const Vec3<S> shank_from_hfe = knee_from_hfe + shank_arm;
-  const Vec3<S> thigh_com = m.hfe + thigh_arm;
-  const Vec3<S> shank_com = p.knee + shank_arm;
-  const Sym3<S> thigh_inertia = rotate_y(p.s2, p.c2, m.thigh.inertia);
-  const Sym3<S> shank_inertia = rotate_y(p.s23, p.c23, m.shank.inertia);
   const S m1 = m.hip.mass, m2 = m.thigh.mass, m3 = m.shank.mass;
+  const auto moment = [](const Sym3<S>& inertia, const Vec3<S>& dw, const Vec3<S>& w) {
+    return cross_add(w, inertia * w, inertia * dw);
+  };
+  const auto cross_y = [](const Vec3<S>& r, const Vec3<S>& f) {  // (r x f).y
+    return diff_of_products(r.z, f.x, r.x, f.z);
+  };
 
-  // Velocities and bias accelerations, outwards, all in the hip frame (recursive Newton-Euler at
-  // zero acceleration; gravity enters as an upward acceleration of the base).
+  // Body by body outwards, all in the hip frame: velocity and bias acceleration (recursive
+  // Newton-Euler at zero acceleration; gravity enters as an upward acceleration of the base), and
+  // what the body adds to the leg's bias wrench, first moment and inertia about the HAA origin. One
+  // body is finished before the next is begun: there are not registers for more.
   const S qd1 = x.qd[3 * l], qd2 = x.qd[3 * l + 1], qd3 = x.qd[3 * l + 2];
   const Vec3<S>& wb = x.angular_velocity;
   const Vec3<S> a0 = unrotate_x(p.s1, p.c1, cross_add(wb, cross(wb, m.haa), gravity_up));
   const Vec3<S> w0 = unrotate_x(p.s1, p.c1, wb);
   const Vec3<S> w1{w0.x + qd1, w0.y, w0.z};
   const Vec3<S> dw1{S(0.0), w0.z * qd1, -(w0.y * qd1)};  // w0 x ex qd1
+  const Mat3<S> turn1 = turning_acceleration(dw1, w1);
+  Vec3<S> bias_force = m1 * mul_add(turn1, m.hip.com, a0);
+  Vec3<S> bias_torque = cross_add(m.hip.com, bias_force, moment(m.hip.inertia, dw1, w1));
+  Vec3<S> moment_haa = m1 * m.hip.com;
+  Sym3<S> inertia_haa = shifted_inertia(m.hip.inertia, m1, m.hip.com);
+  const Vec3<S> a_hfe = mul_add(turn1, m.hfe, a0);
+
   const Vec3<S> w2{w1.x, w1.y + qd2, w1.z};
   const Vec3<S> dw2{fma(-w1.z, qd2, dw1.x), dw1.y, fma(w1.x, qd2, dw1.z)};  // + w1 x ey qd2
+  const Mat3<S> turn2 = turning_acceleration(dw2, w2);
+  const Vec3<S> thigh_arm = rotate_y(p.s2, p.c2, m.thigh.com);
+  const Sym3<S> thigh_inertia = rotate_y(p.s2, p.c2, m.thigh.inertia);
+  const Vec3<S> thigh_com = m.hfe + thigh_arm;
+  const Vec3<S> f2 = m2 * mul_add(turn2, thigh_arm, a_hfe);
+  const Vec3<S> n2 = moment(thigh_inertia, dw2, w2);
+  bias_force = bias_force + f2;
+  bias_torque = bias_torque + cross_add(thigh_com, f2, n2);
+  const S bias_hfe = n2.y + cross_y(thigh_arm, f2);
+  moment_haa = mul_add(thigh_com, m2, moment_haa);
+  inertia_haa = inertia_haa + shifted_inertia(thigh_inertia, m2, thigh_com);
+  const Vec3<S> knee_from_hfe = p.knee - m.hfe;
+  const Vec3<S> a_knee = mul_add(turn2, knee_from_hfe, a_hfe);
+  const Vec3<S> moment2_hfe = m2 * thigh_arm;
+  const Sym3<S> inertia2_hfe = shifted_inertia(thigh_inertia, m2, thigh_arm);
+
   const Vec3<S> w3{w2.x, w2.y + qd3, w2.z};
   const Vec3<S> dw3{fma(-w1.z, qd3, dw2.x), dw2.y, fma(w1.x, qd3, dw2.z)};
-  const auto point_acceleration = [](const Vec3<S>& a, const Vec3<S>& dw, const Vec3<S>& w,
-                                     const Vec3<S>& r) {
-    return cross_add(w, cross(w, r), cross_add(dw, r, a));
-  };
-  const Vec3<S> a_hfe = point_acceleration(a0, dw1, w1, m.hfe);
-  const Vec3<S> a_knee = point_acceleration(a_hfe, dw2, w2, knee_from_hfe);
-  const Vec3<S> f1 = m1 * point_acceleration(a0, dw1, w1, m.hip.com);
-  const Vec3<S> f2 = m2 * point_acceleration(a_hfe, dw2, w2, thigh_arm);
-  const Vec3<S> f3 = m3 * point_acceleration(a_knee, dw3, w3, shank_arm);
-  const auto moment = [](const Sym3<S>& inertia, const Vec3<S>& dw, const Vec3<S>& w) {
-    return cross_add(w, inertia * w, inertia * dw);
-  };
-  const Vec3<S> n1 = moment(m.hip.inertia, dw1, w1);
-  const Vec3<S> n2 = moment(thigh_inertia, dw2, w2);
+  const Vec3<S> shank_arm = rotate_y(p.s23, p.c23, m.shank.com);
+  const Sym3<S> shank_inertia = rotate_y(p.s23, p.c23, m.shank.inertia);
+  const Vec3<S> shank_com = p.knee + shank_arm;
+  const Vec3<S> f3 = m3 * mul_add(turning_acceleration(dw3, w3), shank_arm, a_knee);
   const Vec3<S> n3 = moment(shank_inertia, dw3, w3);
-  // Inwards: joint bias torques, and the leg's wrench about the HAA origin.
-  const auto cross_y = [](const Vec3<S>& r, const Vec3<S>& f) {  // (r x f).y
-    return diff_of_products(r.z, f.x, r.x, f.z);
-  };
+  bias_force = bias_force + f3;
+  bias_torque = bias_torque + cross_add(shank_com, f3, n3);
+  const Vec3<S> shank_from_hfe = knee_from_hfe + shank_arm;
   leg.bias[2] = n3.y + cross_y(shank_arm, f3);
-  leg.bias[1] = ((n2.y + n3.y) + cross_y(thigh_arm, f2)) + cross_y(shank_from_hfe, f3);
-  const Vec3<S> bias_torque =
-      cross_add(m.hip.com, f1, cross_add(thigh_com, f2, cross_add(shank_com, f3, (n1 + n2) + n3)));
-  const Vec3<S> bias_force = (f1 + f2) + f3;
+  leg.bias[1] = (bias_hfe + n3.y) + cross_y(shank_from_hfe, f3);
   leg.bias[0] = bias_torque.x;
+  moment_haa = mul_add(shank_com, m3, moment_haa);
+  inertia_haa = inertia_haa + shifted_inertia(shank_inertia, m3, shank_com);
 
-  // Composite bodies: shank alone (about the knee), thigh and shank (about HFE), whole leg (about
-  // HAA).
-  const Vec3<S> moment3 = m3 * shank_arm;  // first moment about the knee
-  const Vec3<S> moment23_hfe = mul_add(shank_from_hfe, m3, m2 * thigh_arm);
-  const Vec3<S> moment_haa = mul_add(shank_com, m3, mul_add(thigh_com, m2, m1 * m.hip.com));
-  const Sym3<S> inertia_shank_knee = shank_inertia + point_inertia(m3, shank_arm);
-  const Sym3<S> inertia23_hfe = (thigh_inertia + point_inertia(m2, thigh_arm)) +
-                                (shank_inertia + point_inertia(m3, shank_from_hfe));
-  const Sym3<S> inertia_haa = (m.hip.inertia + point_inertia(m1, m.hip.com)) +
-                              ((thigh_inertia + point_inertia(m2, thigh_com)) +
-                               (shank_inertia + point_inertia(m3, shank_com)));
+  // Composite bodies of the outer joints: shank (about the knee), thigh and shank (about HFE).
+  const Vec3<S> moment3 = m3 * shank_arm;
+  const Vec3<S> moment23_hfe = mul_add(shank_from_hfe, m3, moment2_hfe);
+  const Sym3<S> inertia_shank_knee = shifted_inertia(shank_inertia, m3, shank_arm);
+  const Sym3<S> inertia23_hfe = inertia2_hfe + shifted_inertia(shank_inertia, m3, shank_from_hfe);
   // Columns in the hip frame: force on the composite per joint acceleration (axis x first moment),
   // and torque about the HAA origin (torque about the joint plus arm x force).
   const Vec3<S> force3{moment3.z, S(0.0), -moment3.x};  // ey x moment
@@ -220,8 +230,12 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   const Vec3<S> force1{S(0.0), -moment_haa.z, moment_haa.y};  // ex x moment
   const Vec3<S> knee_torque3{inertia_shank_knee.xy, inertia_shank_knee.yy, inertia_shank_knee.yz};
   const Vec3<S> hfe_torque2{inertia23_hfe.xy, inertia23_hfe.yy, inertia23_hfe.yz};
-  const Vec3<S> torque3 = cross_add(p.knee, force3, knee_torque3);
-  const Vec3<S> torque2 = cross_add(m.hfe, force2, hfe_torque2);
+  const auto arm_cross = [](const Vec3<S>& r, const Vec3<S>& f, const Vec3<S>& torque) {
+    return Vec3<S>{fma(r.y, f.z, torque.x), fma(r.z, f.x, fma(-r.x, f.z, torque.y)),
+                   fma(-r.y, f.x, torque.z)};  // r x f + torque, f.y = 0
+  };
+  const Vec3<S> torque3 = arm_cross(p.knee, force3, knee_torque3);
+  const Vec3<S> torque2 = arm_cross(m.hfe, force2, hfe_torque2);
   const Vec3<S> torque1{inertia_haa.xx, inertia_haa.xy, inertia_haa.xz};
   leg.mass = {torque1.x + model.rotor_inertia[3 * l],
               torque2.x,
@@ -234,8 +248,9 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   const std::array<Vec3<S>, 3> forces{force1, force2, force3};
   const std::array<Vec3<S>, 3> torques{torque1, torque2, torque3};
   for (int j = 0; j < 3; ++j) {
-    leg.force[j] = rotate_x(p.s1, p.c1, forces[j]);
-    leg.torque[j] = cross_add(m.haa, leg.force[j], rotate_x(p.s1, p.c1, torques[j]));
+    const Vec3<S> f = rotate_x(p.s1, p.c1, forces[j]);
+    const Vec3<S> t = cross_add(m.haa, f, rotate_x(p.s1, p.c1, torques[j]));
+    leg.coupling[j] = {f.x, f.y, f.z, t.x, t.y, t.z};
   }
   const Vec3<S> base_force = rotate_x(p.s1, p.c1, bias_force);
   bias_force_ = bias_force_ + base_force;
@@ -249,7 +264,7 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   const Vec3<S>& o = m.haa;
   const Vec3<S> g = mul_add(o, S(0.5) * leg_mass, moment_rotated);  // h + m o / 2
   const Sym3<S> rotated = rotate_x(p.s1, p.c1, inertia_haa);
-  const S ox = S(2.0) * (o.x * g.x), oy = S(2.0) * (o.y * g.y), oz = S(2.0) * (o.z * g.z);
+  const S ox = (o.x + o.x) * g.x, oy = (o.y + o.y) * g.y, oz = (o.z + o.z) * g.z;
   inertia_ = inertia_ + Sym3<S>{rotated.xx + (oy + oz),
                                 fma(-o.x, g.y, fma(-o.y, g.x, rotated.xy)),
                                 fma(-o.x, g.z, fma(-o.z, g.x, rotated.xz)),
@@ -263,10 +278,10 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   const std::array<std::array<S, 3>, 3> rows{
       {{i.xx, i.xy, i.xz}, {i.xy, i.yy, i.yz}, {i.xz, i.yz, i.zz}}};
   for (int j = 0; j < 3; ++j) {
-    leg.y_linear[j] = mul_add(leg.force[0], rows[j][0],
-                              mul_add(leg.force[1], rows[j][1], rows[j][2] * leg.force[2]));
-    leg.y_angular[j] = mul_add(leg.torque[0], rows[j][0],
-                               mul_add(leg.torque[1], rows[j][1], rows[j][2] * leg.torque[2]));
+    for (int c = 0; c < 6; ++c) {
+      leg.y[j][c] = fma(leg.coupling[0][c], rows[j][0],
+                        fma(leg.coupling[1][c], rows[j][1], rows[j][2] * leg.coupling[2][c]));
+    }
   }
 }
 
@@ -278,7 +293,7 @@ void Dynamics<S>::update(const RobotModel<S>& model, const RigidState<S>& x) noe
   const Body<S>& b = model.base;
   mass_ = b.mass;
   moment_ = b.mass * b.com;
-  inertia_ = b.inertia + point_inertia(b.mass, b.com);
+  inertia_ = shifted_inertia(b.inertia, b.mass, b.com);
   bias_force_ = b.mass * cross_add(w, cross(w, b.com), gravity_up);
   bias_torque_ = cross_add(b.com, bias_force_, cross(w, b.inertia * w));
   for (int l = 0; l < kNumLegs; ++l) update_leg(model, x, l, gravity_up);
@@ -288,42 +303,40 @@ void Dynamics<S>::update(const RobotModel<S>& model, const RigidState<S>& x) noe
 template <typename S>
 void Dynamics<S>::factorise() noexcept {
   // Lower triangle of the Schur complement by rows; rows and columns 0..2 linear, 3..5 angular.
-  std::array<std::array<S, 6>, 6> a;
   const S zero = S(0.0);
+  std::array<std::array<S, 6>, 6> a;
   a[0] = {mass_, zero, zero, zero, zero, zero};
   a[1] = {zero, mass_, zero, zero, zero, zero};
   a[2] = {zero, zero, mass_, zero, zero, zero};
   a[3] = {zero, -moment_.z, moment_.y, inertia_.xx, zero, zero};  // [h]x
   a[4] = {moment_.z, zero, -moment_.x, inertia_.xy, inertia_.yy, zero};
   a[5] = {-moment_.y, moment_.x, zero, inertia_.xz, inertia_.yz, inertia_.zz};
-  for (int l = 0; l < kNumLegs; ++l) {
-    const Leg& leg = legs_[l];
-    for (int j = 0; j < 3; ++j) {
-      const std::array<S, 6> m{leg.force[j].x,  leg.force[j].y,  leg.force[j].z,
-                               leg.torque[j].x, leg.torque[j].y, leg.torque[j].z};
-      const std::array<S, 6> y{leg.y_linear[j].x,  leg.y_linear[j].y,  leg.y_linear[j].z,
-                               leg.y_angular[j].x, leg.y_angular[j].y, leg.y_angular[j].z};
-      for (int r = 0; r < 6; ++r) {
-        for (int c = 0; c <= r; ++c) a[r][c] = fma(-m[r], y[c], a[r][c]);
+  // Row by row, so that the sums stay in registers.
+#pragma GCC unroll 6
+  for (int r = 0; r < 6; ++r) {
+    std::array<S, 6> row = a[r];
+    for (int l = 0; l < kNumLegs; ++l) {
+      for (int j = 0; j < 3; ++j) {
+        const S m = -legs_[l].coupling[j][r];
+        for (int c = 0; c <= r; ++c) row[c] = fma(m, legs_[l].y[j][c], row[c]);
       }
     }
+    a[r] = row;
   }
-  // LDL^T, column by column.
-  std::array<S, 6> d;
+  // LDL^T, column by column; `scaled` holds l_ik d_k.
+  std::array<S, 15> scaled;
   for (int j = 0; j < 6; ++j) {
-    S v[6];
-    S dj = a[j][j];
-    for (int k = 0; k < j; ++k) {
-      v[k] = l_[j * (j - 1) / 2 + k] * d[k];
-      dj = fma(-l_[j * (j - 1) / 2 + k], v[k], dj);
-    }
-    d[j] = dj;
-    d_inverse_[j] = S(1.0) / dj;
-    d_inverse_sqrt_[j] = sqrt(d_inverse_[j]);
+    const int row = j * (j - 1) / 2;
+    S d = a[j][j];
+    for (int k = 0; k < j; ++k) d = fma(-scaled[row + k], l_[row + k], d);
+    const S d_inverse = S(1.0) / d;
+    d_inverse_sqrt_[j] = sqrt(d_inverse);
     for (int i = j + 1; i < 6; ++i) {
-      S s = a[i][j];
-      for (int k = 0; k < j; ++k) s = fma(-l_[i * (i - 1) / 2 + k], v[k], s);
-      l_[i * (i - 1) / 2 + j] = s * d_inverse_[j];
+      const int other = i * (i - 1) / 2;
+      S v = a[i][j];
+      for (int k = 0; k < j; ++k) v = fma(-scaled[other + k], l_[row + k], v);
+      scaled[other + j] = v;
+      l_[other + j] = v * d_inverse;
     }
   }
 }
@@ -356,10 +369,9 @@ Motion<S> Dynamics<S>::solve(const Motion<S>& f) const noexcept {
   Motion<S> a;
   Vec3<S> linear = f.linear, angular = f.angular;
   for (int l = 0; l < kNumLegs; ++l) {
-    const Leg& leg = legs_[l];
     for (int j = 0; j < 3; ++j) {
-      linear = mul_add(leg.y_linear[j], -f.joint[3 * l + j], linear);
-      angular = mul_add(leg.y_angular[j], -f.joint[3 * l + j], angular);
+      linear = mul_add(y_linear(l, j), -f.joint[3 * l + j], linear);
+      angular = mul_add(y_angular(l, j), -f.joint[3 * l + j], angular);
     }
   }
   back_solve(half_solve(linear, angular), a.linear, a.angular);
@@ -369,7 +381,7 @@ Motion<S> Dynamics<S>::solve(const Motion<S>& f) const noexcept {
     const std::array<S, 3> zs{z.x, z.y, z.z};
     for (int j = 0; j < 3; ++j) {
       a.joint[3 * l + j] =
-          zs[j] - (dot(leg.y_linear[j], a.linear) + dot(leg.y_angular[j], a.angular));
+          zs[j] - (dot(y_linear(l, j), a.linear) + dot(y_angular(l, j), a.angular));
     }
   }
   return a;
@@ -422,9 +434,7 @@ void Dynamics<S>::dense(std::array<S, 324>& mass_matrix, std::array<S, 18>& bias
         {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}}};
     for (int j = 0; j < 3; ++j) {
       for (int k = 0; k < 3; ++k) mass_matrix[18 * (o + j) + o + k] = block[j][k];
-      const std::array<S, 6> c{leg.force[j].x,  leg.force[j].y,  leg.force[j].z,
-                               leg.torque[j].x, leg.torque[j].y, leg.torque[j].z};
-      for (int k = 0; k < 6; ++k) put(k, o + j, c[k]);
+      for (int k = 0; k < 6; ++k) put(k, o + j, leg.coupling[j][k]);
       bias[o + j] = leg.bias[j];
     }
   }

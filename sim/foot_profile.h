@@ -55,11 +55,17 @@ struct FootProfile {
     const S t = zr * inverse_radius;  // s^2
     const S s = sqrt(t);
     const S x = fma(S(2.0), s, S(-1.0));
-    S u = p0[kDegree], v = p1[kDegree];
-    for (int i = kDegree - 1; i >= 0; --i) {
-      u = fma(u, x, p0[i]);
-      v = fma(v, x, p1[i]);
+    // Odd and even coefficients apart: two chains half as long.
+    const S x2 = x * x;
+    S u = p0[kDegree], v = p1[kDegree], u_even = p0[kDegree - 1], v_even = p1[kDegree - 1];
+    for (int i = kDegree - 2; i > 0; i -= 2) {
+      u = fma(u, x2, p0[i]);
+      v = fma(v, x2, p1[i]);
+      u_even = fma(u_even, x2, p0[i - 1]);
+      v_even = fma(v_even, x2, p1[i - 1]);
     }
+    u = fma(u, x, u_even);
+    v = fma(v, x, v_even);
     const S t2 = t * t;
     big_p0 = fma(buried_radius * buried_radius, over, t2 * u);
     big_p1 = fma(S(0.5) * (buried_radius * (z + zr)), over, (t2 * s) * v);

@@ -43,7 +43,7 @@ inline Pack<8> operator+(Pack<8> a, Pack<8> b) noexcept { return _mm256_add_ps(a
 inline Pack<8> operator-(Pack<8> a, Pack<8> b) noexcept { return _mm256_sub_ps(a.v, b.v); }
 inline Pack<8> operator*(Pack<8> a, Pack<8> b) noexcept { return _mm256_mul_ps(a.v, b.v); }
 inline Pack<8> operator/(Pack<8> a, Pack<8> b) noexcept { return _mm256_div_ps(a.v, b.v); }
-inline Pack<8> operator-(Pack<8> a) noexcept { return _mm256_xor_ps(a.v, _mm256_set1_ps(-0.0f)); }
+inline Pack<8> operator-(Pack<8> a) noexcept { return -a.v; }
 inline Pack<8> fma(Pack<8> a, Pack<8> b, Pack<8> c) noexcept {
   return _mm256_fmadd_ps(a.v, b.v, c.v);
 }
@@ -99,7 +99,7 @@ inline Pack<16> operator+(Pack<16> a, Pack<16> b) noexcept { return _mm512_add_p
 inline Pack<16> operator-(Pack<16> a, Pack<16> b) noexcept { return _mm512_sub_ps(a.v, b.v); }
 inline Pack<16> operator*(Pack<16> a, Pack<16> b) noexcept { return _mm512_mul_ps(a.v, b.v); }
 inline Pack<16> operator/(Pack<16> a, Pack<16> b) noexcept { return _mm512_div_ps(a.v, b.v); }
-inline Pack<16> operator-(Pack<16> a) noexcept { return _mm512_xor_ps(a.v, _mm512_set1_ps(-0.0f)); }
+inline Pack<16> operator-(Pack<16> a) noexcept { return -a.v; }
 inline Pack<16> fma(Pack<16> a, Pack<16> b, Pack<16> c) noexcept {
   return _mm512_fmadd_ps(a.v, b.v, c.v);
 }

@@ -155,8 +155,8 @@ Body<double> merged(const Body<double>& parent, const Body<double>& child, const
   Body<double> b;
   b.mass = parent.mass + child.mass;
   b.com = (1.0 / b.mass) * (parent.mass * parent.com + child.mass * child_com);
-  b.inertia = (parent.inertia + point_inertia(parent.mass, parent.com - b.com)) +
-              (child.inertia + point_inertia(child.mass, child_com - b.com));
+  b.inertia = shifted_inertia(parent.inertia, parent.mass, parent.com - b.com) +
+              shifted_inertia(child.inertia, child.mass, child_com - b.com);
   return b;
 }
 

@@ -129,8 +129,13 @@ class RobotStepper {
   struct Frame {  // rows in body components
     Vec3<S> t1, t2, n;
   };
-  void fill_rows(const RobotModel<S>& model, const Vec3<S>& r_base, const Vec3<S>& r_hip, int leg,
-                 int joints, const Frame& frame, PointContact<S>& c) noexcept;
+  using Columns = std::array<Vec3<S>, 3>;  // of a leg's Jacobian, body components
+  /// Maps an impulse along e (body components) at r_base (from the base origin) to the base and the
+  /// joints.
+  void fill_row(const Vec3<S>& e, const Vec3<S>& r_base, int leg, const Columns& columns,
+                std::array<S, 6>& w, std::array<S, 3>& j) noexcept;
+  void fill_rows(const Vec3<S>& r_base, int leg, const Columns& columns, const Frame& frame,
+                 PointContact<S>& c) noexcept;
   void add_feet(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
                 S dt, RobotState<S>& x, StepReport<S>& report) noexcept;
   void add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain, RobotState<S>& x,
@@ -142,8 +147,9 @@ class RobotStepper {
   Frame surface_frame(S slope_x, S slope_y) const noexcept;
 
   Dynamics<S> dynamics_;
-  Mat3<S> rotation_;           // body to world
-  Motion<S> velocity_, free_;  // now, and at the end of the step without contact
+  Mat3<S> rotation_;  // body to world
+  Vec3<S> velocity_;  // of the base origin, body components
+  Motion<S> free_;    // velocities at the end of the step without contact
   std::array<PointContact<S>, kNumPoints> points_;
   std::array<int, kNumPoints> slots_{};
   int num_points_ = 0;
@@ -151,6 +157,7 @@ class RobotStepper {
   std::array<int, kNumJoints> stop_joints_{};
   int num_stops_ = 0;
   std::array<GranularForce<S>, kNumLegs> granular_;
+  Ground<S> mixed_ground_;  // of lanes that stand on different patches
 };
 
 }  // namespace sandrunner::sim

@@ -21,33 +21,41 @@ typename RobotStepper<S>::Frame RobotStepper<S>::surface_frame(S slope_x,
 }
 
 template <typename S>
-void RobotStepper<S>::fill_rows(const RobotModel<S>& model, const Vec3<S>& r_base,
-                                const Vec3<S>& r_hip, int leg, int joints, const Frame& frame,
-                                PointContact<S>& c) noexcept {
-  c.leg = leg;
-  std::array<Vec3<S>, 3> columns{};
+void RobotStepper<S>::fill_row(const Vec3<S>& e, const Vec3<S>& r_base, int leg,
+                               const Columns& columns, std::array<S, 6>& w,
+                               std::array<S, 3>& j) noexcept {
+  Vec3<S> linear = e, angular = cross(r_base, e);
   if (leg >= 0) {
-    columns = dynamics_.leg_jacobian(model, leg, r_hip);
-    if (joints < 3) columns[2] = Vec3<S>{S(0.0), S(0.0), S(0.0)};
+    for (int i = 0; i < 3; ++i) {
+      j[i] = dot(e, columns[i]);
+      linear = mul_add(dynamics_.y_linear(leg, i), -j[i], linear);
+      angular = mul_add(dynamics_.y_angular(leg, i), -j[i], angular);
+    }
+  }
+  w = dynamics_.half_solve(linear, angular);
+}
+
+template <typename S>
+void RobotStepper<S>::fill_rows(const Vec3<S>& r_base, int leg, const Columns& columns,
+                                const Frame& frame, PointContact<S>& c) noexcept {
+  c.leg = leg;
+  Vec3<S> velocity = cross_add(free_.angular, r_base, free_.linear);
+  if (leg >= 0) {
+    for (int i = 0; i < 3; ++i) {
+      velocity = mul_add(columns[i], free_.joint[3 * leg + i], velocity);
+    }
   }
   const std::array<Vec3<S>, 3> axes{frame.t1, frame.t2, frame.n};
+  // A normal impulse that is given only acts: its row needs no velocity and no Delassus block.
+  const int solved = any(c.hard) ? 3 : 2;
   for (int r = 0; r < 3; ++r) {
-    const Vec3<S>& e = axes[r];
-    Vec3<S> linear = e, angular = cross(r_base, e);
-    S free = dot(e, free_.linear) + dot(angular, free_.angular);
+    fill_row(axes[r], r_base, leg, columns, c.w[r], c.j[r]);
+    if (r == solved) break;
+    c.free[r] = dot(axes[r], velocity);
     if (leg >= 0) {
-      for (int j = 0; j < 3; ++j) {
-        const S v = dot(e, columns[j]);
-        c.j[r][j] = v;
-        free = fma(v, free_.joint[3 * leg + j], free);
-        linear = mul_add(dynamics_.y_linear(leg, j), -v, linear);
-        angular = mul_add(dynamics_.y_angular(leg, j), -v, angular);
-      }
       const Vec3<S> p = dynamics_.leg_inverse(leg) * Vec3<S>{c.j[r][0], c.j[r][1], c.j[r][2]};
       c.p[r] = {p.x, p.y, p.z};
     }
-    c.free[r] = free;
-    c.w[r] = dynamics_.half_solve(linear, angular);
   }
   const auto block = [&](int a, int b) {
     S v = c.w[a][0] * c.w[b][0];
@@ -57,7 +65,13 @@ void RobotStepper<S>::fill_rows(const RobotModel<S>& model, const Vec3<S>& r_bas
     }
     return v;
   };
-  c.g = {block(0, 0), block(0, 1), block(0, 2), block(1, 1), block(1, 2), block(2, 2)};
+  c.g.xx = block(0, 0);
+  c.g.xy = block(0, 1);
+  c.g.yy = block(1, 1);
+  if (solved < 3) return;
+  c.g.xz = block(0, 2);
+  c.g.yz = block(1, 2);
+  c.g.zz = block(2, 2);
 }
 
 template <typename S>
@@ -73,8 +87,7 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     FootContact<S>& contact = x.feet[l];
     // A contact keeps the patch on which it began.
     contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
-    Ground<S> scratch;
-    const Ground<S>& ground = terrain.pick(contact.region, scratch);
+    const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
     S height = zero, slope_x = zero, slope_y = zero;
     const Mask<S> rough = ground.roughness > zero;
     if (any(rough)) {
@@ -96,20 +109,17 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     const S penetration = model.foot_radius_m - (centre.z - height) * normal_z;
     report.foot_centre[l] = centre;
     report.penetration[l] = penetration;
-    const std::array<Vec3<S>, 3> columns = dynamics_.leg_jacobian(
+    const Columns columns = dynamics_.leg_jacobian(
         model, l, pose.foot + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n));
-    Vec3<S> v_base = cross_add(velocity_.angular, r_base, velocity_.linear);
-    for (int j = 0; j < 3; ++j) v_base = mul_add(columns[j], velocity_.joint[3 * l + j], v_base);
+    Vec3<S> v_base = cross_add(x.rigid.angular_velocity, r_base, velocity_);
+    for (int j = 0; j < 3; ++j) v_base = mul_add(columns[j], x.rigid.qd[3 * l + j], v_base);
     const Vec3<S> velocity = rotation_ * v_base;
     report.foot_velocity[l] = velocity;
 
     const S penetration_rate = -dot(frame.n, v_base);
     const Vec3<S> point = x.rigid.position + rotation_ * r_base;
-    FootContact<S> next = contact;
     granular_[l] = granular_step(ground, foot, point.x, point.y, penetration, penetration_rate,
-                                 velocity.x, velocity.y, rate, next);
-    // Only what is granular remembers; the other kinds keep just contact and velocity.
-    contact = next;
+                                 velocity.x, velocity.y, rate, contact);
     const Mask<S> touching = penetration >= zero;
     const Mask<S> granular = ground.is_granular == one;
     const Mask<S> linear = ground.is_linear == one;
@@ -128,10 +138,8 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
       x.impulse[l] = {zero, zero, zero};
       continue;
     }
-    fill_rows(model, r_base,
-              pose.foot + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n), l, 3,
-              frame, c);
     c.hard = ground.is_rigid == one;
+    fill_rows(r_base, l, columns, frame, c);
     c.friction = ground.friction;
     c.disc = bound * dt;
     c.impulse = {x.impulse[l][0], x.impulse[l][1], select(c.hard, x.impulse[l][2], normal * dt)};
@@ -151,8 +159,7 @@ void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S
   // alone stops here.
   const Mask<S> close = both(near, place.z - radius < terrain.highest);
   if (!any(close)) return forget();
-  Ground<S> scratch;
-  const Ground<S>& ground = terrain.pick(terrain.region_at(place.x), scratch);
+  const Ground<S>& ground = terrain.pick(terrain.region_at(place.x), mixed_ground_);
   S height = zero, slope_x = zero, slope_y = zero;
   const Mask<S> rough = ground.roughness > zero;
   if (any(rough)) {
@@ -174,14 +181,16 @@ void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S
   slots_[num_points_] = slot;
   ++num_points_;
   const Vec3<S> arm = mul_add(frame.n, -radius, r_base);
-  Vec3<S> arm_hip = r_hip;
+  Columns columns;
   if (leg >= 0) {
     const LegPose<S>& pose = dynamics_.leg(leg);
-    arm_hip = r_hip + unrotate_x(pose.s1, pose.c1, (-radius) * frame.n);
+    columns = dynamics_.leg_jacobian(model, leg,
+                                     r_hip + unrotate_x(pose.s1, pose.c1, (-radius) * frame.n));
+    if (joints < 3) columns[2] = {zero, zero, zero};
   }
-  fill_rows(model, arm, arm_hip, leg, joints, frame, c);
   c.active = active;
   c.hard = active;
+  fill_rows(arm, leg, columns, frame, c);
   c.friction = ground.friction;
   c.disc = zero;
   c.impulse = x.impulse[slot];
@@ -266,13 +275,11 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   rotation_ = rotation_matrix(x.rigid.orientation);
   dynamics_.update(model, x.rigid);
   const Motion<S> acceleration = dynamics_.free_acceleration(torque_nm);
-  velocity_.linear = transposed_times(rotation_, x.rigid.velocity);
-  velocity_.angular = x.rigid.angular_velocity;
-  velocity_.joint = x.rigid.qd;
-  free_.linear = mul_add(acceleration.linear, dt, velocity_.linear);
-  free_.angular = mul_add(acceleration.angular, dt, velocity_.angular);
+  velocity_ = transposed_times(rotation_, x.rigid.velocity);
+  free_.linear = mul_add(acceleration.linear, dt, velocity_);
+  free_.angular = mul_add(acceleration.angular, dt, x.rigid.angular_velocity);
   for (int j = 0; j < kNumJoints; ++j) {
-    free_.joint[j] = fma(dt, acceleration.joint[j], velocity_.joint[j]);
+    free_.joint[j] = fma(dt, acceleration.joint[j], x.rigid.qd[j]);
   }
 
   num_points_ = num_stops_ = 0;
@@ -294,7 +301,8 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   x.stop_impulse.fill(zero);
   for (int i = 0; i < num_stops_; ++i) {
     const int joint = stop_joints_[i];
-    // Not the product alone: it is -0 for a lane that has left its upper stop, where one robot alone has +0.
+    // Not the product alone: it is -0 for a lane that has left its upper stop, where one robot
+    // alone has +0.
     x.stop_impulse[joint] =
         select(stops_[i].impulse > zero, stops_[i].j[joint % 3] * stops_[i].impulse, zero);
   }
@@ -310,9 +318,10 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
     const Vec3<S> arm =
         mul_add(outward, model.foot_radius_m, hip_to_base(model.legs[l], pose, pose.foot));
     const Vec3<S> arm_hip = pose.foot + unrotate_x(pose.s1, pose.c1, model.foot_radius_m * outward);
-    PointContact<S> flank;
-    fill_rows(model, arm, arm_hip, l, 3, {outward, outward, outward}, flank);
-    add_impulse(flank.w[0], flank.j[0], l, -(f.stroke * dt), sum);
+    std::array<S, 6> w;
+    std::array<S, 3> j;
+    fill_row(outward, arm, l, dynamics_.leg_jacobian(model, l, arm_hip), w, j);
+    add_impulse(w, j, l, -(f.stroke * dt), sum);
     report.foot_force[l][0] = fma(-f.stroke, f.direction_x, report.foot_force[l][0]);
     report.foot_force[l][1] = fma(-f.stroke, f.direction_y, report.foot_force[l][1]);
   }

@@ -57,6 +57,13 @@ template <typename S>
 inline Vec3<S> operator*(const Mat3<S>& m, const Vec3<S>& v) noexcept {
   return {dot(m.r0, v), dot(m.r1, v), dot(m.r2, v)};
 }
+/// m v + a
+template <typename S>
+inline Vec3<S> mul_add(const Mat3<S>& m, const Vec3<S>& v, const Vec3<S>& a) noexcept {
+  return {fma(m.r0.x, v.x, fma(m.r0.y, v.y, fma(m.r0.z, v.z, a.x))),
+          fma(m.r1.x, v.x, fma(m.r1.y, v.y, fma(m.r1.z, v.z, a.y))),
+          fma(m.r2.x, v.x, fma(m.r2.y, v.y, fma(m.r2.z, v.z, a.z)))};
+}
 template <typename S>
 inline Vec3<S> transposed_times(const Mat3<S>& m, const Vec3<S>& v) noexcept {
   return mul_add(m.r0, v.x, mul_add(m.r1, v.y, v.z * m.r2));
@@ -64,6 +71,16 @@ inline Vec3<S> transposed_times(const Mat3<S>& m, const Vec3<S>& v) noexcept {
 template <typename S>
 inline Mat3<S> operator*(const Mat3<S>& a, const Mat3<S>& b) noexcept {
   return {transposed_times(b, a.r0), transposed_times(b, a.r1), transposed_times(b, a.r2)};
+}
+
+/// [dw]x + [w]x [w]x: what a point of a body that turns at w is accelerated by, per its place.
+template <typename S>
+inline Mat3<S> turning_acceleration(const Vec3<S>& dw, const Vec3<S>& w) noexcept {
+  const S xx = w.x * w.x, yy = w.y * w.y, zz = w.z * w.z;
+  const S xy = w.x * w.y, xz = w.x * w.z, yz = w.y * w.z;
+  return {{-(yy + zz), xy - dw.z, xz + dw.y},
+          {xy + dw.z, -(xx + zz), yz - dw.x},
+          {xz - dw.y, yz + dw.x, -(xx + yy)}};
 }
 
 /// Symmetric 3x3 matrix, such as an inertia.
@@ -80,12 +97,17 @@ template <typename S>
 inline Sym3<S> operator+(const Sym3<S>& a, const Sym3<S>& b) noexcept {
   return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
 }
-/// m (|c|^2 1 - c c^T): what moving the reference point by c adds to the inertia of mass m.
+/// i + m (|c|^2 1 - c c^T): inertia `i` of a body of mass m about its centre of mass, seen from
+/// where that is at c.
 template <typename S>
-inline Sym3<S> point_inertia(S m, const Vec3<S>& c) noexcept {
+inline Sym3<S> shifted_inertia(const Sym3<S>& i, S m, const Vec3<S>& c) noexcept {
   const Vec3<S> mc = m * c;
-  return {fma(mc.y, c.y, mc.z * c.z), -(mc.x * c.y), -(mc.x * c.z),
-          fma(mc.x, c.x, mc.z * c.z), -(mc.y * c.z), fma(mc.x, c.x, mc.y * c.y)};
+  return {fma(mc.y, c.y, fma(mc.z, c.z, i.xx)),
+          fma(-mc.x, c.y, i.xy),
+          fma(-mc.x, c.z, i.xz),
+          fma(mc.x, c.x, fma(mc.z, c.z, i.yy)),
+          fma(-mc.y, c.z, i.yz),
+          fma(mc.x, c.x, fma(mc.y, c.y, i.zz))};
 }
 
 /// Rotation about x by the angle whose sine and cosine are given: v -> Rx v, Rx^T v, Rx m Rx^T.
