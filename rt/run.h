@@ -11,16 +11,10 @@
 #include "rt/command_source.h"
 #include "rt/process_config.h"
 #include "rt/run_record.h"
+#include "rt/run_script.h"
 #include "rt/run_statistics.h"
 
 namespace sandrunner {
-
-/// What the run is to be.
-struct RunPlan {
-  double walk_s = 20.0;
-  bool start_walking =
-      false;  ///< at once in Walk from the nominal pose; ends when the time is over
-};
 
 struct RunResult {
   bool survived =
@@ -36,6 +30,9 @@ struct RunResult {
   RunFigures figures;
   RunRecord record;  ///< filled only if asked for
 };
+
+/// Copies what the script knows about the end of the run.
+void take_outcome(const RunScript& script, RunResult& result);
 
 /// Runs the simulated robot in lockstep: from lying to standing, the walk, and standing again (or
 /// just the walk). Without a policy it only stands up. `interrupt` ends it in damping; `progress`

@@ -21,12 +21,12 @@ double square(double v) { return v * v; }
 
 }  // namespace
 
-void RunStatistics::add(const TickView& tick) {
+void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
   if (periods_.empty() || periods_.back().ticks == kTicksPerPolicyStep) periods_.emplace_back();
   Period& p = periods_.back();
   ++p.ticks;
-  const sim::SimulatorState& state = tick.simulator.state();
-  const sim::RigidState<double>& x = state.robot.rigid;
+  const SimulatedTick& robot = tick.simulated;
+  const sim::RigidState<double>& x = robot.robot;
   const sim::Mat3<double> r = sim::rotation_matrix(x.orientation);
   const double forward = std::sqrt(r.r0.x * r.r0.x + r.r1.x * r.r1.x);
   const double c = r.r0.x / forward, s = r.r1.x / forward;
@@ -34,49 +34,48 @@ void RunStatistics::add(const TickView& tick) {
   p.vy += c * x.velocity.y - s * x.velocity.x;
   p.yaw_rate += dot(r.r2, x.angular_velocity);
   for (int j = 0; j < kNumJoints; ++j) {
-    p.power += state.torque_nm[j] * tick.joint_velocity_radps[j];
-    p.torque_squared += square(state.torque_nm[j]);
+    p.power += robot.torque_nm[j] * robot.joint_velocity_before_radps[j];
+    p.torque_squared += square(robot.torque_nm[j]);
   }
-  p.command = tick.command;
-  p.past_stop += tick.joint_past_stop;
-  p.too_fast += tick.joint_too_fast;
-  if (tick.policy_ran) {
+  p.command = tick.output.policy_input.command;
+  p.past_stop += static_cast<int>(tick.joint_past_stop);
+  p.too_fast += static_cast<int>(tick.joint_too_fast);
+  if (truth) {
+    const StateEstimate& estimate = tick.input.policy.estimate;
     ++p.estimates;
     for (int i = 0; i < 3; ++i) {
-      p.velocity_error2 += square(tick.estimate.velocity_mps[i] - tick.truth.velocity_mps[i]);
+      p.velocity_error2 += square(estimate.velocity_mps[i] - truth->velocity_mps[i]);
     }
-    p.height_error2 += square(tick.estimate.body_height_m - tick.truth.body_height_m);
+    p.height_error2 += square(estimate.body_height_m - truth->body_height_m);
     for (int l = 0; l < kNumLegs; ++l) {
-      p.foot_error2 +=
-          square(tick.estimate.foot_height_m[l] - tick.truth.foot_height_m[l]) / kNumLegs;
+      p.foot_error2 += square(estimate.foot_height_m[l] - truth->foot_height_m[l]) / kNumLegs;
     }
   }
   if (p.ticks == kTicksPerPolicyStep) {
     for (int l = 0; l < kNumLegs; ++l) {
-      p.foot_height[l] = tick.simulator.truth().state.foot_height_m[l] - x.position.z;
+      p.foot_height[l] = robot.truth.foot_height_m[l] - x.position.z;
     }
   }
   follow_stances(tick);
 }
 
-void RunStatistics::follow_stances(const TickView& tick) {
-  const sim::StepReport<double>& report = tick.simulator.truth().report;
+void RunStatistics::follow_stances(const TickRecord& tick) {
   for (int l = 0; l < kNumLegs; ++l) {
     Stance& stance = stances_[l];
-    const double depth = report.penetration[l];
+    const double depth = tick.simulated.penetration_m[l];
     if (!stance.open && depth >= 0.0) stance = {.open = true};
     if (!stance.open) continue;
     ++stance.ticks;
     if (depth > stance.depth) {
       stance.depth = depth;
-      stance.x = report.foot_centre[l].x;
-      stance.y = report.foot_centre[l].y;
+      stance.x = tick.simulated.foot_centre[l].x;
+      stance.y = tick.simulated.foot_centre[l].y;
     }
     if (depth > -kLift_m) continue;
     stance.open = false;
     if (stance.ticks < kShortestStance_ticks) continue;
     ended_.push_back({periods_.size() - 1, stance.depth});
-    footprints_.push_back({static_cast<double>(tick.simulator.state().tick) * kControlPeriod_s,
+    footprints_.push_back({static_cast<double>(tick.input.sensors.tick + 1) * kControlPeriod_s,
                            stance.x, stance.y, stance.depth});
   }
 }

@@ -8,7 +8,7 @@
 
 #include "rt/core/messages.h"
 #include "rt/run_record.h"
-#include "sim/simulator.h"
+#include "rt/tick_record.h"
 
 namespace sandrunner {
 
@@ -39,21 +39,11 @@ struct RunFigures {
   std::int64_t speed_limit_steps = 0;  ///< ticks with a joint above its speed limit
 };
 
-/// One tick as the statistics see it.
-struct TickView {
-  const sim::Simulator& simulator;                 ///< after the tick
-  const JointArray<double>& joint_velocity_radps;  ///< at the start of the tick
-  VelocityCommand command;                         ///< after shaping
-  bool policy_ran = false;
-  StateEstimate estimate;  ///< if it ran
-  StateEstimate truth;     ///< at the start of the tick
-  bool joint_past_stop = false, joint_too_fast = false;
-};
-
 /// Collects figures tick by tick while the robot walks, and footprints.
 class RunStatistics {
  public:
-  void add(const TickView& tick);
+  /// `truth`: what the estimate that came with this tick should be; null: none came.
+  void add(const TickRecord& tick, const StateEstimate* truth);
   /// Figures so far. `mass_kg`, `motor_constant` (N m/sqrt(W)): for the cost of transport.
   RunFigures figures(double mass_kg, double motor_constant) const;
   const std::vector<Footprint>& footprints() const noexcept { return footprints_; }
@@ -77,7 +67,7 @@ class RunStatistics {
     std::size_t period;
     double depth;
   };
-  void follow_stances(const TickView& tick);
+  void follow_stances(const TickRecord& tick);
 
   std::vector<Period> periods_;
   std::array<Stance, kNumLegs> stances_;

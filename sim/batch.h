@@ -23,14 +23,17 @@ struct BatchDrive {
   S inverse_no_load_speed{};  ///< s/rad
 };
 
+/// Share of the drives' speed limit up to which no joint is too fast for `speed_excess`.
+inline constexpr double kSpeedMargin = 0.9;
+
 /// Sums over the ticks of one policy period, for rewards and statistics.
 template <typename S>
 struct BatchSums {
-  S torque_squared{};                     ///< sum over joints of tau^2, N^2 m^2
-  S power{};                              ///< signed sum of tau qd, W
-  S speed_squared{};                      ///< sum over joints of qd^2
-  S speed_excess{};                       ///< sum over joints of (|qd| - limit)+^2, rad^2/s^2
-  S stop_excess{};                        ///< sum over joints of the distance past the stop, rad
+  S torque_squared{};  ///< sum over joints of tau^2, N^2 m^2
+  S power{};           ///< signed sum of tau qd, W
+  S speed_squared{};   ///< sum over joints of qd^2
+  S speed_excess{};    ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
+  S stop_excess{};     ///< sum over joints of the distance past the stop, rad
   S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
   S slip{};                               ///< sum over feet in contact of |v_xy|^2, m^2/s^2
   std::array<S, kNumLegs> foot_load{};    ///< normal force of each foot, N

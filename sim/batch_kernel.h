@@ -33,9 +33,10 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
       sums.torque_squared = fma(torque[j], torque[j], sums.torque_squared);
       sums.power = fma(torque[j], qd, sums.power);
       sums.speed_squared = fma(qd, qd, sums.speed_squared);
-      const S fast = max(abs(qd) - r.model.speed_limit_radps[j], zero);
+      const S limit = r.model.speed_limit_radps[j];
+      const S fast = max(fma(S(-kSpeedMargin), limit, abs(qd)), zero);
       sums.speed_excess = fma(fast, fast, sums.speed_excess);
-      too_fast = max(too_fast, fast);
+      too_fast = max(too_fast, abs(qd) - limit);
       const S past = max(max(r.model.lower_rad[j] - q, q - r.model.upper_rad[j]), zero);
       sums.stop_excess = sums.stop_excess + past;
       past_stop = max(past_stop, past);

@@ -40,7 +40,12 @@ void Task::new_command(int env, Env& e) const {
   e.command = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
   e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1],
                                 static_cast<float>(c.centripetal_mps2));
-  if (uniform(env, e) < c.zero_share) e.command = {};
+  const double rest = uniform(env, e);
+  if (rest < c.zero_share) {
+    e.command = {};
+  } else if (rest < c.zero_share + c.in_place_share) {
+    e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -c.yaw_radps, c.yaw_radps))};
+  }
   e.command_steps_left =
       static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
 }
@@ -138,6 +143,7 @@ void Task::hard_reset(int env, Env& e) {
   e.action_1 = e.action_2 = {};
   e.air_s = e.stance_s = {};
   e.unloaded_steps = {};
+  e.drift = {};
   sim::RobotState<float> state;
   sim::RigidState<float>& x = state.rigid;
   for (int j = 0; j < kNumJoints; ++j) {

@@ -15,6 +15,7 @@ struct StepOutcome {
   std::array<float, 3> command{};       ///< vx, vy, wz
   float vx = 0, vy = 0, vz = 0;         ///< base origin, m/s
   float yaw_rate = 0;                   ///< about world z, rad/s
+  std::array<float, 3> drift{};         ///< vx, vy, yaw rate over the last stride or so
   float roll_rate = 0, pitch_rate = 0;  ///< body frame, rad/s
   float up_z = 1;                       ///< cosine of the tilt
   float body_height = 0;                ///< above the deformed ground, m
@@ -40,6 +41,18 @@ inline float velocity_kernel(const StepOutcome& s, double width, double width_pe
   return static_cast<float>(std::exp(-(ex * ex + ey * ey) / (width + width_per_speed2 * speed2)));
 }
 
+/// Share of the commanded motion that the robot makes, 0 to 1; 1 for a command to stand.
+inline double progress(const StepOutcome& s) {
+  const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
+  double share = 1.0;
+  if (speed2 > 0.01) {
+    share = (s.vx * s.command[0] + s.vy * s.command[1]) / speed2;
+  } else if (std::fabs(s.command[2]) > 0.1f) {
+    share = s.yaw_rate / s.command[2];
+  }
+  return std::clamp(share, 0.0, 1.0);
+}
+
 /// Sum of what is paid.
 inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
   const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
@@ -55,9 +68,16 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
     sum += r.yaw_progress_weight *
            std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
   }
-  sum += r.precise_weight *
-         velocity_kernel(s, r.precise_velocity_width, r.precise_velocity_width_per_speed2) *
-         std::exp(-yaw_error * yaw_error / r.precise_yaw_width);
+  // Narrow kernels of the velocities without the gait's own swing; none for standing while asked to
+  // go.
+  const double ex = s.command[0] - s.drift[0], ey = s.command[1] - s.drift[1],
+               ew = s.command[2] - s.drift[2];
+  sum += progress(s) *
+         (r.precise_forward_weight *
+              std::exp(-ex * ex /
+                       (r.precise_forward_width + r.precise_forward_width_per_speed2 * speed2)) +
+          r.precise_drift_weight *
+              std::exp(-ey * ey / r.precise_lateral_width - ew * ew / r.precise_yaw_width));
   const bool still = speed2 < 1e-4 && std::fabs(s.command[2]) < 1e-2f;
   double air = 0.0;
   for (int l = 0; l < kNumLegs; ++l) {
@@ -77,8 +97,9 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
 inline double cost(const StepOutcome& s, const RewardSettings& r) {
   const double commanded =
       std::hypot(static_cast<double>(s.command[0]), static_cast<double>(s.command[1]));
-  double sum = r.torque * (1.0 + r.torque_slow / (0.5 + commanded)) * s.torque_squared +
-               r.power * std::max(s.power, 0.0f) + r.joint_speed * s.speed_squared +
+  // Energy for the way, not for the time: cost of transport counts at every speed.
+  const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
+  double sum = energy * r.energy_speed_mps / (0.5 + commanded) + r.joint_speed * s.speed_squared +
                r.speed_excess * s.speed_excess + r.slip * s.slip;
   double first = 0.0, second = 0.0, pose = 0.0, overrun = 0.0;
   const bool still =

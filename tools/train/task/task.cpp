@@ -175,6 +175,10 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     s.vy = (r.r0.x * x.velocity.y - r.r1.x * x.velocity.x) / forward;
     s.vz = x.velocity.z;
     s.yaw_rate = dot(r.r2, x.angular_velocity);
+    const auto keep = static_cast<float>(kStep_s / config_.reward.precise_time_s);
+    const std::array<float, 3> now{s.vx, s.vy, s.yaw_rate};
+    for (int i = 0; i < 3; ++i) e.drift[i] += std::min(keep, 1.0f) * (now[i] - e.drift[i]);
+    s.drift = e.drift;
     s.roll_rate = x.angular_velocity.x;
     s.pitch_rate = x.angular_velocity.y;
     s.up_z = r.r2.z;

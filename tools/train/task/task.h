@@ -72,6 +72,7 @@ class Task {
     JointArray<float> joint_offset{};
     std::array<float, kNumLegs> air_s{}, stance_s{};
     std::array<std::int32_t, kNumLegs> unloaded_steps{};
+    std::array<float, 3> drift{};            // vx, vy, yaw rate, low-passed
     std::array<float, 8> ground_features{};  // for the critic
     sim::BatchDrive<float> drive;
     sim::Ground<float> ground;

@@ -83,6 +83,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("command.yaw_radps", c.command.yaw_radps, 0.0, 1e9);
   number("command.yaw_share", c.command.yaw_share, 0.0, 1.0);
   number("command.zero_share", c.command.zero_share, 0.0, 1.0);
+  number("command.in_place_share", c.command.in_place_share, 0.0, 1.0);
   number("command.change_s", c.command.change_s, 0.1, 1000.0);
   number("command.centripetal_mps2", c.command.centripetal_mps2, 0.0, 1e9);
   number("command.gate_kernel", c.command.gate_kernel, 0.0, 1e9);
@@ -140,18 +141,21 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.yaw_weight", c.reward.yaw_weight, 0.0, 1e9);
   number("reward.yaw_width", c.reward.yaw_width, 1e-6, 1e3);
   number("reward.yaw_progress_weight", c.reward.yaw_progress_weight, 0.0, 1e9);
-  number("reward.precise_weight", c.reward.precise_weight, 0.0, 1e9);
-  number("reward.precise_velocity_width", c.reward.precise_velocity_width, 1e-6, 1e3);
-  number("reward.precise_velocity_width_per_speed2", c.reward.precise_velocity_width_per_speed2,
-         0.0, 1e9);
+  number("reward.precise_time_s", c.reward.precise_time_s, 0.01, 10.0);
+  number("reward.precise_forward_weight", c.reward.precise_forward_weight, 0.0, 1e9);
+  number("reward.precise_forward_width", c.reward.precise_forward_width, 1e-6, 1e3);
+  number("reward.precise_forward_width_per_speed2", c.reward.precise_forward_width_per_speed2, 0.0,
+         1e9);
+  number("reward.precise_drift_weight", c.reward.precise_drift_weight, 0.0, 1e9);
+  number("reward.precise_lateral_width", c.reward.precise_lateral_width, 1e-6, 1e3);
   number("reward.precise_yaw_width", c.reward.precise_yaw_width, 1e-6, 1e3);
   number("reward.air_weight", c.reward.air_weight, 0.0, 1e9);
   number("reward.air_target_s", c.reward.air_target_s, 1e-3, 10.0);
   number("reward.air_longest_s", c.reward.air_longest_s, 0.0, 1e9);
   number("reward.stance_longest_s", c.reward.stance_longest_s, 0.0, 1e9);
   number("reward.torque", c.reward.torque, 0.0, 1e9);
-  number("reward.torque_slow", c.reward.torque_slow, 0.0, 1e9);
   number("reward.power", c.reward.power, 0.0, 1e9);
+  number("reward.energy_speed_mps", c.reward.energy_speed_mps, 0.0, 1e3);
   number("reward.joint_speed", c.reward.joint_speed, 0.0, 1e9);
   number("reward.speed_excess", c.reward.speed_excess, 0.0, 1e9);
   number("reward.smoothness_1", c.reward.smoothness_1, 0.0, 1e9);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "rt/core/messages.h"
+#include "rt/core/safety_gate.h"
+
+namespace sandrunner {
+
+/// What an operator sees of the tick that was just done.
+struct TickFacts {
+  Mode mode = Mode::kPassive;
+  std::uint64_t faults = 0;          ///< latched bits of Fault
+  Fault first_fault = Fault::kNone;  ///< that began the latch
+  bool base_contact = false;         ///< simulated robot: its base touches the ground
+  bool thigh_contact = false;        ///< likewise
+  bool interrupted = false;          ///< somebody wants the process to end
+};
+
+struct OperatorVerdict {
+  bool running = true;  ///< false: that was the last tick
+  bool counts = false;  ///< the tick belongs to the walk that the figures are taken over
+};
+
+/// Who asks the controller for things, tick by tick. Called from the control thread: wait-free.
+class OperatorInput {
+ public:
+  virtual ~OperatorInput() = default;
+  /// Command for the tick to come.
+  virtual OperatorCommand command(std::uint64_t tick) noexcept = 0;
+  /// Looks at the tick just done.
+  virtual OperatorVerdict advance(const TickFacts& facts) noexcept = 0;
+};
+
+}  // namespace sandrunner
