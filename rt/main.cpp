@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -17,17 +15,16 @@
 #include "rt/core/floating_point.h"
 #include "rt/options.h"
 #include "rt/process_config.h"
+#include "rt/realtime/rt_report.h"
 #include "rt/run.h"
 #include "rt/run_csv.h"
 #include "rt/run_pictures.h"
+#include "rt/signals.h"
 #include "rt/summary.h"
 
 namespace {
 
 using namespace sandrunner;
-
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
 // Fails now rather than after the run.
 void prepare_folder(const std::string& dir) {
@@ -47,6 +44,10 @@ void show_progress(const RunSample& s) {
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
+  if (options->rt_report) {
+    print_rt_report();
+    return kExitOk;
+  }
   const CommandSource command(options->command);
   std::optional<Policy> policy;
   if (!options->policy_path.empty()) {
@@ -67,13 +68,15 @@ int run(int argc, char** argv) {
   if (out) prepare_folder(options->out_dir);
 
   flush_denormals_to_zero();
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const SignalWatch signals;
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunPlan plan{.walk_s = options->duration_s, .start_walking = options->start_walking};
+  const auto progress = terminal ? show_progress : std::function<void(const RunSample&)>();
+  Policy* const used = policy ? &*policy : nullptr;
   const RunResult result =
-      run_lockstep(config, policy ? &*policy : nullptr, command, plan, out, interrupted,
-                   terminal ? show_progress : std::function<void(const RunSample&)>());
+      options->realtime
+          ? run_realtime(config, used, command, plan, out, signals.interrupted(), progress)
+          : run_lockstep(config, used, command, plan, out, signals.interrupted(), progress);
   if (terminal) fmt::print(stderr, "\r{:60}\r", "");
 
   fmt::print("{}", summary_table(result, command));
@@ -96,7 +99,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) == 0) return code;
+    fmt::print(stderr, "sandrunner: standard output cannot be written\n");
+    return kExitInternal;
   } catch (const InputError& error) {
     fmt::print(stderr, "sandrunner: {}\n", one_line(error.what()));
     return kExitBadInput;

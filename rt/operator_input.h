@@ -10,6 +10,7 @@ namespace sandrunner {
 
 /// What an operator sees of the tick that was just done.
 struct TickFacts {
+  std::uint64_t ticks = 1;  ///< how far time went on: 1, and the slots skipped before it
   Mode mode = Mode::kPassive;
   std::uint64_t faults = 0;          ///< latched bits of Fault
   Fault first_fault = Fault::kNone;  ///< that began the latch

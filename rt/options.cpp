@@ -34,6 +34,11 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
          "--start", start,
          "stand: lies, stands up, walks, stands again; walk: walks at once from the nominal pose")
       ->check(CLI::IsMember({"stand", "walk"}));
+  std::string clock = "lockstep";
+  app.add_option("--clock", clock,
+                 "lockstep: one thread, simulated time, as fast as the machine goes; realtime: the "
+                 "threads of the robot on the system's clock")
+      ->check(CLI::IsMember({"lockstep", "realtime"}));
   app.add_option("--seed", o.seed, "0: exactly the nominal start; above 0: a disturbed one")
       ->check(CLI::Range(0.0, 9e15))
       ->type_name("N");
@@ -47,6 +52,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->always_capture_default(false);
   app.add_option("--out", o.out_dir, "folder for summary.json, run.csv, run.png, strip.png")
       ->type_name("DIR");
+  const CLI::App* report = app.add_subcommand(
+      "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
   app.set_version_flag("--version", std::string("sandrunner ") + SANDRUNNER_VERSION);
   try {
     app.parse(argc, argv);
@@ -57,6 +64,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     throw InputError(fmt::format("command line: {}", error.what()));
   }
   o.start_walking = start == "walk";
+  o.realtime = clock == "realtime";
+  o.rt_report = report->parsed();
   if (!std::isfinite(o.duration_s) || o.duration_s <= 0.0 || o.duration_s > 86400.0) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));

@@ -15,6 +15,8 @@ struct Options {
   std::string command = "1.5,0,0";
   double duration_s = 20.0;  ///< of Walk
   bool start_walking = false;
+  bool realtime = false;   ///< --clock realtime
+  bool rt_report = false;  ///< the subcommand
   std::uint64_t seed = 0;
   std::vector<std::string> config_files;
   std::vector<std::string> assignments;  ///< of --set

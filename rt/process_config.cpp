@@ -79,6 +79,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
   }
   read_controller(config, c);
   p.simulator = sim::read_simulator_config(config);
+  p.realtime = read_realtime_config(config);
   p.motor_constant = config.number("summary.motor_constant", p.motor_constant, 1e-3, 1e3);
   config.reject_unknown();
   p.effective = config.effective();

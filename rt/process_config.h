@@ -4,6 +4,7 @@
 #include "policy/policy.h"
 #include "rt/core/config_tree.h"
 #include "rt/core/controller.h"
+#include "rt/realtime/setup.h"
 #include "sim/robot_model.h"
 #include "sim/simulator.h"
 
@@ -14,6 +15,7 @@ struct ProcessConfig {
   sim::Robot robot;
   sim::SimulatorConfig simulator;
   ControllerConfig controller;
+  RealtimeConfig realtime;
   double motor_constant = 3.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   std::string effective;        ///< TOML of all settings that counted
 };

@@ -26,8 +26,12 @@ RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const Comman
     note_before(simulator, record);
     const GateState gate_before = loop.controller().state().gate;
     loop.tick(script.command(simulator.state().tick));
-    const OperatorVerdict verdict = script.advance(facts_of(
-        loop.controller(), loop.output(), simulator, interrupt.load(std::memory_order_relaxed)));
+    TickFacts facts{.mode = loop.output().mode,
+                    .faults = loop.output().faults,
+                    .first_fault = loop.controller().state().gate.first_fault,
+                    .interrupted = interrupt.load(std::memory_order_relaxed)};
+    note_contacts(simulator, facts);
+    const OperatorVerdict verdict = script.advance(facts);
     running = verdict.running;
     record.input = loop.input();
     record.output = loop.output();

@@ -6,15 +6,27 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "policy/policy.h"
 #include "rt/command_source.h"
 #include "rt/process_config.h"
+#include "rt/realtime/policy_thread.h"
+#include "rt/realtime/setup.h"
 #include "rt/run_record.h"
 #include "rt/run_script.h"
 #include "rt/run_statistics.h"
 
 namespace sandrunner {
+
+/// How the threads of a real-time run kept their times.
+struct RealtimeReport {
+  ControlDeadlines control;
+  PolicyDeadlines policy;
+  std::uint64_t late_policy_outputs = 0;  ///< that came after the tick they were meant for
+  std::uint64_t records_dropped = 0;      ///< ticks that figures and record lack
+  std::vector<SetupItem> setup;
+};
 
 struct RunResult {
   bool survived =
@@ -29,6 +41,7 @@ struct RunResult {
   std::uint64_t state_hash = 0;  ///< of simulator, controller and policy at the end
   RunFigures figures;
   RunRecord record;  ///< filled only if asked for
+  std::optional<RealtimeReport> realtime;
 };
 
 /// Copies what the script knows about the end of the run.
@@ -40,5 +53,20 @@ void take_outcome(const RunScript& script, RunResult& result);
 RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const CommandSource& command,
                        const RunPlan& plan, bool keep_record, const std::atomic<bool>& interrupt,
                        const std::function<void(const RunSample&)>& progress);
+
+/// Extras of a real-time run, for tests.
+struct RealtimeHooks {
+  LoopHooks control, policy;
+  /// Called every few milliseconds from the calling thread while the loops run.
+  std::function<void(PolicyThread&)> meanwhile;
+  OperatorInput* op = nullptr;  ///< in place of the script of `plan`
+};
+
+/// The same run in real time: control and policy in threads of their own, the caller's thread turns
+/// their ticks into figures. Throws InputError if a required part of the set-up is not to be had.
+RunResult run_realtime(const ProcessConfig& config, Policy* policy, const CommandSource& command,
+                       const RunPlan& plan, bool keep_record, const std::atomic<bool>& interrupt,
+                       const std::function<void(const RunSample&)>& progress,
+                       const RealtimeHooks& hooks = {});
 
 }  // namespace sandrunner

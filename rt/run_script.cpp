@@ -40,32 +40,32 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
     damp();
   }
   const Phase before = phase_;
-  verdict.running = next_phase(facts.mode);
+  verdict.running = next_phase(facts.mode, facts.ticks);
   const bool stood_up = before == Phase::kStandUp && (!verdict.running || phase_ == Phase::kWalk);
   if (stood_up && facts.base_contact) fail("did_not_stand");
   return verdict;
 }
 
-bool RunScript::next_phase(Mode mode) noexcept {
-  ++in_phase_;
+bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
+  in_phase_ += ticks;
   switch (phase_) {
     case Phase::kStandUp:
       if (mode != Mode::kStand) standing_ = 0;
-      if (mode == Mode::kStand && ++standing_ >= kSettle_ticks) {
+      if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {
         if (!has_policy_) return false;
         request(ModeRequest::kWalk);
         enter(Phase::kWalk);
       }
       return true;
     case Phase::kWalk:
-      if (mode == Mode::kWalk && ++walked_ >= walk_ticks_) {
+      if (mode == Mode::kWalk && (walked_ += ticks) >= walk_ticks_) {
         if (plan_.start_walking) return false;
         request(ModeRequest::kStand);
         enter(Phase::kStop);
       }
       return true;
     case Phase::kStop:
-      return !(mode == Mode::kStand && ++standing_ >= 2 * kSettle_ticks);
+      return !(mode == Mode::kStand && (standing_ += ticks) >= 2 * kSettle_ticks);
     case Phase::kDamp:
       return in_phase_ < kDampingEnd_ticks;
   }

@@ -40,7 +40,7 @@ class RunScript final : public OperatorInput {
   void enter(Phase phase) noexcept;
   void damp() noexcept;
   void fail(const char* reason) noexcept;
-  bool next_phase(Mode mode) noexcept;
+  bool next_phase(Mode mode, std::uint64_t ticks) noexcept;
 
   const CommandSource& source_;
   const RunPlan plan_;

@@ -11,6 +11,70 @@
 
 namespace sandrunner {
 
+namespace {
+
+double us(std::uint64_t ns) { return 1e-3 * static_cast<double>(ns); }
+
+nlohmann::ordered_json histogram_json(const LogHistogram& h) {
+  return {{"p50", us(h.quantile_ns(0.5))},
+          {"p99", us(h.quantile_ns(0.99))},
+          {"p99_9", us(h.quantile_ns(0.999))},
+          {"max", us(h.max_ns())}};
+}
+
+nlohmann::ordered_json realtime_json(const RealtimeReport& r) {
+  nlohmann::ordered_json j;
+  j["ticks"] = r.control.ticks;
+  j["ticks_skipped"] = r.control.skipped;
+  j["longest_miss_ticks"] = r.control.longest_miss;
+  j["policy_releases"] = r.control.releases;
+  j["policy_steps"] = r.policy.steps;
+  j["policy_missed"] = r.policy.missed;
+  j["policy_late"] = r.late_policy_outputs;
+  j["records_dropped"] = r.records_dropped;
+  j["late_us"] = histogram_json(r.control.late);
+  j["read_us"] = histogram_json(r.control.read);
+  j["control_us"] = histogram_json(r.control.control);
+  j["write_us"] = histogram_json(r.control.write);
+  j["tick_us"] = histogram_json(r.control.busy);
+  j["policy_step_us"] = histogram_json(r.policy.step);
+  j["policy_answer_us"] = histogram_json(r.policy.answer);
+  for (const SetupItem& item : r.setup) {
+    j["setup"][item.name] = {{"obtained", item.obtained}, {"detail", item.detail}};
+  }
+  return j;
+}
+
+std::string realtime_table(const RealtimeReport& r) {
+  std::string t = "real time, µs:                p50      p99    p99.9      max\n";
+  const auto row = [&](const char* name, const LogHistogram& h) {
+    t += fmt::format("  {:<22}{:>9.2f}{:>9.2f}{:>9.1f}{:>9.0f}\n", name, us(h.quantile_ns(0.5)),
+                     us(h.quantile_ns(0.99)), us(h.quantile_ns(0.999)), us(h.max_ns()));
+  };
+  row("start after its time", r.control.late);
+  row("sensors", r.control.read);
+  row("control step", r.control.control);
+  row("drives or simulator", r.control.write);
+  row("whole tick", r.control.busy);
+  row("policy step", r.policy.step);
+  row("policy's answer after", r.policy.answer);
+  t +=
+      fmt::format("  {} ticks ran, {} skipped (longest {}); policy: {} steps, {} missed, {} late\n",
+                  r.control.ticks, r.control.skipped, r.control.longest_miss, r.policy.steps,
+                  r.policy.missed, r.late_policy_outputs);
+  if (r.records_dropped > 0) {
+    t += fmt::format("  {} ticks are not in the figures: they came faster than they were taken\n",
+                     r.records_dropped);
+  }
+  for (const SetupItem& item : r.setup) {
+    t += fmt::format("  {:<26}{}{}\n", item.name,
+                     item.obtained ? "" : "NOT OBTAINED: ", item.detail);
+  }
+  return t;
+}
+
+}  // namespace
+
 std::string summary_table(const RunResult& r, const CommandSource& command) {
   const RunFigures& f = r.figures;
   std::string t;
@@ -46,8 +110,10 @@ std::string summary_table(const RunResult& r, const CommandSource& command) {
         fmt::format("{} and {} control steps", f.joint_limit_steps, f.speed_limit_steps));
   }
   row("state hash", fmt::format("{:016x}", r.state_hash));
-  row("simulated",
-      fmt::format("{:.1f} s, {:.0f} times real time", r.simulated_s, r.realtime_factor));
+  row("simulated", r.realtime ? fmt::format("{:.1f} s", r.simulated_s)
+                              : fmt::format("{:.1f} s, {:.0f} times real time", r.simulated_s,
+                                            r.realtime_factor));
+  if (r.realtime) t += realtime_table(*r.realtime);
   return t;
 }
 
@@ -81,6 +147,7 @@ std::string summary_json(const RunResult& r, const Options& options, const Comma
   j["speed_limit_steps"] = f.speed_limit_steps;
   j["state_hash"] = fmt::format("{:016x}", r.state_hash);
   j["realtime_factor"] = r.realtime_factor;
+  if (r.realtime) j["realtime"] = realtime_json(*r.realtime);
   return j.dump(2) + "\n";
 }
 

@@ -67,16 +67,11 @@ inline void note_gate(const GateState& before, const GateState& after,
   record.joint_too_fast = after.speed_limit_ticks != before.speed_limit_ticks ? 1 : 0;
 }
 
-/// What the operator is shown of the tick just done.
-inline TickFacts facts_of(const Controller& controller, const ControllerOutput& output,
-                          const sim::Simulator& simulator, bool interrupted) noexcept {
+/// Adds what the simulated robot touches.
+inline void note_contacts(const sim::Simulator& simulator, TickFacts& facts) noexcept {
   const sim::StepReport<double>& report = simulator.truth().report;
-  return {.mode = output.mode,
-          .faults = output.faults,
-          .first_fault = controller.state().gate.first_fault,
-          .base_contact = report.base_contact > 0.0,
-          .thigh_contact = report.thigh_contact > 0.0,
-          .interrupted = interrupted};
+  facts.base_contact = report.base_contact > 0.0;
+  facts.thigh_contact = report.thigh_contact > 0.0;
 }
 
 }  // namespace sandrunner

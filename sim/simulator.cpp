@@ -135,6 +135,15 @@ void Simulator::write(const SafeCommand& command) noexcept {
   update_truth();
 }
 
+void Simulator::skip(std::uint64_t ticks, const SafeCommand& held) noexcept {
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    if (config_.sensor_delay_ticks > 0) {
+      state_.sensors[state_.tick % kMaxDelayTicks] = sample();
+    }
+    write(held);
+  }
+}
+
 void Simulator::update_truth() noexcept {
   const RobotState<double>& x = state_.robot;
   const Mat3<double> r = rotation_matrix(x.rigid.orientation);

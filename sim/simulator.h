@@ -69,6 +69,9 @@ class Simulator final : public RobotIo {
   void read(SensorFrame& frame) noexcept override;
   /// Takes the command and advances the robot by one tick.
   void write(const SafeCommand& command) noexcept override;
+  /// Simulates the missed ticks, so that simulated time stays on the grid.
+  void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override;
+  void shut_down() noexcept override {}
 
   const SimulatorState& state() const noexcept { return state_; }
   void restore(const SimulatorState& state) noexcept;

@@ -46,7 +46,7 @@ class LogHistogram {
   // Below 16 one bucket each; above, sixteen to a power of two.
   static std::size_t bucket_of(std::uint64_t v) noexcept {
     if (v < kFine) return v;
-    const int shift = std::bit_width(v) - 1 - kFineBits;
+    const int shift = 63 - std::countl_zero(v) - kFineBits;
     return (static_cast<std::size_t>(shift) + 1) * kFine + ((v >> shift) - kFine);
   }
   static std::uint64_t upper_end(std::size_t bucket) noexcept {

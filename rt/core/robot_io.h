@@ -42,6 +42,13 @@ class RobotIo {
 
   /// Sends the command. It holds until the next one.
   virtual void write(const SafeCommand& command) noexcept = 0;
+
+  /// The loop missed `ticks` ticks, through which `held`, the last command, has been in force. The
+  /// next read() delivers the tick after them.
+  virtual void skip(std::uint64_t ticks, const SafeCommand& held) noexcept = 0;
+
+  /// The loop ends: drives off. Called once, after the last write().
+  virtual void shut_down() noexcept = 0;
 };
 
 }  // namespace sandrunner

@@ -33,6 +33,10 @@ class SpoiltRobot : public RobotIo {
     last = command;
     simulator_.write(command);
   }
+  void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
+    simulator_.skip(ticks, held);
+  }
+  void shut_down() noexcept override {}
 
   /// What happens to each frame from kDisturbed_tick on; `last` is the one before.
   std::function<void(SensorFrame& frame, const SensorFrame& last)> spoil;

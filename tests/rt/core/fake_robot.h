@@ -46,6 +46,9 @@ class FakeRobot : public RobotIo {
     }
   }
 
+  void skip(std::uint64_t, const SafeCommand&) noexcept override {}
+  void shut_down() noexcept override {}
+
   SensorFrame now;
   SafeCommand last;
 };

@@ -68,16 +68,15 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
     sum += r.yaw_progress_weight *
            std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
   }
-  // Narrow kernels of the velocities without the gait's own swing; none for standing while asked to
-  // go.
-  const double ex = s.command[0] - s.drift[0], ey = s.command[1] - s.drift[1],
-               ew = s.command[2] - s.drift[2];
-  sum += progress(s) *
-         (r.precise_forward_weight *
-              std::exp(-ex * ex /
-                       (r.precise_forward_width + r.precise_forward_width_per_speed2 * speed2)) +
-          r.precise_drift_weight *
-              std::exp(-ey * ey / r.precise_lateral_width - ew * ew / r.precise_yaw_width));
+  // Pointed kernels of the velocities without the gait's own swing: every bit of drift costs. None
+  // for standing while asked to go.
+  const double ex = std::fabs(s.command[0] - s.drift[0]), ey = std::fabs(s.command[1] - s.drift[1]),
+               ew = std::fabs(s.command[2] - s.drift[2]);
+  const double width =
+      r.precise_forward_width + r.precise_forward_width_per_speed * std::fabs(double(s.command[0]));
+  sum += progress(s) * (r.precise_forward_weight * std::exp(-ex / width) +
+                        r.precise_drift_weight *
+                            std::exp(-ey / r.precise_lateral_width - ew / r.precise_yaw_width));
   const bool still = speed2 < 1e-4 && std::fabs(s.command[2]) < 1e-2f;
   double air = 0.0;
   for (int l = 0; l < kNumLegs; ++l) {

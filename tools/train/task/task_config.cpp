@@ -144,7 +144,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.precise_time_s", c.reward.precise_time_s, 0.01, 10.0);
   number("reward.precise_forward_weight", c.reward.precise_forward_weight, 0.0, 1e9);
   number("reward.precise_forward_width", c.reward.precise_forward_width, 1e-6, 1e3);
-  number("reward.precise_forward_width_per_speed2", c.reward.precise_forward_width_per_speed2, 0.0,
+  number("reward.precise_forward_width_per_speed", c.reward.precise_forward_width_per_speed, 0.0,
          1e9);
   number("reward.precise_drift_weight", c.reward.precise_drift_weight, 0.0, 1e9);
   number("reward.precise_lateral_width", c.reward.precise_lateral_width, 1e-6, 1e3);

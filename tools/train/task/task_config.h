@@ -63,7 +63,7 @@ struct RewardSettings {
          progress_weight = 0;
   double yaw_weight = 0, yaw_width = 0, yaw_progress_weight = 0;
   double precise_time_s = 0, precise_forward_weight = 0, precise_forward_width = 0,
-         precise_forward_width_per_speed2 = 0, precise_drift_weight = 0, precise_lateral_width = 0,
+         precise_forward_width_per_speed = 0, precise_drift_weight = 0, precise_lateral_width = 0,
          precise_yaw_width = 0;
   double air_weight = 0, air_target_s = 0, air_longest_s = 0, stance_longest_s = 0;
   double torque = 0, power = 0, energy_speed_mps = 0, joint_speed = 0, speed_excess = 0,

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "policy/policy.h"
+#include "rt/realtime/control_thread.h"
+
+namespace sandrunner {
+
+/// Counts and durations of the policy thread. Its own while it runs.
+struct PolicyDeadlines {
+  std::uint64_t steps = 0;
+  std::uint64_t missed = 0;  ///< releases that the next one overtook
+  LogHistogram step;         ///< of the network alone
+  LogHistogram answer;       ///< from the slot's time to the published output
+};
+
+/// The 100 Hz loop: takes each input that the control thread releases and answers it. It sleeps on
+/// its own grid and looks for the input, because waking it would cost the control thread a system
+/// call: 60 us after the release is due, then ever more rarely.
+class PolicyThread {
+ public:
+  PolicyThread(Policy& policy, PolicyExchange& exchange);
+
+  /// Runs until stop(). `start_ns`: that of the control thread.
+  void run(std::int64_t start_ns, const LoopHooks& hooks) noexcept;
+  /// From any thread; the loop ends within a period.
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  /// From any thread: for tests, the loop sleeps instead of answering while this is set.
+  void stall(bool stalled) noexcept { stalled_.store(stalled, std::memory_order_relaxed); }
+
+  const PolicyDeadlines& deadlines() const noexcept { return deadlines_; }
+  const PolicyOutput& newest() const noexcept { return newest_; }
+
+ private:
+  bool answer(std::int64_t slot_ns) noexcept;
+
+  Policy& policy_;
+  PolicyExchange& exchange_;
+  std::atomic<bool> stop_{false}, stalled_{false};
+  std::uint64_t seen_ = 0;  // sequence of the last input
+  PolicyOutput newest_;
+  PolicyDeadlines deadlines_;
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/realtime/setup.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <malloc.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+
+#include "rt/core/errors.h"
+#include "rt/core/floating_point.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr std::size_t kStack_bytes = 256 * 1024;  // far more than a tick uses
+
+}  // namespace
+
+RealtimeConfig read_realtime_config(ConfigTree& config) {
+  RealtimeConfig c;
+  const auto need = [&](const char* key, Need fallback) {
+    static const std::vector<std::string> kNames = {"require", "warn", "off"};
+    const std::string name = config.choice(std::string("realtime.") + key,
+                                           kNames[static_cast<std::size_t>(fallback)], kNames);
+    return name == "require" ? Need::kRequire : name == "warn" ? Need::kWarn : Need::kOff;
+  };
+  const auto integer = [&](const char* key, int fallback, int min, int max) {
+    return static_cast<int>(config.integer(std::string("realtime.") + key, fallback, min, max));
+  };
+  c.lock_memory = need("lock_memory", c.lock_memory);
+  c.priority = need("priority", c.priority);
+  c.affinity = need("affinity", c.affinity);
+  c.dma_latency = need("dma_latency", c.dma_latency);
+  c.control_priority = integer("control_priority", c.control_priority, 2, 98);
+  c.policy_priority = integer("policy_priority", c.policy_priority, 1, 97);
+  c.control_cpu = integer("control_cpu", c.control_cpu, -1, CPU_SETSIZE - 1);
+  c.policy_cpu = integer("policy_cpu", c.policy_cpu, -1, CPU_SETSIZE - 1);
+  if (c.policy_priority >= c.control_priority) {
+    throw InputError(
+        fmt::format("realtime.policy_priority: {}, expected below realtime.control_priority ({})",
+                    c.policy_priority, c.control_priority));
+  }
+  return c;
+}
+
+std::vector<int> allowed_cpus() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::vector<int> cpus;
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return cpus;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &set)) cpus.push_back(cpu);
+  }
+  return cpus;
+}
+
+RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
+  const std::vector<int> cpus = allowed_cpus();
+  if (!cpus.empty()) {
+    if (config_.control_cpu < 0) config_.control_cpu = cpus.back();
+    if (config_.policy_cpu < 0)
+      config_.policy_cpu = cpus.size() > 1 ? cpus[cpus.size() - 2] : cpus[0];
+  }
+  if (config_.lock_memory != Need::kOff) {
+    // The heap keeps what it has once had, and takes it from one piece.
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+    const int error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+    locked_ = error == 0;
+    note(config_.lock_memory, "memory", error, "all pages locked",
+         "raise the memlock limit (ulimit -l) or give the process CAP_IPC_LOCK");
+  }
+  if (config_.dma_latency != Need::kOff) {
+    dma_latency_ = open("/dev/cpu_dma_latency", O_RDWR | O_CLOEXEC);
+    const std::int32_t none = 0;
+    const bool held = dma_latency_ >= 0 && write(dma_latency_, &none, sizeof none) == sizeof none;
+    note(config_.dma_latency, "idle states", held ? 0 : errno, "shallow (cpu_dma_latency 0)",
+         "needs write access to /dev/cpu_dma_latency");
+  }
+}
+
+RealtimeSetup::~RealtimeSetup() {
+  if (dma_latency_ >= 0) close(dma_latency_);
+  if (locked_) munlockall();
+}
+
+void RealtimeSetup::note(Need need, const std::string& name, int error, const std::string& got,
+                         const std::string& advice) {
+  if (error == 0) {
+    items_.push_back({name, true, got});
+    return;
+  }
+  const std::string why = fmt::format("{}; {}", std::strerror(error), advice);
+  if (need == Need::kRequire) {
+    throw InputError(fmt::format("realtime: {} is required and was not obtained: {}", name, why));
+  }
+  items_.push_back({name, false, why});
+}
+
+void RealtimeSetup::adopt(pthread_t thread, const std::string& name, int priority, int cpu) {
+  if (config_.affinity != Need::kOff) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(cpu < 0 ? 0 : cpu, &set);
+    note(config_.affinity, name + " processor", pthread_setaffinity_np(thread, sizeof set, &set),
+         fmt::format("CPU {}", cpu), fmt::format("CPU {} cannot be had", cpu));
+  }
+  if (config_.priority != Need::kOff) {
+    const sched_param parameters{.sched_priority = priority};
+    note(config_.priority, name + " priority",
+         pthread_setschedparam(thread, SCHED_FIFO, &parameters),
+         fmt::format("SCHED_FIFO {}", priority),
+         "raise the rtprio limit (ulimit -r) or give the process CAP_SYS_NICE");
+  }
+}
+
+void RealtimeSetup::adopt_control_thread(pthread_t thread) {
+  adopt(thread, "control thread", config_.control_priority, config_.control_cpu);
+}
+
+void RealtimeSetup::adopt_policy_thread(pthread_t thread) {
+  adopt(thread, "policy thread", config_.policy_priority, config_.policy_cpu);
+}
+
+void prepare_this_thread() noexcept {
+  flush_denormals_to_zero();
+  auto* const stack = static_cast<volatile char*>(__builtin_alloca(kStack_bytes));
+  for (std::size_t i = 0; i < kStack_bytes; i += 1024) stack[i] = 0;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a process has to ask of Linux before it may call itself real-time, and what it got.
+#pragma once
+
+#include <pthread.h>
+
+#include <string>
+#include <vector>
+
+#include "rt/core/config_tree.h"
+
+namespace sandrunner {
+
+/// How much a part of the set-up matters: refuse to run without it, say so, or do not even ask.
+enum class Need { kRequire, kWarn, kOff };
+
+struct RealtimeConfig {
+  Need lock_memory = Need::kWarn;  ///< all pages resident, heap and stacks faulted in beforehand
+  Need priority = Need::kWarn;     ///< SCHED_FIFO
+  Need affinity = Need::kWarn;     ///< a processor of its own for each of the two threads
+  Need dma_latency = Need::kWarn;  ///< no deep idle states of the processor
+  int control_priority = 80;
+  int policy_priority = 70;  ///< below the control thread's
+  int control_cpu = -1;      ///< -1: the last processor that the process may use
+  int policy_cpu = -1;       ///< -1: the last but one, or the same if there is only one
+};
+
+/// Reads the table [realtime]. Throws InputError.
+RealtimeConfig read_realtime_config(ConfigTree& config);
+
+/// One line of the report.
+struct SetupItem {
+  std::string name;
+  bool obtained = false;
+  std::string detail;  ///< what was got, or why not and what to do about it
+};
+
+/// Sets a process up and keeps what has to stay open. Everything that is wanted but not obtained is
+/// in items(); a required one throws InputError.
+class RealtimeSetup {
+ public:
+  /// Locks memory, fits the heap, and holds the processors awake.
+  explicit RealtimeSetup(const RealtimeConfig& config);
+  ~RealtimeSetup();
+  RealtimeSetup(const RealtimeSetup&) = delete;
+  RealtimeSetup& operator=(const RealtimeSetup&) = delete;
+
+  /// SCHED_FIFO and processor of the two threads, before they are let into their loops.
+  void adopt_control_thread(pthread_t thread);
+  void adopt_policy_thread(pthread_t thread);
+
+  const std::vector<SetupItem>& items() const noexcept { return items_; }
+
+ private:
+  void note(Need need, const std::string& name, int error, const std::string& got,
+            const std::string& advice);
+  void adopt(pthread_t thread, const std::string& name, int priority, int cpu);
+
+  RealtimeConfig config_;
+  std::vector<SetupItem> items_;
+  int dma_latency_ = -1;  // file descriptor
+  bool locked_ = false;
+};
+
+/// Touches the stack of the calling thread so far down that its loop finds it present, and flushes
+/// denormals. Each real-time thread calls it first.
+void prepare_this_thread() noexcept;
+
+/// Processors that this process may use, ascending.
+std::vector<int> allowed_cpus();
+
+}  // namespace sandrunner
