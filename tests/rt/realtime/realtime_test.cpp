@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/rt/realtime/live_operator.h"
+#include "tests/rt/support.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const std::atomic<bool> kNobodyInterrupts{false};
+
+RunResult run_live(LiveOperator& op, const std::function<void(PolicyThread&)>& meanwhile,
+                   const std::atomic<bool>& interrupt = kNobodyInterrupts) {
+  Policy policy = load_shipped_policy();
+  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  RealtimeHooks hooks;
+  hooks.op = &op;
+  hooks.meanwhile = meanwhile;
+  return run_realtime(config, &policy, CommandSource("0,0,0"), {.start_walking = true}, false,
+                      interrupt, {}, hooks);
+}
+
+TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
+  Policy policy = load_shipped_policy();
+  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  const RunResult result =
+      run_realtime(config, &policy, CommandSource("1,0,0"), {.walk_s = 2.0, .start_walking = true},
+                   false, kNobodyInterrupts, {});
+  EXPECT_TRUE(result.survived) << result.fall_reason;
+  ASSERT_TRUE(result.realtime);
+  const RealtimeReport& r = *result.realtime;
+  // A stall in the very last slots may reach past the end.
+  EXPECT_GE(r.control.ticks + r.control.skipped, 8000u);
+  EXPECT_LE(r.control.ticks + r.control.skipped, 8000u + r.control.longest_miss);
+  EXPECT_EQ(r.control.late.count(), r.control.ticks);
+  EXPECT_NEAR(static_cast<double>(r.control.releases), 200.0,
+              static_cast<double>(r.control.longest_miss) / kTicksPerPolicyStep + 1.0);
+  EXPECT_EQ(r.policy.steps + r.policy.missed, r.control.releases);
+  EXPECT_EQ(r.policy.step.count(), r.policy.steps);
+  EXPECT_EQ(r.records_dropped, 0u);
+  EXPECT_NEAR(result.figures.mean_velocity_mps[0], 1.0, 0.2);
+}
+
+TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
+  LiveOperator op;
+  bool stood = false, walked_again = false;
+  int step = 0;
+  const RunResult result = run_live(op, [&](PolicyThread&) {
+    const auto when = [&](int n, bool condition, const auto& action) {
+      if (step != n || !condition) return;
+      action();
+      ++step;
+    };
+    when(0, op.mode() == Mode::kWalk, [&] { op.want(VelocityCommand{0.5, 0.0, 0.0}); });
+    when(1, op.time_s() > 0.5, [&] { op.want(ModeRequest::kStand); });
+    when(2, op.mode() == Mode::kStand, [&] {
+      stood = true;
+      op.want(ModeRequest::kWalk);
+    });
+    when(3, op.mode() == Mode::kWalk, [&] {
+      walked_again = true;
+      op.end();
+    });
+    if (op.time_s() > 10.0) op.end();
+  });
+  EXPECT_TRUE(stood);
+  EXPECT_TRUE(walked_again);
+  EXPECT_EQ(result.realtime->policy.steps + result.realtime->policy.missed,
+            result.realtime->control.releases);
+}
+
+TEST(RealtimeTest, StalledPolicyIsHeldThenDamped) {
+  LiveOperator op;
+  double stalled_s = 0.0, damped_s = 0.0;
+  run_live(op, [&](PolicyThread& policy) {
+    if (stalled_s == 0.0 && op.time_s() > 0.3) {
+      policy.stall(true);
+      stalled_s = op.time_s();
+    }
+    if (stalled_s > 0.0 && damped_s == 0.0 && op.mode() == Mode::kFault) {
+      damped_s = op.time_s();
+      op.end();
+    }
+    if (op.time_s() > 5.0) op.end();
+  });
+  ASSERT_GT(damped_s, 0.0);
+  EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kPolicyStale));
+  // gate.policy_fault_ticks = 120 after the input of the last answer; this thread looks every 5 ms.
+  const double held_s = damped_s - stalled_s;
+  EXPECT_GT(held_s, 0.015);
+  EXPECT_LT(held_s, 0.060);
+}
+
+TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
+  LiveOperator op;
+  bool sent = false;
+  run_live(op, [&](PolicyThread&) {
+    if (!sent && op.time_s() > 0.2) {
+      op.want(VelocityCommand{kNan, 0.0, 0.0});
+      sent = true;
+    }
+    if (op.mode() == Mode::kFault || op.time_s() > 5.0) op.end();
+  });
+  EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kNonFiniteCommand));
+}
+
+TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
+  Policy policy = load_shipped_policy();
+  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  std::atomic<bool> interrupt{false};
+  RealtimeHooks hooks;
+  int looks = 0;
+  hooks.meanwhile = [&](PolicyThread&) { interrupt = ++looks > 40; };
+  const RunResult result =
+      run_realtime(config, &policy, CommandSource("1,0,0"), {.walk_s = 60.0, .start_walking = true},
+                   true, interrupt, {}, hooks);
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_TRUE(result.survived);
+  EXPECT_LT(result.simulated_s, 10.0);
+  EXPECT_EQ(result.record.samples.back().mode, Mode::kDamping);
+}
+
+TEST(RealtimeTest, RequiredProcessorThatIsRefusedIsBadInput) {
+  Policy policy = load_shipped_policy();
+  // No machine has this processor.
+  const ProcessConfig config = config_of(
+      "dry-sand", {"realtime.affinity=require", "realtime.control_cpu=1023"}, &policy.spec());
+  const auto start = [&] {
+    run_realtime(config, &policy, CommandSource("1,0,0"), {.walk_s = 1.0, .start_walking = true},
+                 false, kNobodyInterrupts, {});
+  };
+  expect_refused(start, {"control thread processor", "1023"});
+}
+
+}  // namespace
+}  // namespace sandrunner
