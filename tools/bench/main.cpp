@@ -10,6 +10,7 @@
 
 #include "rt/core/errors.h"
 #include "tools/bench/batch_bench.h"
+#include "tools/bench/contact_bench.h"
 
 namespace sandrunner {
 namespace {
@@ -23,10 +24,14 @@ int run(int argc, char** argv) {
   int rounds = 11;
   CLI::App* batch = app.add_subcommand(
       "batch", "steps per second of robots trotting on sand, against MuJoCo in the same run");
-  batch->add_option("--json", json_path, "file for the figures")->type_name("FILE");
-  batch->add_option("--rounds", rounds, "interleaved rounds")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
+  CLI::App* contact = app.add_subcommand(
+      "contact", "time of dynamic resistive force theory over that of the cone model, same drops");
+  for (CLI::App* command : {batch, contact}) {
+    command->add_option("--json", json_path, "file for the figures")->type_name("FILE");
+    command->add_option("--rounds", rounds, "interleaved rounds")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+  }
 
   try {
     app.parse(argc, argv);
@@ -37,7 +42,8 @@ int run(int argc, char** argv) {
   }
   std::optional<bench::ReportFile> file;
   if (!json_path.empty()) file.emplace(json_path);
-  const bench::Report report = bench::run_batch_bench(rounds);
+  const bench::Report report =
+      contact->parsed() ? bench::run_contact_bench(rounds) : bench::run_batch_bench(rounds);
   print(report);
   if (file) file->write(report);
   return kExitOk;
