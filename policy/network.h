@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <type_traits>
 
@@ -38,6 +39,13 @@ class Network {
   /// reaches every output and stays in `state` until that is cleared.
   void step(const std::array<float, kObservationSize>& observation, NetworkState& state,
             NetworkOutput& output) const noexcept;
+
+  /// Reads every cache line of the weights, so that the next step finds them in the core's caches.
+  /// Real-time safe.
+  void touch_weights() const noexcept;
+
+  /// Bytes that a step reads of its weights, as packed.
+  static std::size_t weight_bytes() noexcept;
 
  private:
   struct PackedWeights;

@@ -51,6 +51,9 @@ class Policy {
   /// safe. NaN in, NaN out, until reset().
   PolicyStep step(const std::array<float, kObservationSize>& observation) noexcept;
 
+  /// Brings the network's weights into the core's caches, ahead of a step. Real-time safe.
+  void touch_weights() const noexcept { network_.touch_weights(); }
+
   /// All that a step depends on besides its input: for snapshots and hashes.
   const NetworkState& state() const noexcept { return state_; }
   void set_state(const NetworkState& state) noexcept { state_ = state; }

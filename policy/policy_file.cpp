@@ -236,7 +236,6 @@ Policy load_policy(const std::string& path) {
   return {std::move(file.spec), Network(file.parameters)};
 }
 
-bool has_shipped_policy() noexcept { return !embedded_policy_file("raibo.safetensors").empty(); }
 
 Policy load_shipped_policy() {
   const std::string name = "raibo.safetensors (built in)";

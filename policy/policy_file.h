@@ -26,7 +26,6 @@ PolicyFile read_policy_file(const std::string& path);
 Policy load_policy(const std::string& path);
 
 /// The policy that ships (policy/trained/raibo.safetensors), built into the program.
-bool has_shipped_policy() noexcept;
 Policy load_shipped_policy();
 
 /// Checks `file` as read_policy_file would, then writes it; `path` is whole or untouched. Throws

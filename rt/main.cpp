@@ -49,21 +49,14 @@ int run(int argc, char** argv) {
     return kExitOk;
   }
   const CommandSource command(options->command);
-  std::optional<Policy> policy;
-  if (!options->policy_path.empty()) {
-    policy.emplace(load_policy(options->policy_path));
-  } else if (has_shipped_policy()) {
-    policy.emplace(load_shipped_policy());
-  }
+  Policy policy =
+      options->policy_path.empty() ? load_shipped_policy() : load_policy(options->policy_path);
   ConfigTree tree;
   sim::add_terrain_layer(tree, options->terrain);
   for (const std::string& file : options->config_files) tree.add_file(file);
   for (const std::string& assignment : options->assignments) tree.set(assignment);
-  ProcessConfig config = read_process_config(tree, policy ? &policy->spec() : nullptr);
+  ProcessConfig config = read_process_config(tree, &policy.spec());
   config.simulator.seed = options->seed;
-  if (options->start_walking && !policy) {
-    throw InputError("--start walk: walking needs a policy, give one with --policy");
-  }
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir);
 
@@ -72,26 +65,25 @@ int run(int argc, char** argv) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunPlan plan{.walk_s = options->duration_s, .start_walking = options->start_walking};
   const auto progress = terminal ? show_progress : std::function<void(const RunSample&)>();
-  Policy* const used = policy ? &*policy : nullptr;
   const RunResult result =
       options->realtime
-          ? run_realtime(config, used, command, plan, out, signals.interrupted(), progress)
-          : run_lockstep(config, used, command, plan, out, signals.interrupted(), progress);
+          ? run_realtime(config, &policy, command, plan, out, signals.interrupted(), progress)
+          : run_lockstep(config, &policy, command, plan, out, signals.interrupted(), progress);
   if (terminal) fmt::print(stderr, "\r{:60}\r", "");
 
-  fmt::print("{}", summary_table(result, command));
-  if (!policy) fmt::print("Stood up; walking needs a policy: --policy FILE.\n");
+  // Files first: nobody may be listening on standard output any more.
+  std::string written;
   if (out) {
     const std::string dir = options->out_dir + "/";
-    write_text(summary_json(result, *options, command, policy ? policy->spec().name : ""),
-               dir + "summary.json");
+    write_text(summary_json(result, *options, command, policy.spec().name), dir + "summary.json");
     write_text(config.effective, dir + "config.toml");
     write_csv(result.record, dir + "run.csv");
     draw_run_plot(result.record, dir + "run.png");
     draw_run_strip(result.record, dir + "strip.png");
-    fmt::print("wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n",
-               dir);
+    written = fmt::format(
+        "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
   }
+  fmt::print("{}{}", summary_table(result, command), written);
   return result.survived ? kExitOk : kExitRobotFailed;
 }
 

@@ -11,7 +11,7 @@ packages=(
   libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev
   liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools
   # libraries of tests and benches
-  libgtest-dev libgmock-dev libbenchmark-dev libmujoco-dev
+  libgtest-dev libgmock-dev libmujoco-dev rt-tests
 )
 
 fail() {

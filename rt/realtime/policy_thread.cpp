@@ -23,6 +23,7 @@ void PolicyThread::run(std::int64_t start_ns, const LoopHooks& hooks) noexcept {
   while (!stop_.load(std::memory_order_relaxed)) {
     sleep_until(grid.due_ns());
     grid.take(monotonic_ns());
+    policy_.touch_weights();  // into the caches while the sensors are being read
     const std::int64_t slot_ns = grid.due_ns() - kPeriod_ns;
     for (std::int64_t look = kFirstLook_ns; look < kPeriod_ns; look *= 2) {
       sleep_until(slot_ns + look);

@@ -120,11 +120,6 @@ TEST_F(BadInputTest, Policies) {
   expect_refused("--policy nan", "'nan': ");
 }
 
-TEST_F(BadInputTest, WalkingWithoutPolicy) {
-  if (has_shipped_policy()) GTEST_SKIP() << "a policy ships with the program";
-  expect_refused("--start walk", "--policy");
-}
-
 TEST_F(BadInputTest, Robots) {
   expect_refused("--set robot=absent.toml", "absent.toml: cannot be read");
   const std::string map(embedded_sim_file("raibo.toml"));

@@ -2,10 +2,12 @@
 // Good runs of the program: what it prints and writes.
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -31,7 +33,7 @@ TEST_F(CommandLineTest, HelpNamesEveryOption) {
   EXPECT_EQ(error(), "");
   for (const char* text :
        {"--policy", "--terrain", "--command", "--duration", "--start", "--seed", "--config",
-        "--set", "--out", "--version", "dry-sand", "athletic-track"}) {
+        "--set", "--out", "--version", "--clock", "rt-report", "dry-sand", "athletic-track"}) {
     EXPECT_NE(output().find(text), std::string::npos) << text;
   }
 }
@@ -45,7 +47,6 @@ TEST_F(CommandLineTest, WithoutArgumentsTheRobotEndsOnItsFeet) {
   EXPECT_EQ(run(""), 0);
   EXPECT_EQ(error(), "");
   EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
-  EXPECT_EQ(output().find("--policy") == std::string::npos, has_shipped_policy()) << output();
   EXPECT_EQ(files_in(""), std::set<std::string>{"policy"});
 }
 
@@ -158,7 +159,8 @@ TEST_F(CommandLineTest, FallIsExitCodeOne) {
 class InterruptTest : public CommandLineTest {
  protected:
   /// Starts a long run, sends the signal once it goes on, and returns the exit code.
-  int interrupt(std::vector<std::string> arguments, int signal_number) {
+  int interrupt(std::vector<std::string> arguments, int signal_number,
+                const std::function<void()>& in_child = {}) {
     const std::string out = folder_.path("results");
     for (const char* more : {"--duration", "80000", "--terrain", "rigid", "--out"}) {
       arguments.emplace_back(more);
@@ -172,6 +174,7 @@ class InterruptTest : public CommandLineTest {
     if (child == 0) {
       const int file = open(printed.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
       dup2(file, STDOUT_FILENO);
+      if (in_child) in_child();
       execv(SANDRUNNER_PROGRAM, argv.data());
       _exit(127);
     }
@@ -181,7 +184,19 @@ class InterruptTest : public CommandLineTest {
     kill(child, signal_number);
     int status = 0;
     waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  /// Writes a policy that holds the nominal pose, so that the robot is still up when the signal
+  /// comes.
+  std::string calm_policy() const {
+    PolicyFile file = random_policy_file();
+    file.spec.nominal_position_rad = {0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672,
+                                      0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672};
+    file.spec.action_scale_rad = 1e-6;
+    file.spec.kp_nmprad = 300.0;
+    file.spec.kd_nmsprad = 3.0;
+    write_policy_file(folder_.path("calm"), file);
+    return folder_.path("calm");
   }
   static void sleep_ms(int duration) {
     std::this_thread::sleep_for(std::chrono::milliseconds(duration));
@@ -189,24 +204,50 @@ class InterruptTest : public CommandLineTest {
 };
 
 TEST_F(InterruptTest, WalkEndsInDampingWithItsResults) {
-  // A policy that holds the nominal pose, so that the robot is still up when the signal comes.
-  PolicyFile file = random_policy_file();
-  file.spec.nominal_position_rad = {0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672,
-                                    0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672};
-  file.spec.action_scale_rad = 1e-6;
-  file.spec.kp_nmprad = 300.0;
-  file.spec.kd_nmsprad = 3.0;
-  write_policy_file(folder_.path("calm"), file);
-  for (const int signal_number : {SIGINT, SIGTERM}) {
-    EXPECT_EQ(interrupt({"--policy", folder_.path("calm"), "--start", "walk"}, signal_number), 0);
-    const Json j = summary("results");
-    EXPECT_EQ(j.at("interrupted"), true);
-    EXPECT_EQ(j.at("survived"), true) << j;
-    EXPECT_NE(output().find("interrupted, ended in damping"), std::string::npos) << output();
-    const std::string csv = read_file(folder_.path("results/run.csv"));
-    const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
-    EXPECT_NE(last.find(",damping,"), std::string::npos) << last;
-    std::filesystem::remove_all(folder_.path("results"));
+  const std::string calm = calm_policy();
+  for (const std::string clock : {"lockstep", "realtime"})
+    for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+      EXPECT_EQ(interrupt({"--policy", calm, "--start", "walk", "--clock", clock}, signal_number),
+                0);
+      const Json j = summary("results");
+      EXPECT_EQ(j.at("interrupted"), true);
+      EXPECT_EQ(j.at("survived"), true) << j;
+      EXPECT_NE(output().find("interrupted, ended in damping"), std::string::npos) << output();
+      const std::string csv = read_file(folder_.path("results/run.csv"));
+      const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
+      EXPECT_NE(last.find(",damping,"), std::string::npos) << last;
+      std::filesystem::remove_all(folder_.path("results"));
+    }
+}
+
+TEST_F(InterruptTest, KilledRunLeavesNoHalfFile) {
+  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGKILL), -SIGKILL);
+  EXPECT_EQ(files_in("results"), std::set<std::string>{});
+}
+
+TEST_F(InterruptTest, ClosedStandardOutputLosesNoResults) {
+  const auto close_output = [] {
+    int ends[2];
+    if (pipe(ends) != 0) _exit(126);
+    close(ends[0]);
+    dup2(ends[1], STDOUT_FILENO);
+  };
+  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGINT, close_output), 3);
+  EXPECT_EQ(summary("results").at("interrupted"), true);
+  EXPECT_EQ(files_in("results").size(), 5u);
+}
+
+TEST_F(InterruptTest, FullDiskLeavesNoHalfFile) {
+  // As if the disk had room for two thousand bytes a file.
+  const auto limit = [] {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit bytes{2000, 2000};
+    setrlimit(RLIMIT_FSIZE, &bytes);
+  };
+  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGINT, limit), 2);
+  for (const std::string& name : files_in("results")) {
+    EXPECT_EQ(name.find(".part"), std::string::npos) << name;
+    EXPECT_NE(name, "run.csv");
   }
 }
 

@@ -11,6 +11,8 @@
 #include "rt/core/errors.h"
 #include "tools/bench/batch_bench.h"
 #include "tools/bench/contact_bench.h"
+#include "tools/bench/policy_bench.h"
+#include "tools/bench/realtime_bench.h"
 
 namespace sandrunner {
 namespace {
@@ -26,7 +28,11 @@ int run(int argc, char** argv) {
       "batch", "steps per second of robots trotting on sand, against MuJoCo in the same run");
   CLI::App* contact = app.add_subcommand(
       "contact", "time of dynamic resistive force theory over that of the cone model, same drops");
-  for (CLI::App* command : {batch, contact}) {
+  CLI::App* rt = app.add_subcommand(
+      "rt",
+      "wake-up of the control thread against cyclictest, policy step against Eigen and a read "
+      "floor, exchange between threads against a mutex");
+  for (CLI::App* command : {batch, contact, rt}) {
     command->add_option("--json", json_path, "file for the figures")->type_name("FILE");
     command->add_option("--rounds", rounds, "interleaved rounds")
         ->check(CLI::Range(1, 10000))
@@ -42,8 +48,14 @@ int run(int argc, char** argv) {
   }
   std::optional<bench::ReportFile> file;
   if (!json_path.empty()) file.emplace(json_path);
-  const bench::Report report =
-      contact->parsed() ? bench::run_contact_bench(rounds) : bench::run_batch_bench(rounds);
+  bench::Report report;
+  if (batch->parsed()) report = bench::run_batch_bench(rounds);
+  if (contact->parsed()) report = bench::run_contact_bench(rounds);
+  if (rt->parsed()) {
+    report = bench::run_policy_bench(rounds);
+    bench::run_exchange_bench(rounds, report);
+    bench::run_wakeup_bench(rounds, report);
+  }
   print(report);
   if (file) file->write(report);
   return kExitOk;

@@ -14,13 +14,13 @@ namespace sandrunner::bench {
 
 void print(const Report& report) {
   for (const auto& [name, text] : report.facts) fmt::print("{:<12}{}\n", name, text);
-  fmt::print("\n{:<32}{:>12}{:>12}{:>12}{:>7}\n", "steps/s", "median", "q1", "q3", "runs");
+  fmt::print("\n{:<32}{:>12}{:>12}{:>12}{:>7}\n", "steps/s or as named", "median", "q1", "q3", "runs");
   for (const auto& [name, q] : report.rates) {
-    fmt::print("{:<32}{:>12.0f}{:>12.0f}{:>12.0f}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
+    fmt::print("{:<32}{:>12.5g}{:>12.5g}{:>12.5g}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
   }
   fmt::print("\n{:<32}{:>12}{:>12}{:>12}{:>7}\n", "ratio", "median", "q1", "q3", "runs");
   for (const auto& [name, q] : report.ratios) {
-    fmt::print("{:<32}{:>12.2f}{:>12.2f}{:>12.2f}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
+    fmt::print("{:<32}{:>12.3f}{:>12.3f}{:>12.3f}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
   }
 }
 
@@ -52,7 +52,7 @@ void ReportFile::write(const Report& report) {
         {"median", q.median}, {"q1", q.q1}, {"q3", q.q3}, {"runs", q.runs}};
   };
   for (const auto& [name, q] : report.ratios) json[name] = values(q);
-  for (const auto& [name, q] : report.rates) json["steps_per_s"][name] = values(q);
+  for (const auto& [name, q] : report.rates) json["rates"][name] = values(q);
   std::ofstream out(part_);
   out << json.dump(2) << '\n';
   out.close();

@@ -12,7 +12,7 @@ namespace sandrunner::bench {
 
 struct Report {
   std::vector<std::pair<std::string, std::string>> facts;  ///< what was measured, on what
-  std::vector<std::pair<std::string, Quartiles>> rates;    ///< steps/s
+  std::vector<std::pair<std::string, Quartiles>> rates;    ///< steps/s, or as the name says
   std::vector<std::pair<std::string, Quartiles>> ratios;   ///< of rates of the same round
 };
 

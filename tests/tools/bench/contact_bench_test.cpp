@@ -93,7 +93,7 @@ TEST(ContactBenchTest, ReportHasTheRatios) {
   const std::string path = testing::TempDir() + "contact_bench_test.json";
   ReportFile(path).write(run_contact_bench(2, 20));
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(path));
-  const auto& rates = json["steps_per_s"];
+  const auto& rates = json["rates"];
   for (const std::string name : {"drft", "drft_planar"}) {
     const auto& ratio = json[name + "_vs_cone"];
     EXPECT_EQ(ratio["runs"], 2) << name;

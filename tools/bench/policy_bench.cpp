@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/bench/policy_bench.h"
+
+#include <fmt/format.h>
+#include <immintrin.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <map>
+#include <random>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "policy/network.h"
+#include "rt/core/floating_point.h"
+#include "tools/bench/clock.h"
+#include "tools/bench/eigen_network.h"
+
+namespace sandrunner::bench {
+namespace {
+
+constexpr int kWarmUpSteps = 100;
+constexpr int kHotSteps = 2000;
+constexpr int kColdSteps = 20;
+/// Walks on the core between cold steps: of more than its own caches hold, and of more than the
+/// shared cache mostly does.
+constexpr std::size_t kWalkBytes = 16 << 20, kLongWalkBytes = 64 << 20;
+/// The kernel stops real-time threads that take more than 95 % of a second.
+constexpr auto kRest = std::chrono::milliseconds(10);
+constexpr int kObservations = 16;
+constexpr double kTolerance = 1e-4;
+
+using Observation = std::array<float, kObservationSize>;
+
+/// On one core and, where allowed, in real time; as before when it goes.
+class RealtimeScope {
+ public:
+  RealtimeScope() {
+    pthread_getaffinity_np(pthread_self(), sizeof(cores_), &cores_);
+    pthread_getschedparam(pthread_self(), &policy_, &priority_);
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    for (int core = CPU_SETSIZE - 1; core >= 0; --core) {
+      if (!CPU_ISSET(core, &cores_)) continue;
+      CPU_SET(core, &one);
+      break;
+    }
+    pinned_ = pthread_setaffinity_np(pthread_self(), sizeof(one), &one) == 0;
+    const sched_param priority{.sched_priority = 20};
+    fifo_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
+  }
+  ~RealtimeScope() {
+    pthread_setschedparam(pthread_self(), policy_, &priority_);
+    pthread_setaffinity_np(pthread_self(), sizeof(cores_), &cores_);
+  }
+  RealtimeScope(const RealtimeScope&) = delete;
+  RealtimeScope& operator=(const RealtimeScope&) = delete;
+  std::string description() const {
+    return fmt::format("{}, {}", pinned_ ? "pinned to one core" : "not pinned",
+                       fifo_ ? "SCHED_FIFO" : "SCHED_FIFO refused");
+  }
+
+ private:
+  cpu_set_t cores_{};
+  int policy_ = SCHED_OTHER;
+  sched_param priority_{};
+  bool pinned_ = false, fifo_ = false;
+};
+
+/// Weights of a size that keeps the layers' outputs near 1.
+NetworkParameters random_parameters() {
+  NetworkParameters parameters;
+  std::mt19937 random(1);
+  for (const NamedTensor& tensor : tensors_of(parameters)) {
+    const float limit = 2.0f / std::sqrt(static_cast<float>(tensor.shape.back()));
+    std::uniform_real_distribution<float> weight(-limit, limit);
+    for (std::size_t i = 0; i < tensor.size(); ++i) tensor.values->push_back(weight(random));
+  }
+  std::fill(parameters.observation_variance.begin(), parameters.observation_variance.end(), 1.0f);
+  return parameters;
+}
+
+/// Memory that is only read: as many bytes as the weights for the floor, more for the walk.
+class Bytes {
+ public:
+  explicit Bytes(std::size_t size) : lines_((size + sizeof(Line) - 1) / sizeof(Line)) {}
+
+  /// One forward pass of AVX2 loads into eight sums.
+  void read() const {
+    __m256 sum[8] = {};
+    const float* at = lines_.front().value;
+    for (std::size_t i = 0; i < lines_.size(); ++i, at += 64) {
+      for (int k = 0; k < 8; ++k) sum[k] = _mm256_or_ps(sum[k], _mm256_load_ps(at + 8 * k));
+    }
+    for (const __m256& part : sum) asm volatile("" : : "x"(part));
+  }
+
+ private:
+  struct Line {
+    alignas(64) float value[64] = {};
+  };
+  std::vector<Line> lines_;
+};
+
+void require_agreement(const Network& ours, EigenNetwork eigen,
+                       const std::vector<Observation>& observations) {
+  NetworkState state;
+  for (int k = 0; k < 100; ++k) {
+    NetworkOutput a, b;
+    ours.step(observations[k % kObservations], state, a);
+    eigen.step(observations[k % kObservations], b);
+    double worst = 0.0;
+    const auto compare = [&](const auto& x, const auto& y) {
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        worst = std::max<double>(worst, std::isfinite(x[i]) ? std::fabs(x[i] - y[i]) : 1.0);
+      }
+    };
+    compare(a.action, b.action);
+    compare(a.estimate_raw, b.estimate_raw);
+    if (!(worst <= kTolerance)) {
+      throw std::runtime_error(fmt::format(
+          "the network and Eigen's differ by {:.1e} in step {}, expected at most {:.0e}", worst, k,
+          kTolerance));
+    }
+  }
+}
+
+}  // namespace
+
+Report run_policy_bench(int rounds) {
+  flush_denormals_to_zero();
+  const RealtimeScope realtime;
+  const NetworkParameters parameters = random_parameters();
+  std::vector<Observation> observations(kObservations);
+  std::mt19937 random(2);
+  std::normal_distribution<float> normal;
+  for (Observation& observation : observations) {
+    for (float& value : observation) value = normal(random);
+  }
+  require_agreement(Network(parameters), EigenNetwork(parameters), observations);
+
+  // Those of the round. New ones each round, none freed before the end: the time of a cold step
+  // depends on which pages of memory it was given.
+  std::list<Network> ours;
+  std::list<EigenNetwork> eigens;
+  std::list<Bytes> floors;
+  const Bytes short_walk(kWalkBytes), long_walk(kLongWalkBytes);
+  NetworkState state;
+  NetworkOutput output;
+  const auto our_step = [&](int k) {
+    ours.back().step(observations[k % kObservations], state, output);
+  };
+  const auto eigen_step = [&](int k) {
+    eigens.back().step(observations[k % kObservations], output);
+  };
+  const auto read = [&](int) { floors.back().read(); };
+  struct Candidate {
+    const char* name;
+    const Bytes* walk;  ///< before a step, not timed; none: hot
+    bool touch;         ///< of the weights, after the walk
+    std::function<void(int)> step;
+  };
+  const std::vector<Candidate> candidates = {
+      {"hot", nullptr, false, our_step},
+      {"hot_dynamic_eigen", nullptr, false, eigen_step},
+      {"hot_read_floor", nullptr, false, read},
+      {"l2_cold", &short_walk, false, our_step},
+      {"l2_cold_dynamic_eigen", &short_walk, false, eigen_step},
+      {"l2_cold_pretouched", &short_walk, true, our_step},
+      {"cold", &long_walk, false, our_step},
+      {"cold_dynamic_eigen", &long_walk, false, eigen_step},
+      {"cold_pretouched", &long_walk, true, our_step}};
+
+  // Median over a block's steps: interruptions are not in it.
+  const auto median_time_s = [&](const Candidate& candidate) {
+    std::this_thread::sleep_for(kRest);
+    for (int k = 0; k < kWarmUpSteps; ++k) candidate.step(k);
+    std::vector<double> times_s(candidate.walk ? kColdSteps : kHotSteps);
+    for (std::size_t k = 0; k < times_s.size(); ++k) {
+      if (candidate.walk) candidate.walk->read();
+      if (candidate.touch) ours.back().touch_weights();
+      const double start = wall_s();
+      candidate.step(static_cast<int>(k));
+      times_s[k] = wall_s() - start;
+    }
+    return quartiles(std::move(times_s)).median;
+  };
+  std::map<std::string, std::vector<double>> times_s;
+  for (int round = 0; round < rounds; ++round) {
+    ours.emplace_back(parameters);
+    eigens.emplace_back(parameters);
+    floors.emplace_back(Network::weight_bytes());
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Candidate& candidate = candidates[(i + round) % candidates.size()];
+      times_s[candidate.name].push_back(median_time_s(candidate));
+    }
+  }
+
+  Report report;
+  report.facts = {
+      {"processor", processor_name()},
+      {"policy", fmt::format("one step of the network, {} bytes of weights as packed; {}",
+                             Network::weight_bytes(), realtime.description())},
+      {"dynamic_eigen", "the same network, Eigen matrices of dynamic size, column-major"},
+      {"read_floor", "as many bytes, AVX2 loads into eight registers and nothing else"},
+      {"l2_cold", fmt::format("after a walk through {} MiB on the same core", kWalkBytes >> 20)},
+      {"cold", fmt::format("after a walk through {} MiB on the same core", kLongWalkBytes >> 20)}};
+  for (const auto& [name, values] : times_s) {
+    std::vector<double> rates;
+    for (const double t : values) rates.push_back(1.0 / t);
+    report.rates.emplace_back("policy_" + name, quartiles(rates));
+  }
+  const auto ratio = [&](const char* name, const char* above, const char* below) {
+    std::vector<double> values;
+    for (int i = 0; i < rounds; ++i) values.push_back(times_s[above][i] / times_s[below][i]);
+    report.ratios.emplace_back(name, quartiles(values));
+  };
+  ratio("policy_hot_vs_dynamic_eigen", "hot", "hot_dynamic_eigen");
+  ratio("policy_hot_vs_read_floor", "hot", "hot_read_floor");
+  ratio("policy_l2_cold_vs_dynamic_eigen", "l2_cold", "l2_cold_dynamic_eigen");
+  ratio("policy_l2_pretouched_vs_cold", "l2_cold_pretouched", "l2_cold");
+  ratio("policy_cold_vs_dynamic_eigen", "cold", "cold_dynamic_eigen");
+  ratio("policy_pretouched_vs_cold", "cold_pretouched", "cold");
+  return report;
+}
+
+}  // namespace sandrunner::bench
