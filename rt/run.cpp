@@ -11,7 +11,7 @@ namespace sandrunner {
 
 RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const CommandSource& command,
                        const RunPlan& plan, bool keep_record, const std::atomic<bool>& interrupt,
-                       const std::function<void(const RunSample&)>& progress) {
+                       const std::function<void(const RunSample&)>& progress, const TickTap& tap) {
   sim::Simulator simulator(config.robot, config.simulator);
   if (!plan.start_walking) simulator.reset_lying();
   Lockstep loop(simulator, config.controller, plan.start_walking ? Mode::kWalk : Mode::kPassive,
@@ -39,6 +39,7 @@ RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const Comman
     note_gate(gate_before, loop.controller().state().gate, record);
     note_after(simulator, record);
     observer.add(record);
+    if (tap) tap(record);
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
 

@@ -47,12 +47,16 @@ struct RunResult {
 /// Copies what the script knows about the end of the run.
 void take_outcome(const RunScript& script, RunResult& result);
 
+/// Gets every tick of a run, in an ordinary thread: recorders and telemetry.
+using TickTap = std::function<void(const TickRecord&)>;
+
 /// Runs the simulated robot in lockstep: from lying to standing, the walk, and standing again (or
 /// just the walk). Without a policy it only stands up. `interrupt` ends it in damping; `progress`
 /// is called every half second of simulated time.
 RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const CommandSource& command,
                        const RunPlan& plan, bool keep_record, const std::atomic<bool>& interrupt,
-                       const std::function<void(const RunSample&)>& progress);
+                       const std::function<void(const RunSample&)>& progress,
+                       const TickTap& tap = {});
 
 /// Extras of a real-time run, for tests.
 struct RealtimeHooks {
@@ -67,6 +71,6 @@ struct RealtimeHooks {
 RunResult run_realtime(const ProcessConfig& config, Policy* policy, const CommandSource& command,
                        const RunPlan& plan, bool keep_record, const std::atomic<bool>& interrupt,
                        const std::function<void(const RunSample&)>& progress,
-                       const RealtimeHooks& hooks = {});
+                       const TickTap& tap = {}, const RealtimeHooks& hooks = {});
 
 }  // namespace sandrunner

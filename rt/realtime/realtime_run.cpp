@@ -67,7 +67,7 @@ class Threads {
 
 RunResult run_realtime(const ProcessConfig& config, Policy* policy, const CommandSource& command,
                        const RunPlan& plan, bool keep_record, const std::atomic<bool>& interrupt,
-                       const std::function<void(const RunSample&)>& progress,
+                       const std::function<void(const RunSample&)>& progress, const TickTap& tap,
                        const RealtimeHooks& hooks) {
   RealtimeSetup setup(config.realtime);
   sim::Simulator simulator(config.robot, config.simulator);
@@ -87,6 +87,7 @@ RunResult run_realtime(const ProcessConfig& config, Policy* policy, const Comman
   const auto drain = [&] {
     while (const TickRecord* tick = ring->front()) {
       observer.add(*tick);
+      if (tap) tap(*tick);
       ring->pop();
     }
   };

@@ -49,7 +49,7 @@ TEST(LoopProofTest, NeitherThreadAllocatesLocksCallsTheKernelOrFaults) {
   };
   const std::atomic<bool> interrupt{false};
   const RunResult result = run_realtime(config, &policy, CommandSource("0,0,0"),
-                                        {.start_walking = true}, false, interrupt, {}, hooks);
+                                        {.start_walking = true}, false, interrupt, {}, {}, hooks);
   EXPECT_TRUE(walked);
   EXPECT_TRUE(stood);
   EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kNonFiniteCommand));

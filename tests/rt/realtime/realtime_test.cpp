@@ -20,7 +20,7 @@ RunResult run_live(LiveOperator& op, const std::function<void(PolicyThread&)>& m
   hooks.op = &op;
   hooks.meanwhile = meanwhile;
   return run_realtime(config, &policy, CommandSource("0,0,0"), {.start_walking = true}, false,
-                      interrupt, {}, hooks);
+                      interrupt, {}, {}, hooks);
 }
 
 TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
@@ -116,7 +116,7 @@ TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
   hooks.meanwhile = [&](PolicyThread&) { interrupt = ++looks > 40; };
   const RunResult result =
       run_realtime(config, &policy, CommandSource("1,0,0"), {.walk_s = 60.0, .start_walking = true},
-                   true, interrupt, {}, hooks);
+                   true, interrupt, {}, {}, hooks);
   EXPECT_TRUE(result.interrupted);
   EXPECT_TRUE(result.survived);
   EXPECT_LT(result.simulated_s, 10.0);
