@@ -125,6 +125,7 @@ class Training {
         }
       });
       const double t1 = wall_seconds();
+      learner_.set_kl_target(kl_target());
       const learner::UpdateStats update = learner_.update();
       const double t2 = wall_seconds();
       if (!update.finite) {
@@ -159,6 +160,15 @@ class Training {
                    static_cast<std::size_t>(rollout.privileged(0).size()));
     checkpoint.get("run.target", rollout.estimate_target(0).data(),
                    static_cast<std::size_t>(rollout.estimate_target(0).size()));
+  }
+
+  // Smaller and smaller updates in the last part: the policy settles.
+  double kl_target() const {
+    const RunSettings& run = config_.run;
+    const double left = (run.transitions - static_cast<double>(learner_.transitions())) /
+                        std::max(run.transitions * run.settle_share, 1.0);
+    const double start = config_.learner.kl_target;
+    return std::clamp(left, run.settle_kl_share, 1.0) * start;
   }
 
   void fall_back() {
@@ -233,7 +243,7 @@ class Training {
     for (const float d : scales.inverse_deviation) {
       p.observation_variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
     }
-    auto tensors = learner::policy_tensors(learner_.layout(), learner_.parameters());
+    auto tensors = learner::policy_tensors(learner_.layout(), learner_.averaged());
     for (const NamedTensor& to : tensors_of(p)) {
       for (auto& from : tensors) {
         if (from.name == to.name) *to.values = from.values;

@@ -56,6 +56,7 @@ const LearnerConfig& checked(const LearnerConfig& config, const RolloutShape& sh
   require(config.max_gradient_norm > 0.0, "max_gradient_norm", config.max_gradient_norm,
           "more than 0");
   require(config.kl_target > 0.0, "kl_target", config.kl_target, "more than 0");
+  require(config.average_updates > 0, "average_updates", config.average_updates, "more than 0");
   require(config.learning_rate_min > 0.0, "learning_rate_min", config.learning_rate_min,
           "more than 0");
   require(config.learning_rate_start >= config.learning_rate_min &&
@@ -89,6 +90,7 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       pool_(pool),
       rollout_(shape, config.network.hidden),
       parameters_(initial_parameters(layout_, seed, config.action_std_start)),
+      averaged_(parameters_),
       adam_(parameters_.size()),
       h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
       c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
@@ -294,6 +296,12 @@ UpdateStats Learner::update() {
   rollout_.privileged(0) = rollout_.privileged(last);
   rollout_.estimate_target(0) = rollout_.estimate_target(last);
   ++counters_.updates;
+  // Equal weights at first, so that the random start is soon forgotten.
+  const auto share = static_cast<float>(
+      1.0 / std::min(static_cast<double>(counters_.updates), double(config_.average_updates)));
+  for (std::size_t i = 0; i < averaged_.size(); ++i) {
+    averaged_[i] += share * (parameters_[i] - averaged_[i]);
+  }
   counters_.steps += static_cast<std::uint64_t>(last);
   begin_window();
   stats.action_std = std::exp(static_cast<double>(rollout_.log_std.mean()));
@@ -321,6 +329,7 @@ void Learner::save(Checkpoint& checkpoint) const {
   counters.adam_steps = adam_.step;
   checkpoint.put("learner.counters", &counters, 1);
   checkpoint.put("learner.parameters", parameters_.data(), parameters_.size());
+  checkpoint.put("learner.averaged", averaged_.data(), averaged_.size());
   checkpoint.put("learner.adam_m", adam_.m.data(), adam_.m.size());
   checkpoint.put("learner.adam_v", adam_.v.data(), adam_.v.size());
   checkpoint.put("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
@@ -343,6 +352,7 @@ void Learner::load(const Checkpoint& checkpoint) {
   Counters counters;
   checkpoint.get("learner.counters", &counters, 1);
   checkpoint.get("learner.parameters", parameters_.data(), parameters_.size());
+  checkpoint.get("learner.averaged", averaged_.data(), averaged_.size());
   checkpoint.get("learner.adam_m", adam_.m.data(), adam_.m.size());
   checkpoint.get("learner.adam_v", adam_.v.data(), adam_.v.size());
   checkpoint.get("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));

@@ -29,7 +29,8 @@ struct LearnerConfig {
   double gamma = 0.99;
   double lambda = 0.95;
   double max_gradient_norm = 1.0;
-  double kl_target = 0.02;  ///< of a minibatch, from the policy that acted
+  double kl_target = 0.02;    ///< of a minibatch, from the policy that acted
+  int average_updates = 200;  ///< over about so many updates the weights of averaged() are averaged
   double learning_rate_start = 5e-4;
   double learning_rate_min = 2e-5;
   double learning_rate_max = 2e-3;
@@ -111,6 +112,12 @@ class Learner {
   }
   const ParameterLayout& layout() const { return layout_; }
   const std::vector<float>& parameters() const { return parameters_; }
+  /// Running mean of the parameters over the last updates: what a policy is worth that does not
+  /// swing with the latest minibatches (Polyak, Juditsky 1992).
+  const std::vector<float>& averaged() const { return averaged_; }
+
+  /// KL target of the updates to come.
+  void set_kl_target(double kl_target) { config_.kl_target = kl_target; }
 
  private:
   struct Counters {
@@ -134,6 +141,7 @@ class Learner {
   Rollout rollout_;
   Counters counters_;
   std::vector<float> parameters_;
+  std::vector<float> averaged_;
   Adam adam_;
   Matrix<float> h_;  // memory of each environment
   Matrix<float> c_;

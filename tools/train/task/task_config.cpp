@@ -35,6 +35,8 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("run.transitions", c.run.transitions, 1.0, 1e13);
   integer("run.envs", c.run.envs, 1, 1 << 20);
   number("run.checkpoint_interval_s", c.run.checkpoint_interval_s, 0.0, 1e6);
+  number("run.settle_share", c.run.settle_share, 0.0, 1.0);
+  number("run.settle_kl_share", c.run.settle_kl_share, 1e-3, 1.0);
 
   learner::LearnerConfig& l = c.learner;
   integer("learner.window", c.window, 1, 4096);
@@ -43,6 +45,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   integer("learner.epochs", l.epochs, 1, 100);
   number("learner.gamma", l.gamma, 0.0, 1.0);
   number("learner.lambda", l.lambda, 0.0, 1.0);
+  integer("learner.average_updates", l.average_updates, 1, 1 << 20);
   number("learner.kl_target", l.kl_target, 1e-6, 10.0);
   number("learner.learning_rate_start", l.learning_rate_start, 1e-9, 1.0);
   number("learner.learning_rate_min", l.learning_rate_min, 1e-9, 1.0);

@@ -16,6 +16,7 @@ struct RunSettings {
   double transitions = 0;
   int envs = 0;
   double checkpoint_interval_s = 0;
+  double settle_share = 0, settle_kl_share = 0;
 };
 
 struct PolicySettings {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -84,6 +85,23 @@ TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
   expected.put("task", whole.task.states.data(), whole.task.states.size());
   EXPECT_EQ(load_checkpoint(path).sections, expected.sections);
   std::filesystem::remove(path);
+}
+
+TEST(LearnerTest, AveragedWeightsAreTheRunningMeanOfTheUpdates) {
+  LearnerConfig config = small_config();
+  config.average_updates = 3;
+  Training training(1, 4, config);
+  std::vector<float> mean = training.learner.parameters();
+  for (int update = 1; update <= 5; ++update) {
+    training.run(1);
+    const std::vector<float>& now = training.learner.parameters();
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      mean[i] += 1.0f / static_cast<float>(std::min(update, 3)) * (now[i] - mean[i]);
+    }
+  }
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    ASSERT_NEAR(training.learner.averaged()[i], mean[i], 1e-6f) << i;
+  }
 }
 
 TEST(LearnerTest, RefusesACheckpointOfAnotherArchitecture) {
