@@ -236,11 +236,17 @@ Policy load_policy(const std::string& path) {
   return {std::move(file.spec), Network(file.parameters)};
 }
 
+Policy load_policy_text(std::string_view content, const std::string& name) {
+  PolicyFile file = decode(name, parse_safetensors(content, name));
+  return {std::move(file.spec), Network(file.parameters)};
+}
+
+std::string_view shipped_policy_text() noexcept {
+  return embedded_policy_file("raibo.safetensors");
+}
 
 Policy load_shipped_policy() {
-  const std::string name = "raibo.safetensors (built in)";
-  PolicyFile file = decode(name, parse_safetensors(embedded_policy_file("raibo.safetensors"), name));
-  return {std::move(file.spec), Network(file.parameters)};
+  return load_policy_text(shipped_policy_text(), "raibo.safetensors (built in)");
 }
 
 void write_policy_file(const std::string& path, const PolicyFile& file) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "policy/golden.h"
 #include "policy/policy.h"
@@ -24,9 +25,12 @@ PolicyFile read_policy_file(const std::string& path);
 
 /// The policy of a file, ready to run. Errors as read_policy_file.
 Policy load_policy(const std::string& path);
+/// The policy in the bytes of a file; `name` stands for it in errors.
+Policy load_policy_text(std::string_view content, const std::string& name);
 
 /// The policy that ships (policy/trained/raibo.safetensors), built into the program.
 Policy load_shipped_policy();
+std::string_view shipped_policy_text() noexcept;
 
 /// Checks `file` as read_policy_file would, then writes it; `path` is whole or untouched. Throws
 /// InputError.

@@ -6,16 +6,19 @@
 
 #include <cstdio>
 #include <exception>
-#include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "policy/policy_file.h"
 #include "rt/command_source.h"
 #include "rt/core/errors.h"
 #include "rt/core/floating_point.h"
+#include "rt/dds_bridge.h"
 #include "rt/options.h"
+#include "rt/output_files.h"
 #include "rt/process_config.h"
 #include "rt/realtime/rt_report.h"
+#include "rt/recording.h"
 #include "rt/run.h"
 #include "rt/run_csv.h"
 #include "rt/run_pictures.h"
@@ -26,19 +29,17 @@ namespace {
 
 using namespace sandrunner;
 
-// Fails now rather than after the run.
-void prepare_folder(const std::string& dir) {
-  std::error_code error;
-  std::filesystem::create_directories(dir, error);
-  if (error || !std::filesystem::is_directory(dir) || access(dir.c_str(), W_OK | X_OK) != 0) {
-    throw InputError(fmt::format("--out: folder '{}' cannot be written", dir));
-  }
-}
-
 void show_progress(const RunSample& s) {
   fmt::print(stderr, "\r{:8.1f} s  {:<9} {:6.2f} m/s  x {:7.2f} m ", s.t_s, mode_name(s.mode),
              s.vx_mps, s.base_position_m[0]);
   std::fflush(stderr);
+}
+
+std::string recording_line(const RecordingResult& r, const std::string& dir) {
+  return fmt::format("recorded {} ticks, {:.1f} MB, in {}/run.mcap{}{}\n", r.ticks,
+                     1e-6 * static_cast<double>(r.bytes), dir,
+                     r.dropped > 0 ? fmt::format("; {} LOST", r.dropped) : "",
+                     r.stopped_because.empty() ? "" : "; STOPPED: " + r.stopped_because);
 }
 
 int run(int argc, char** argv) {
@@ -48,28 +49,51 @@ int run(int argc, char** argv) {
     print_rt_report();
     return kExitOk;
   }
-  const CommandSource command(options->command);
+  const CommandSource command(options->live ? "0,0,0" : options->command);
+  const std::string policy_text = options->policy_path.empty()
+                                      ? std::string(shipped_policy_text())
+                                      : read_whole_file(options->policy_path);
   Policy policy =
-      options->policy_path.empty() ? load_shipped_policy() : load_policy(options->policy_path);
+      load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
+                                                                 : options->policy_path);
   ConfigTree tree;
   sim::add_terrain_layer(tree, options->terrain);
   for (const std::string& file : options->config_files) tree.add_file(file);
   for (const std::string& assignment : options->assignments) tree.set(assignment);
+  if (options->live) tree.set("dds.enabled=true");
+  if (!options->dds_security_dir.empty()) {
+    tree.set("dds.security_dir=" + options->dds_security_dir);
+  }
   ProcessConfig config = read_process_config(tree, &policy.spec());
   config.simulator.seed = options->seed;
   const bool out = !options->out_dir.empty();
-  if (out) prepare_folder(options->out_dir);
+  if (out) prepare_folder(options->out_dir, "--out");
 
   flush_denormals_to_zero();
   const SignalWatch signals;
+  const std::unique_ptr<Recorder> recorder = make_recorder(*options, config, policy_text);
+  std::optional<DdsBridge> dds;
+  if (config.dds.enabled) dds.emplace(config, options->live);
+  TickTap tap;
+  if (recorder || dds) {
+    tap = [&](const TickRecord& tick) {
+      if (recorder) recorder->add(tick);
+      if (dds) dds->add(tick);
+    };
+  }
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunPlan plan{.walk_s = options->duration_s, .start_walking = options->start_walking};
   const auto progress = terminal ? show_progress : std::function<void(const RunSample&)>();
+  RealtimeHooks hooks;
+  if (dds) hooks.op = dds->op();
   const RunResult result =
       options->realtime
-          ? run_realtime(config, &policy, command, plan, out, signals.interrupted(), progress)
-          : run_lockstep(config, &policy, command, plan, out, signals.interrupted(), progress);
+          ? run_realtime(config, &policy, command, plan, out, signals.interrupted(), progress, tap,
+                         hooks)
+          : run_lockstep(config, &policy, command, plan, out, signals.interrupted(), progress, tap);
   if (terminal) fmt::print(stderr, "\r{:60}\r", "");
+
+  const RecordingResult recorded = recorder ? recorder->close() : RecordingResult();
 
   // Files first: nobody may be listening on standard output any more.
   std::string written;
@@ -83,6 +107,7 @@ int run(int argc, char** argv) {
     written = fmt::format(
         "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
   }
+  if (recorder) written += recording_line(recorded, options->record_dir);
   fmt::print("{}{}", summary_table(result, command), written);
   return result.survived ? kExitOk : kExitRobotFailed;
 }

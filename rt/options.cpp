@@ -25,10 +25,15 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
          "--terrain", o.terrain,
          fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
       ->type_name("PRESET|FILE");
-  app.add_option("--command", o.command,
-                 "velocity vx,vy,wz (m/s, m/s, rad/s), or a CSV file with header t_s,vx,vy,wz, "
-                 "linear between rows")
-      ->type_name("VX,VY,WZ|FILE");
+  app.add_option(
+         "--command", o.command,
+         "velocity vx,vy,wz (m/s, m/s, rad/s), or a CSV file with header t_s,vx,vy,wz, "
+         "linear between rows; dds: operators command over DDS (sandrunner-ctl, ROS 2), until "
+         "Ctrl-C")
+      ->type_name("VX,VY,WZ|FILE|dds");
+  app.add_option("--dds-security", o.dds_security_dir,
+                 "folder made by tools/dds_security.sh: DDS with authentication and encryption")
+      ->type_name("DIR");
   app.add_option("--duration", o.duration_s, "time in Walk, s")->type_name("S");
   app.add_option(
          "--start", start,
@@ -52,6 +57,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->always_capture_default(false);
   app.add_option("--out", o.out_dir, "folder for summary.json, run.csv, run.png, strip.png")
       ->type_name("DIR");
+  app.add_option("--record", o.record_dir, "folder for run.mcap: every tick, to look at and replay")
+      ->type_name("DIR");
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
   app.set_version_flag("--version", std::string("sandrunner ") + SANDRUNNER_VERSION);
@@ -66,6 +73,15 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   o.start_walking = start == "walk";
   o.realtime = clock == "realtime";
   o.rt_report = report->parsed();
+  o.live = o.command == "dds";
+  if (o.live && !o.realtime) {
+    throw InputError("--command dds: operators need --clock realtime");
+  }
+  if (o.live && (o.start_walking || app.count("--duration") > 0)) {
+    throw InputError(
+        "--command dds: the operators decide when the robot walks; expected neither "
+        "--duration nor --start walk");
+  }
   if (!std::isfinite(o.duration_s) || o.duration_s <= 0.0 || o.duration_s > 86400.0) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));

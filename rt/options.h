@@ -13,6 +13,7 @@ struct Options {
   std::string policy_path;  ///< empty: the policy that ships
   std::string terrain = "dry-sand";
   std::string command = "1.5,0,0";
+  bool live = false;         ///< --command dds
   double duration_s = 20.0;  ///< of Walk
   bool start_walking = false;
   bool realtime = false;   ///< --clock realtime
@@ -21,6 +22,8 @@ struct Options {
   std::vector<std::string> config_files;
   std::vector<std::string> assignments;  ///< of --set
   std::string out_dir;                   ///< empty: nothing is written
+  std::string dds_security_dir;          ///< empty: none
+  std::string record_dir;                ///< folder for run.mcap; empty: no recording
 };
 
 /// Parses the command line. Returns nothing if all is said (--help, --version, which print to

@@ -77,9 +77,16 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
         limit = std::min(limit, spec->torque_limit_nm);
     }
   }
+  p.dds = read_dds_config(config);
+  // Who commands from afar may be lost on the way: the robot then slows down and stands.
+  if (p.dds.enabled) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
   read_controller(config, c);
   p.simulator = sim::read_simulator_config(config);
   p.realtime = read_realtime_config(config);
+  p.recording.bytes = static_cast<std::uint64_t>(
+      config.integer("recording.limit_bytes", static_cast<std::int64_t>(p.recording.bytes), 1,
+                     std::int64_t{1} << 50));
+  p.recording.time_s = config.number("recording.limit_s", p.recording.time_s, 0.1, 1e9);
   p.motor_constant = config.number("summary.motor_constant", p.motor_constant, 1e-3, 1e3);
   config.reject_unknown();
   p.effective = config.effective();

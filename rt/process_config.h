@@ -5,6 +5,8 @@
 #include "rt/core/config_tree.h"
 #include "rt/core/controller.h"
 #include "rt/realtime/setup.h"
+#include "rt/telemetry/dds/dds_config.h"
+#include "rt/telemetry/recording/recorder.h"
 #include "sim/robot_model.h"
 #include "sim/simulator.h"
 
@@ -16,6 +18,8 @@ struct ProcessConfig {
   sim::SimulatorConfig simulator;
   ControllerConfig controller;
   RealtimeConfig realtime;
+  RecordingLimits recording;
+  DdsConfig dds;
   double motor_constant = 3.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   std::string effective;        ///< TOML of all settings that counted
 };

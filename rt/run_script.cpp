@@ -28,6 +28,7 @@ OperatorCommand RunScript::command(std::uint64_t tick) noexcept {
 
 OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   OperatorVerdict verdict;
+  const Phase at_start = phase_;
   has_walked_ = has_walked_ || facts.mode == Mode::kWalk;
   verdict.counts = phase_ == Phase::kWalk && facts.mode == Mode::kWalk;
   if (facts.faults != 0) fail(fault_name(facts.first_fault));
@@ -40,7 +41,8 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
     damp();
   }
   const Phase before = phase_;
-  verdict.running = next_phase(facts.mode, facts.ticks);
+  // What was skipped lies before the damping that this tick begins: a stall does not shorten it.
+  verdict.running = next_phase(facts.mode, phase_ == at_start ? facts.ticks : 1);
   const bool stood_up = before == Phase::kStandUp && (!verdict.running || phase_ == Phase::kWalk);
   if (stood_up && facts.base_contact) fail("did_not_stand");
   return verdict;

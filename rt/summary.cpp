@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "rt/core/errors.h"
@@ -149,21 +147,6 @@ std::string summary_json(const RunResult& r, const Options& options, const Comma
   j["realtime_factor"] = r.realtime_factor;
   if (r.realtime) j["realtime"] = realtime_json(*r.realtime);
   return j.dump(2) + "\n";
-}
-
-void write_text(const std::string& text, const std::string& path) {
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw InputError(fmt::format("{}: cannot be written", path));
-    }
-  }
-  std::filesystem::rename(temporary, path);
 }
 
 }  // namespace sandrunner

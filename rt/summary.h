@@ -16,7 +16,4 @@ std::string summary_table(const RunResult& result, const CommandSource& command)
 std::string summary_json(const RunResult& result, const Options& options,
                          const CommandSource& command, const std::string& policy_name);
 
-/// Writes `text` to a file beside `path` and renames it: whole or absent. InputError if it cannot.
-void write_text(const std::string& text, const std::string& path);
-
 }  // namespace sandrunner

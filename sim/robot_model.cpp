@@ -285,6 +285,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   robot.nominal_height_m =
       nominal_height > 0.0 ? nominal_height : standing_height(m, robot.nominal_rad);
   robot.lying_height_m = standing_height(m, robot.lying_rad);
+  robot.description = urdf_text;
   return robot;
 }
 

@@ -62,6 +62,7 @@ struct Robot {
   double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching
   JointArray<double> lying_rad{};    ///< pose in which it lies on its belly
   double lying_height_m = 0.0;
+  std::string description;  ///< URDF text, as read
 };
 
 /// The robot that ships (sim/robots/raibo.urdf and raibo.toml, embedded in the program).

@@ -8,10 +8,11 @@ packages=(
   # tools; fonts-dejavu-core is what the pictures are lettered with
   g++ cmake ninja-build pkg-config git fonts-dejavu-core
   # libraries of the programs
-  libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev
-  liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools
+  libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+  liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libzstd-dev zlib1g-dev
   # libraries of tests and benches
-  libgtest-dev libgmock-dev libmujoco-dev rt-tests
+  libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl
+  libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
 
 fail() {

@@ -106,6 +106,12 @@ RunResult run_realtime(const ProcessConfig& config, Policy* policy, const Comman
   drain();
 
   take_outcome(script, result);
+  if (hooks.op) {  // the script had no part in it
+    const GateState& gate = control.controller().state().gate;
+    result.interrupted = interrupt.load();
+    result.survived = gate.faults == 0;
+    if (!result.survived) result.fall_reason = fault_name(gate.first_fault);
+  }
   result.simulated_s = static_cast<double>(simulator.state().tick) * kControlPeriod_s;
   result.realtime_factor = 1.0;
   StateHash hash;

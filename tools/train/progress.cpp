@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "rt/plot.h"
-#include "rt/summary.h"
+#include "rt/output_files.h"
 
 namespace sandrunner::train {
 namespace {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/output_files.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "rt/core/errors.h"
+
+namespace sandrunner {
+
+void prepare_folder(const std::string& folder, const std::string& option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(fmt::format("{}: folder '{}' cannot be written", option, folder));
+  }
+}
+
+std::string read_whole_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream content;
+  content << in.rdbuf();
+  if (!in || std::filesystem::is_directory(path)) {
+    throw InputError(fmt::format("{}: cannot be read", path));
+  }
+  return content.str();
+}
+
+void write_text(const std::string& text, const std::string& path) {
+  const std::string temporary = path + ".part";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw InputError(fmt::format("{}: cannot be written", path));
+    }
+  }
+  std::filesystem::rename(temporary, path);
+}
+
+}  // namespace sandrunner

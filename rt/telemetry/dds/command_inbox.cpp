@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/command_inbox.h"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstring>
+
+#include "rt/core/mode_machine.h"
+#include "rt/telemetry/dds/ros.h"
+#include "rt/telemetry/dds/sandrunner.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr int kRequestDepth = 32;
+// The controller answers within a tick; one that does not in this time is not running.
+constexpr auto kAnswerTime = std::chrono::milliseconds(20);
+constexpr auto kLookEvery = std::chrono::microseconds(250);
+
+std::int64_t steady_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Twist twist_from(const geometry_msgs_msg_dds__Twist_& t) {
+  return {.linear_mps = {t.linear.x, t.linear.y, t.linear.z},
+          .angular_radps = {t.angular.x, t.angular.y, t.angular.z}};
+}
+
+template <std::size_t kSize>
+void copy_text(char (&to)[kSize], std::string_view from) {
+  const std::size_t size = std::min(from.size(), kSize - 1);
+  std::memcpy(to, from.data(), size);
+  to[size] = '\0';
+}
+
+}  // namespace
+
+CommandInbox::CommandInbox(const DdsParticipant& participant, const DdsConfig& config,
+                           bool can_walk, DdsOperator& op)
+    : operator_(op),
+      stamped_(config.stamped_cmd_vel),
+      can_walk_(can_walk),
+      gate_(static_cast<std::int64_t>(config.stale_s * 1e9)),
+      cmd_vel_(participant.reader(
+          "rt/cmd_vel",
+          stamped_ ? geometry_msgs_msg_dds__TwistStamped__desc : geometry_msgs_msg_dds__Twist__desc,
+          1, false)),
+      requests_(participant.reader("sandrunner/mode_request", sandrunner_ModeRequest_desc,
+                                   kRequestDepth, true)),
+      replies_(
+          participant.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, kRequestDepth)),
+      wake_(check_dds(dds_create_guardcondition(participant.entity()), "guard condition")),
+      waitset_(check_dds(dds_create_waitset(participant.entity()), "waitset")) {
+  for (const dds_entity_t reader : {cmd_vel_, requests_}) {
+    check_dds(dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS), "status mask");
+    check_dds(dds_waitset_attach(waitset_, reader, reader), "waitset");
+  }
+  check_dds(dds_waitset_attach(waitset_, wake_, wake_), "waitset");
+  thread_ = std::thread([this] { run(); });
+  pthread_setname_np(thread_.native_handle(), "dds-commands");
+}
+
+CommandInbox::~CommandInbox() {
+  end_ = true;
+  dds_set_guardcondition(wake_, true);
+  thread_.join();
+  for (const dds_entity_t entity : {waitset_, wake_, cmd_vel_, requests_, replies_}) {
+    dds_delete(entity);
+  }
+}
+
+CommandCounts CommandInbox::counts() const noexcept {
+  const auto velocities = [&](CommandVerdict verdict) {
+    return velocities_[static_cast<std::size_t>(verdict)].load(std::memory_order_relaxed);
+  };
+  return {.accepted = velocities(CommandVerdict::kAccepted),
+          .not_finite = velocities(CommandVerdict::kNotFinite),
+          .absurd = velocities(CommandVerdict::kAbsurd),
+          .other_publisher = velocities(CommandVerdict::kOtherPublisher),
+          .requests_accepted = answers_[1].load(std::memory_order_relaxed),
+          .requests_refused = answers_[0].load(std::memory_order_relaxed)};
+}
+
+void CommandInbox::run() {
+  while (!end_) {
+    dds_attach_t triggered[3];
+    dds_waitset_wait(waitset_, triggered, 3, DDS_INFINITY);
+    take_requests();  // first: what stops the robot may be among them
+    take_velocity();
+  }
+}
+
+void CommandInbox::take_velocity() {
+  void* sample = nullptr;
+  dds_sample_info_t info;
+  while (dds_take(cmd_vel_, &sample, &info, 1, 1) == 1) {
+    if (info.valid_data) {
+      const Twist twist =
+          twist_from(stamped_ ? static_cast<geometry_msgs_msg_dds__TwistStamped_*>(sample)->twist
+                              : *static_cast<geometry_msgs_msg_dds__Twist_*>(sample));
+      const CommandVerdict verdict = gate_.judge(twist, info.publication_handle, steady_ns());
+      if (verdict == CommandVerdict::kAccepted) {
+        wish_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
+        ++wish_.velocity_number;
+        operator_.wish(wish_);
+      }
+      ++velocities_[static_cast<std::size_t>(verdict)];
+    }
+    dds_return_loan(cmd_vel_, &sample, 1);
+    sample = nullptr;
+  }
+}
+
+void CommandInbox::take_requests() {
+  void* sample = nullptr;
+  dds_sample_info_t info;
+  while (dds_take(requests_, &sample, &info, 1, 1) == 1) {
+    if (info.valid_data) {
+      const auto& request = *static_cast<sandrunner_ModeRequest*>(sample);
+      answer(request.id, request.request);
+    }
+    dds_return_loan(requests_, &sample, 1);
+    sample = nullptr;
+  }
+}
+
+void CommandInbox::answer(std::uint64_t id, std::string_view request) {
+  const std::optional<Wish> wish = wish_from(request);
+  const char* const refusal =
+      wish ? follow(*wish) : "unknown, expected stand, walk, stop, damp or reset_fault";
+  ++answers_[refusal ? 0 : 1];
+  sandrunner_ModeReply reply{};
+  reply.id = id;
+  reply.accepted = refusal == nullptr;
+  copy_text(reply.mode, mode_name(operator_.mode()));
+  copy_text(reply.reason, refusal ? refusal : "");
+  dds_write(replies_, &reply);
+}
+
+const char* CommandInbox::follow(Wish wish) {
+  const WishDecision decision = decide(wish, operator_.mode(), can_walk_);
+  if (decision.refusal) return decision.refusal;
+  if (wish == Wish::kStop || wish == Wish::kDamp) {
+    wish_.velocity = {};
+    ++wish_.velocity_number;
+  }
+  if (decision.request != ModeRequest::kNone) {
+    wish_.request = decision.request;
+    ++wish_.request_number;
+  }
+  operator_.wish(wish_);
+  const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
+  while (operator_.considered() != wish_.request_number) {
+    if (std::chrono::steady_clock::now() > deadline) return "the controller does not answer";
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  return failure(wish, operator_.mode());
+}
+
+}  // namespace sandrunner

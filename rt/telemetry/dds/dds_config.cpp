@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/dds_config.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "rt/core/errors.h"
+#include "rt/core/safety_gate.h"
+
+namespace sandrunner {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (char c : text) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else if (c == '"') {
+      out += "&quot;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string security_xml(const std::string& dir, const std::string& identity) {
+  const auto file = [&](const std::string& name) {
+    const std::filesystem::path path = std::filesystem::absolute(dir) / name;
+    if (!std::filesystem::is_regular_file(path)) {
+      throw InputError(fmt::format(
+          "DDS security: found no file {}, expected a folder made by tools/dds_security.sh",
+          path.string()));
+    }
+    return "file:" + escaped(path.string());
+  };
+  return fmt::format(
+      R"(<Security><Authentication>
+  <Library path="dds_security_auth" initFunction="init_authentication" finalizeFunction="finalize_authentication"/>
+  <IdentityCA>{}</IdentityCA><IdentityCertificate>{}</IdentityCertificate><PrivateKey>{}</PrivateKey>
+ </Authentication><AccessControl>
+  <Library path="dds_security_ac" initFunction="init_access_control" finalizeFunction="finalize_access_control"/>
+  <PermissionsCA>{}</PermissionsCA><Governance>{}</Governance><Permissions>{}</Permissions>
+ </AccessControl><Cryptographic>
+  <Library path="dds_security_crypto" initFunction="init_crypto" finalizeFunction="finalize_crypto"/>
+ </Cryptographic></Security>)",
+      file("ca.pem"), file(identity + ".pem"), file(identity + ".key"), file("ca.pem"),
+      file("governance.p7s"), file(identity + ".perm.p7s"));
+}
+
+}  // namespace
+
+std::uint64_t DdsConfig::stale_ticks() const noexcept { return ticks_from_s(stale_s); }
+
+DdsConfig read_dds_config(ConfigTree& config) {
+  DdsConfig c;
+  c.enabled = config.flag("dds.enabled", c.enabled);
+  c.domain = static_cast<int>(config.integer("dds.domain", c.domain, 0, 230));
+  c.interface = config.text("dds.interface", c.interface);
+  c.ros_hz = static_cast<int>(config.integer("dds.ros_hz", c.ros_hz, 1, 200));
+  c.ticks = config.flag("dds.ticks", c.ticks);
+  c.stamped_cmd_vel =
+      config.choice("dds.cmd_vel", "twist", {"twist", "twist_stamped"}) == "twist_stamped";
+  c.stale_s = config.number("dds.stale_s", c.stale_s, 0.01, 10.0);
+  c.security_dir = config.text("dds.security_dir", c.security_dir);
+  if (c.interface.empty()) {
+    throw InputError(
+        "dds.interface: found an empty name, expected a network interface, \"lo\" for this "
+        "computer only");
+  }
+  return c;
+}
+
+std::string cyclone_xml(const DdsConfig& config, const std::string& identity) {
+  const bool loopback = config.interface == "lo";
+  // Without an index of its own a participant is not found by unicast peers; ten processes, the
+  // default, are soon used up by tools. The second peer is the port on which stacks listen that
+  // only expect multicast.
+  const std::string network =
+      loopback
+          ? fmt::format(
+                R"(<General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
+ <AllowMulticast>false</AllowMulticast></General>
+ <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>20</MaxAutoParticipantIndex>
+ <Peers><Peer Address="127.0.0.1"/><Peer Address="127.0.0.1:{}"/></Peers></Discovery>)",
+                7400 + 250 * config.domain)
+          : fmt::format(
+                R"(<General><Interfaces><NetworkInterface name="{}"/></Interfaces></General>)",
+                escaped(config.interface));
+  // One thread for all sockets: several are woken for their end by packets to themselves, which
+  // wait for ever if the network interface is gone by then. And each writer waits at the end for
+  // the acknowledgements of its readers, dead ones too: not for a second each.
+  constexpr const char* kInternal =
+      "<Internal><MultipleReceiveThreads>false</MultipleReceiveThreads>"
+      "<WriterLingerDuration>100 ms</WriterLingerDuration></Internal>";
+  return fmt::format(
+      "<CycloneDDS xmlns=\"https://cdds.io/config\"><Domain Id=\"any\">\n {}\n {}\n "
+      "{}\n</Domain></CycloneDDS>",
+      network, kInternal,
+      config.security_dir.empty() ? "" : security_xml(config.security_dir, identity));
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/dds_operator.h"
+
+#include <algorithm>
+
+namespace sandrunner {
+namespace {
+
+constexpr std::uint64_t kDampingEnd_ticks = kControlHz / 2;  // after an interrupt
+
+}  // namespace
+
+OperatorCommand DdsOperator::command(std::uint64_t tick) noexcept {
+  const OperatorWish& wish = wishes_.read();
+  const bool first = next_tick_ == 0;  // the controller's first step considers no request
+  if (wish.velocity_number != velocity_number_) {
+    velocity_number_ = wish.velocity_number;
+    // If slots were missed, the command may have come in the first one of them.
+    arrival_tick_ = first ? tick : std::min(next_tick_, tick);
+    command_.velocity = wish.velocity;
+  }
+  next_tick_ = tick + 1;
+  if (velocity_number_ == 0 || tick - arrival_tick_ > stale_ticks_) command_.velocity = {};
+  command_.tick = arrival_tick_;
+  if (!interrupted_ && !first && wish.request_number != request_number_) {
+    request_number_ = wish.request_number;
+    command_.request = wish.request;
+    ++command_.request_id;
+  }
+  return command_;
+}
+
+OperatorVerdict DdsOperator::advance(const TickFacts& facts) noexcept {
+  mode_.store(facts.mode, std::memory_order_relaxed);
+  considered_.store(request_number_, std::memory_order_release);
+  if (interrupted_) damped_ticks_ += facts.ticks;
+  if (facts.interrupted && !interrupted_) {
+    interrupted_ = true;
+    command_.request = ModeRequest::kDamp;
+    ++command_.request_id;
+  }
+  // Drives that are off need no damping.
+  const bool done =
+      interrupted_ && (facts.mode == Mode::kPassive || damped_ticks_ >= kDampingEnd_ticks);
+  return {.running = !done, .counts = facts.mode == Mode::kWalk};
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "rt/core/triple_buffer.h"
+#include "rt/operator_input.h"
+
+namespace sandrunner {
+
+/// What the operators want, all told.
+struct OperatorWish {
+  VelocityCommand velocity;
+  std::uint64_t velocity_number = 0;  ///< counts the velocity commands; 0: none yet
+  ModeRequest request = ModeRequest::kNone;
+  std::uint64_t request_number = 0;  ///< counts the requests; 0: none yet
+};
+
+/// The control thread's end of commands that come over DDS. A velocity is of the tick at which it
+/// was first seen; once it is older than the stale time it is zero. Nothing is asked for that
+/// nobody asked for: the robot stays as it is until the first request. Ends in damping when it is
+/// interrupted.
+class DdsOperator final : public OperatorInput {
+ public:
+  /// `stale_ticks`: the oldest velocity that still counts, in control ticks.
+  explicit DdsOperator(std::uint64_t stale_ticks) : stale_ticks_(stale_ticks) {}
+
+  // Control thread: wait-free.
+  OperatorCommand command(std::uint64_t tick) noexcept override;
+  OperatorVerdict advance(const TickFacts& facts) noexcept override;
+
+  // From one other thread:
+  void wish(const OperatorWish& wish) noexcept { wishes_.write(wish); }
+  /// Number of the newest request that the controller has considered.
+  std::uint64_t considered() const noexcept { return considered_.load(std::memory_order_acquire); }
+  /// Mode of the controller, at least as new as considered().
+  Mode mode() const noexcept { return mode_.load(std::memory_order_relaxed); }
+
+ private:
+  const std::uint64_t stale_ticks_;
+  TripleBuffer<OperatorWish> wishes_;
+  // Control thread:
+  std::uint64_t velocity_number_ = 0, request_number_ = 0;  // latest that was seen
+  std::uint64_t next_tick_ = 0;                             // the one after the last; 0: none yet
+  std::uint64_t arrival_tick_ = 0;                          // of the velocity
+  std::uint64_t damped_ticks_ = 0;                          // since the interrupt
+  bool interrupted_ = false;
+  OperatorCommand command_;
+  // To the other thread:
+  std::atomic<Mode> mode_{Mode::kPassive};
+  std::atomic<std::uint64_t> considered_{0};
+  static_assert(std::atomic<Mode>::is_always_lock_free);
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rt/core/log_histogram.h"
+#include "rt/telemetry/dds/command_inbox.h"
+#include "rt/telemetry/dds/participant.h"
+#include "rt/tick_record.h"
+
+namespace sandrunner {
+
+/// Publishes how the robot is on rt/diagnostics: mode, faults, how the control thread kept its
+/// times since the start, what became of commands and messages. Error level while a fault is
+/// latched, else warning while slots were missed since the last message.
+class Diagnostics {
+ public:
+  /// Throws InputError.
+  explicit Diagnostics(const DdsParticipant& participant);
+
+  void add(const TickRecord& tick) noexcept;
+  /// `stamp_ns` since 1970; `failed_writes`: of all topics so far. False: could not be written.
+  bool publish(std::int64_t stamp_ns, const CommandCounts& commands, std::uint64_t failed_writes);
+
+ private:
+  using Values = std::vector<std::pair<std::string, std::string>>;
+  Values values(const CommandCounts& commands, std::uint64_t failed_writes) const;
+
+  dds_entity_t writer_;
+  Mode mode_ = Mode::kPassive;
+  std::uint64_t faults_ = 0, tick_ = 0, ticks_ = 0, skipped_ = 0, skipped_before_ = 0;
+  std::uint64_t past_stop_ticks_ = 0, too_fast_ticks_ = 0;
+  LogHistogram late_, read_, control_, write_;
+};
+
+/// "none", or the names of the latched faults, separated by ", ".
+std::string fault_names(std::uint64_t faults);
+
+}  // namespace sandrunner

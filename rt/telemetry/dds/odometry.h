@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "rt/tick_record.h"
+
+namespace sandrunner {
+
+/// Dead reckoning from the network's estimate of the base velocity and the IMU's attitude. Starts
+/// at the origin; without an estimate (outside Walk) the robot counts as standing where it is.
+class Odometry {
+ public:
+  /// Ticks one after the other; the velocity of a tick holds over slots missed before it.
+  void add(const TickRecord& tick) noexcept;
+
+  const Vector3& position_m() const noexcept { return position_m_; }  ///< z: estimated body height
+  const std::array<double, 4>& orientation_wxyz() const noexcept { return orientation_wxyz_; }
+  const Vector3& velocity_mps() const noexcept { return velocity_mps_; }  ///< body frame
+  const Vector3& angular_velocity_radps() const noexcept { return angular_velocity_radps_; }
+
+  // Variances. They only grow: nothing that the robot senses tells it where it is.
+  double horizontal_variance_m2() const noexcept { return horizontal_variance_m2_; }
+  double yaw_variance_rad2() const noexcept { return yaw_variance_rad2_; }
+
+ private:
+  bool has_last_ = false;
+  std::uint64_t last_tick_ = 0;
+  Vector3 position_m_{};
+  std::array<double, 4> orientation_wxyz_{1.0, 0.0, 0.0, 0.0};
+  Vector3 velocity_mps_{};
+  Vector3 angular_velocity_radps_{};
+  double horizontal_variance_m2_ = 0.0, yaw_variance_rad2_ = 0.0;
+};
+
+/// Assumed errors: those of the estimated velocity (standard deviation, correlated over a second),
+/// and the drift of the IMU's yaw (random walk).
+inline constexpr double kVelocityError_mps = 0.1;
+inline constexpr double kVelocityErrorTime_s = 1.0;
+inline constexpr double kYawWalk_radprts = 0.002;  ///< rad per square root of a second
+
+}  // namespace sandrunner

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/participant.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+
+#include "rt/core/errors.h"
+
+namespace sandrunner {
+namespace {
+
+// Any value but the default of 100 ms: a default is not sent on the wire, and some stacks need it
+// there.
+constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+Qos make_qos(int depth, bool reliable, bool latched) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       kMaxBlocking);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
+  dds_qset_durability(qos.get(),
+                      latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  if (latched) {
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  return qos;
+}
+
+// A network that is gone makes an error of every packet: what Cyclone DDS has to say goes to the
+// standard error, but not more than these lines in ten seconds.
+constexpr int kLogLines = 20;
+constexpr auto kLogTime = std::chrono::seconds(10);
+
+void log_sink(void*, const dds_log_data_t* data) {
+  using Clock = std::chrono::steady_clock;
+  static std::mutex mutex;
+  static Clock::time_point since;
+  static int lines = 0;
+  const std::lock_guard lock(mutex);
+  if (Clock::now() - since > kLogTime) {
+    since = Clock::now();
+    lines = 0;
+  }
+  if (++lines > kLogLines) return;
+  std::fprintf(stderr, "DDS: %s%s", data->message,
+               lines == kLogLines ? "DDS: more is not shown for ten seconds\n" : "");
+}
+
+}  // namespace
+
+dds_entity_t check_dds(dds_entity_t result, const std::string& what) {
+  if (result >= 0) return result;
+  throw InputError(
+      fmt::format("DDS: {}: found {}, expected it to work", what, dds_strretcode(result)));
+}
+
+DdsParticipant::DdsParticipant(const DdsConfig& config, const std::string& identity) {
+  const std::string where =
+      fmt::format("domain {} on interface {}{}", config.domain, config.interface,
+                  config.security_dir.empty() ? "" : ", security files of " + config.security_dir);
+  const std::string xml = cyclone_xml(config, identity);
+  dds_set_log_sink(log_sink, nullptr);
+  domain_ =
+      check_dds(dds_create_domain(static_cast<dds_domainid_t>(config.domain), xml.c_str()), where);
+  // What ROS 2 puts into its participants: they are listed beside its own.
+  const std::string enclave = "enclave=/;";
+  const Qos qos(dds_create_qos());
+  dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
+  participant_ =
+      dds_create_participant(static_cast<dds_domainid_t>(config.domain), qos.get(), nullptr);
+  if (participant_ < 0) {
+    dds_delete(domain_);
+    check_dds(participant_, where);
+  }
+}
+
+DdsParticipant::~DdsParticipant() {
+  dds_delete(participant_);
+  dds_delete(domain_);
+}
+
+dds_entity_t DdsParticipant::topic(const char* name, const dds_topic_descriptor_t& type) const {
+  return check_dds(dds_create_topic(participant_, &type, name, nullptr, nullptr), name);
+}
+
+dds_entity_t DdsParticipant::writer(const char* name, const dds_topic_descriptor_t& type, int depth,
+                                    bool latched) const {
+  const Qos qos = make_qos(depth, true, latched);
+  return check_dds(dds_create_writer(participant_, topic(name, type), qos.get(), nullptr), name);
+}
+
+dds_entity_t DdsParticipant::reader(const char* name, const dds_topic_descriptor_t& type, int depth,
+                                    bool reliable, bool latched) const {
+  const Qos qos = make_qos(depth, reliable, latched);
+  return check_dds(dds_create_reader(participant_, topic(name, type), qos.get(), nullptr), name);
+}
+
+}  // namespace sandrunner

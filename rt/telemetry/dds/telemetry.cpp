@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/telemetry.h"
+
+#include <chrono>
+
+namespace sandrunner {
+namespace {
+
+constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
+
+std::int64_t wall_clock_ns() {
+  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
+                     const std::string& robot_description, const CommandInbox* inbox,
+                     std::int64_t start_ns)
+    : ros_hz_(static_cast<std::uint64_t>(config.ros_hz)),
+      inbox_(inbox),
+      ros_(participant, robot_description),
+      diagnostics_(participant),
+      start_ns_(start_ns) {
+  if (config.ticks) batches_.emplace(participant);
+}
+
+Telemetry::~Telemetry() {
+  if (batches_) batches_->flush();
+}
+
+void Telemetry::add(const TickRecord& record) {
+  const std::uint64_t tick = record.input.sensors.tick;
+  if (start_ns_ == 0) start_ns_ = wall_clock_ns() - static_cast<std::int64_t>(tick) * kTick_ns;
+  const std::int64_t stamp_ns = start_ns_ + static_cast<std::int64_t>(tick) * kTick_ns;
+  odometry_.add(record);
+  diagnostics_.add(record);
+  if (batches_ && !batches_->add(record, stamp_ns)) ++failed_writes_;
+  // Due when the tick enters a new slot of the slower rate, also if the slot's first tick is
+  // missing.
+  const auto due = [&](std::uint64_t hz) {
+    return tick * hz / kControlHz != last_tick_ * hz / kControlHz;
+  };
+  if (due(ros_hz_)) {
+    failed_writes_ += static_cast<std::uint64_t>(ros_.publish(record, odometry_, stamp_ns));
+  }
+  if (due(1)) {
+    const CommandCounts commands = inbox_ ? inbox_->counts() : CommandCounts{};
+    if (!diagnostics_.publish(stamp_ns, commands, failed_writes_)) ++failed_writes_;
+  }
+  last_tick_ = tick;
+}
+
+}  // namespace sandrunner

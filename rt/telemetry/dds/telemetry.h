@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "rt/telemetry/dds/command_inbox.h"
+#include "rt/telemetry/dds/diagnostics.h"
+#include "rt/telemetry/dds/odometry.h"
+#include "rt/telemetry/dds/ros_publisher.h"
+#include "rt/telemetry/dds/tick_batches.h"
+#include "rt/tick_record.h"
+
+namespace sandrunner {
+
+/// Publishes what the control loop does: ROS 2's messages at `ros_hz`, diagnostics once a second,
+/// and every tick in batches. Used by one thread of ordinary priority; a write may take
+/// milliseconds. Stamps are the wall clock at the start plus the tick times 0.25 ms: they are as
+/// even as the control loop's grid and do not follow later corrections of the wall clock.
+class Telemetry {
+ public:
+  /// `participant` must outlive it; `inbox` (may be null) too: its counts are published.
+  /// `robot_description`: URDF. `start_ns`: wall clock of tick 0, ns since 1970; 0: taken at the
+  /// first add(). Throws InputError.
+  Telemetry(const DdsParticipant& participant, const DdsConfig& config,
+            const std::string& robot_description, const CommandInbox* inbox,
+            std::int64_t start_ns = 0);
+  /// Publishes the last ticks.
+  ~Telemetry();
+  Telemetry(const Telemetry&) = delete;
+  Telemetry& operator=(const Telemetry&) = delete;
+
+  /// Every tick, in order.
+  void add(const TickRecord& tick);
+
+  std::uint64_t batches() const noexcept { return batches_ ? batches_->count() : 0; }
+  /// Messages that could not be written.
+  std::uint64_t failed_writes() const noexcept { return failed_writes_; }
+
+ private:
+  const std::uint64_t ros_hz_;
+  const CommandInbox* inbox_;
+  RosPublisher ros_;
+  Diagnostics diagnostics_;
+  std::optional<TickBatches> batches_;
+  Odometry odometry_;
+  std::int64_t start_ns_;
+  std::uint64_t last_tick_ = 0, failed_writes_ = 0;
+};
+
+}  // namespace sandrunner

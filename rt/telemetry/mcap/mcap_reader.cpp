@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/mcap/mcap_reader.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "rt/core/errors.h"
+
+namespace sandrunner {
+namespace {
+
+/// Everything that the reader keeps: schemas, channels, attachments, metadata.
+constexpr std::size_t kMaxKeptBytes = std::size_t{256} << 20;
+/// A record that is read into memory: the largest chunk, uncompressed, with its fields.
+constexpr std::uint64_t kMaxRecordBytes = kMcapMaxChunkBytes + (1U << 20);
+/// Bodies are read in such pieces, so that a wrong length in a short file costs no memory.
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+/// No zstd block is better than 128 KiB in 4 bytes (format, section 3.1.1.2), so that a short chunk
+/// cannot ask for much memory.
+constexpr std::uint64_t kMaxZstdRatio = (128U << 10) / 4U;
+
+std::uint32_t add_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
+  if (bytes.empty()) return crc;  // zlib starts anew at a null pointer
+  return static_cast<std::uint32_t>(
+      ::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+/// Records that only seeking needs, and those of later versions.
+bool is_skipped(std::uint8_t opcode) {
+  return opcode == kMcapMessageIndex || opcode == kMcapChunkIndex ||
+         opcode == kMcapAttachmentIndex || opcode == kMcapStatistics ||
+         opcode == kMcapMetadataIndex || opcode == kMcapSummaryOffset || opcode > kMcapDataEnd;
+}
+
+}  // namespace
+
+/// Takes the fields of one record in turn, each checked against what is left of it.
+class McapReader::Fields {
+ public:
+  Fields(McapReader& reader, std::span<const std::byte> body) : reader_(reader), left_(body) {}
+
+  template <typename Number>
+  Number number() {
+    Number value;
+    std::memcpy(&value, bytes(sizeof value).data(), sizeof value);
+    return value;
+  }
+
+  std::span<const std::byte> bytes(std::uint64_t size) {
+    if (size > left_.size()) {
+      reader_.fail(
+          fmt::format("found {} bytes left in it, expected a field of {}", left_.size(), size));
+    }
+    const auto taken = left_.first(static_cast<std::size_t>(size));
+    left_ = left_.subspan(taken.size());
+    return taken;
+  }
+
+  std::string string(std::uint64_t size) {
+    const auto taken = bytes(size);
+    return {reinterpret_cast<const char*>(taken.data()), taken.size()};
+  }
+  std::string string() { return string(number<std::uint32_t>()); }
+
+  McapMap map() {
+    McapMap result;
+    Fields entries(reader_, bytes(number<std::uint32_t>()));
+    while (!entries.left_.empty()) {
+      reader_.keep(128);  // about what a node costs beside its strings
+      std::string key = entries.string();
+      if (!result.emplace(std::move(key), entries.string()).second) {
+        reader_.fail("found a key twice in a map, expected each once");
+      }
+    }
+    return result;
+  }
+
+  std::span<const std::byte> rest() { return bytes(left_.size()); }
+  std::size_t left() const { return left_.size(); }
+
+ private:
+  McapReader& reader_;
+  std::span<const std::byte> left_;
+};
+
+McapReader::McapReader(const std::string& path) : stream_(file_), name_(path) {
+  errno = 0;
+  file_.open(path, std::ios::binary);
+  if (!file_) {
+    throw InputError(one_line(
+        fmt::format("{}: cannot be read ({}), expected an MCAP file", path, std::strerror(errno))));
+  }
+  read_header();
+}
+
+McapReader::McapReader(std::istream& stream, std::string name)
+    : stream_(stream), name_(std::move(name)) {
+  read_header();
+}
+
+void McapReader::read_header() {
+  std::array<std::byte, kMcapMagic.size()> magic;
+  const bool whole = read_bytes(magic);
+  const auto size = static_cast<std::size_t>(offset_);
+  if (std::memcmp(magic.data(), kMcapMagic.data(), size) != 0) {
+    fail("found other bytes, expected the beginning of an MCAP file");
+  }
+  ended_ = !whole;
+  if (!ended_) take_from_file();
+}
+
+const McapMessage* McapReader::next() {
+  while (!ended_) {
+    if (chunk_at_ < chunk_.size() ? take_from_chunk() : take_from_file()) return &message_;
+  }
+  return nullptr;
+}
+
+/// Fills `to` from the file; false at its end.
+bool McapReader::read_bytes(std::span<std::byte> to) {
+  stream_.read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
+  const auto got = static_cast<std::size_t>(stream_.gcount());
+  offset_ += got;
+  crc_ = add_crc(crc_, to.first(got));
+  if (stream_.bad()) fail("found an error while reading, expected a readable file");
+  return got == to.size();
+}
+
+/// Reads the body of a record into `record_`; false at the end of the file.
+bool McapReader::read_body(std::uint64_t size) {
+  if (size > kMaxRecordBytes) {
+    fail(fmt::format("found a length of {} bytes, expected at most {}", size, kMaxRecordBytes));
+  }
+  record_.clear();
+  while (record_.size() < size) {
+    const std::size_t at = record_.size();
+    record_.resize(at + std::min(kPieceBytes, static_cast<std::size_t>(size) - at));
+    if (!read_bytes(std::span(record_).subspan(at))) return false;
+  }
+  return true;
+}
+
+bool McapReader::skip_body(std::uint64_t size) {
+  record_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size, kPieceBytes)));
+  for (std::uint64_t left = size; left > 0;) {
+    const std::size_t piece =
+        static_cast<std::size_t>(std::min<std::uint64_t>(left, record_.size()));
+    if (!read_bytes(std::span(record_).first(piece))) return false;
+    left -= piece;
+  }
+  return true;
+}
+
+/// Takes the next record of the file; true when it is a message. Sets `ended_` at the end.
+bool McapReader::take_from_file() {
+  const bool first = offset_ == kMcapMagic.size();
+  const std::uint32_t crc_before = crc_;
+  record_offset_ = offset_;
+  std::array<std::byte, kMcapRecordHeadBytes> head;
+  ended_ = true;  // unless all of the record is there
+  if (!read_bytes(head)) return false;
+  const auto opcode = static_cast<std::uint8_t>(head[0]);
+  std::uint64_t size = 0;
+  std::memcpy(&size, &head[1], sizeof size);
+  if (opcode == 0) fail("found type 0, expected the type of a record");
+  if (first != (opcode == kMcapHeader)) {
+    fail(fmt::format("found type 0x{:02x}, expected the header once, at the beginning", opcode));
+  }
+  // The summary repeats schemas and channels.
+  const bool repeated = summary_start_ != 0 && (opcode == kMcapSchema || opcode == kMcapChannel);
+  if (repeated || is_skipped(opcode)) {
+    ended_ = !skip_body(size);
+    return false;
+  }
+  if (summary_start_ != 0 && opcode != kMcapFooter) {
+    fail(fmt::format("found type 0x{:02x} behind the end of the data", opcode));
+  }
+  if (!read_body(size)) return false;
+  ended_ = false;
+  Fields fields(*this, record_);
+  switch (opcode) {
+    case kMcapHeader:
+      profile_ = fields.string();
+      library_ = fields.string();
+      break;
+    case kMcapFooter:
+      take_footer(fields,
+                  add_crc(add_crc(crc_before, head),
+                          std::span(record_).first(std::min<std::size_t>(16, record_.size()))));
+      break;
+    case kMcapSchema:
+      take_schema(fields);
+      break;
+    case kMcapChannel:
+      take_channel(fields);
+      break;
+    case kMcapMessage:
+      return take_message(fields);
+    case kMcapChunk:
+      take_chunk(fields);
+      break;
+    case kMcapAttachment:
+      take_attachment(fields);
+      break;
+    case kMcapMetadata:
+      take_metadata(fields);
+      break;
+    default:
+      take_data_end(fields, crc_before);
+  }
+  return false;
+}
+
+/// Takes the next record of the chunk; true when it is a message.
+bool McapReader::take_from_chunk() {
+  Fields chunk(*this, std::span(chunk_).subspan(chunk_at_));
+  const auto opcode = chunk.number<std::uint8_t>();
+  const auto body = chunk.bytes(chunk.number<std::uint64_t>());
+  chunk_at_ += kMcapRecordHeadBytes + body.size();
+  const Fields fields(*this, body);
+  if (opcode == kMcapMessage) return take_message(fields);
+  if (opcode == kMcapSchema) {
+    take_schema(fields);
+  } else if (opcode == kMcapChannel) {
+    take_channel(fields);
+  } else if (opcode <= kMcapDataEnd) {
+    fail(fmt::format("found type 0x{:02x} in a chunk, expected schemas, channels and messages",
+                     opcode));
+  }
+  return false;
+}
+
+bool McapReader::take_message(Fields fields) {
+  message_.channel_id = fields.number<std::uint16_t>();
+  message_.sequence = fields.number<std::uint32_t>();
+  message_.log_time_ns = fields.number<std::uint64_t>();
+  message_.publish_time_ns = fields.number<std::uint64_t>();
+  message_.data = fields.rest();
+  if (!channels_.contains(message_.channel_id)) {
+    fail(fmt::format("found a message of channel {}, expected the channel before its messages",
+                     message_.channel_id));
+  }
+  return true;
+}
+
+void McapReader::take_schema(Fields fields) {
+  const std::size_t size = fields.left();
+  McapSchema schema;
+  schema.id = fields.number<std::uint16_t>();
+  schema.name = fields.string();
+  schema.encoding = fields.string();
+  schema.data = fields.string();
+  if (schema.id == 0) return;  // to be ignored, says the specification
+  const auto [known, is_new] = schemas_.try_emplace(schema.id, schema);
+  if (is_new) return keep(size);
+  if (known->second != schema) fail(fmt::format("found two schemas with the id {}", schema.id));
+}
+
+void McapReader::take_channel(Fields fields) {
+  const std::size_t size = fields.left();
+  const std::size_t kept_before = kept_bytes_;
+  McapChannel channel;
+  channel.id = fields.number<std::uint16_t>();
+  channel.schema_id = fields.number<std::uint16_t>();
+  channel.topic = fields.string();
+  channel.message_encoding = fields.string();
+  channel.metadata = fields.map();
+  if (channel.schema_id != 0 && !schemas_.contains(channel.schema_id)) {
+    fail(fmt::format("found a channel of schema {}, expected the schema before its channels",
+                     channel.schema_id));
+  }
+  const auto [known, is_new] = channels_.try_emplace(channel.id, channel);
+  if (is_new) return keep(size);
+  kept_bytes_ = kept_before;
+  if (known->second != channel) fail(fmt::format("found two channels with the id {}", channel.id));
+}
+
+void McapReader::take_chunk(Fields fields) {
+  fields.bytes(16);  // its time span
+  const auto size = fields.number<std::uint64_t>();
+  const auto crc = fields.number<std::uint32_t>();
+  const std::string compression = fields.string();
+  const auto stored = fields.bytes(fields.number<std::uint64_t>());
+  chunk_at_ = 0;
+  chunk_.clear();
+  if (size > kMcapMaxChunkBytes) {
+    fail(fmt::format("found a chunk of {} bytes, expected at most {}", size, kMcapMaxChunkBytes));
+  }
+  if (compression.empty()) {
+    if (size != stored.size()) {
+      fail(fmt::format("found {} bytes in a chunk, expected {}", stored.size(), size));
+    }
+    chunk_.assign(stored.begin(), stored.end());
+  } else if (compression == "zstd") {
+    if (size / kMaxZstdRatio > stored.size()) {
+      fail(fmt::format("found a chunk of {} bytes compressed to {}", size, stored.size()));
+    }
+    chunk_.resize(static_cast<std::size_t>(size));
+    const std::size_t got =
+        ZSTD_decompress(chunk_.data(), chunk_.size(), stored.data(), stored.size());
+    if (got != chunk_.size()) {
+      chunk_.clear();
+      fail(ZSTD_isError(got)
+               ? fmt::format("found a chunk that zstd refuses ({}), expected {} bytes",
+                             ZSTD_getErrorName(got), size)
+               : fmt::format("found {} bytes in a chunk, expected {}", got, size));
+    }
+  } else {
+    fail(fmt::format("found a chunk compressed with '{}', expected zstd or none",
+                     compression.substr(0, 16)));
+  }
+  check_crc("chunk", add_crc(0, chunk_), crc);
+}
+
+void McapReader::take_attachment(Fields fields) {
+  const std::size_t size = fields.left();
+  keep(size);
+  McapAttachment attachment;
+  attachment.log_time_ns = fields.number<std::uint64_t>();
+  attachment.create_time_ns = fields.number<std::uint64_t>();
+  attachment.name = fields.string();
+  attachment.media_type = fields.string();
+  attachment.data = fields.string(fields.number<std::uint64_t>());
+  const std::size_t checked = size - fields.left();
+  check_crc("attachment", add_crc(0, std::span(record_).first(checked)),
+            fields.number<std::uint32_t>());
+  attachments_.push_back(std::move(attachment));
+}
+
+void McapReader::take_metadata(Fields fields) {
+  keep(fields.left());
+  McapMetadata metadata;
+  metadata.name = fields.string();
+  metadata.values = fields.map();
+  metadata_.push_back(std::move(metadata));
+}
+
+void McapReader::take_data_end(Fields fields, std::uint32_t data_crc) {
+  check_crc("data section", data_crc, fields.number<std::uint32_t>());
+  summary_start_ = offset_;
+  crc_ = 0;
+}
+
+void McapReader::take_footer(Fields fields, std::uint32_t crc) {
+  ended_ = true;
+  if (summary_start_ == 0) fail("found the footer, expected the end of the data before it");
+  const auto summary_start = fields.number<std::uint64_t>();
+  fields.bytes(8);  // where the summary's own index starts
+  const auto stored_crc = fields.number<std::uint32_t>();
+  if (fields.left() != 0) fail("found a long footer, expected 20 bytes");
+  if (summary_start != 0) {
+    if (summary_start != summary_start_) {
+      fail(fmt::format("found the summary's place {}, expected {}", summary_start, summary_start_));
+    }
+    check_crc("summary", crc, stored_crc);
+  }
+  std::array<std::byte, kMcapMagic.size()> magic;
+  const std::uint64_t before = offset_;
+  const bool whole = read_bytes(magic);
+  if (std::memcmp(magic.data(), kMcapMagic.data(), static_cast<std::size_t>(offset_ - before)) !=
+      0) {
+    fail("found other bytes behind the footer, expected the end of an MCAP file");
+  }
+  if (whole && stream_.peek() != std::istream::traits_type::eof()) {
+    fail("found more bytes behind its end, expected none");
+  }
+  complete_ = whole;
+}
+
+/// Counts what is kept in memory, with something for its containers.
+void McapReader::keep(std::size_t bytes) {
+  kept_bytes_ += bytes + 256;
+  if (kept_bytes_ > kMaxKeptBytes) {
+    fail(fmt::format("found more than {} bytes of schemas, channels, attachments and metadata",
+                     kMaxKeptBytes));
+  }
+}
+
+/// 0 in the file stands for a CRC that was not computed.
+void McapReader::check_crc(std::string_view what, std::uint32_t computed, std::uint32_t stored) {
+  if (stored == 0 || stored == computed) return;
+  fail(fmt::format("found the CRC {:08x} of the {}, expected {:08x}", computed, what, stored));
+}
+
+void McapReader::fail(std::string_view found_and_expected) {
+  ended_ = true;
+  chunk_.clear();
+  throw InputError(one_line(
+      fmt::format("{}: record at byte {}: {}", name_, record_offset_, found_and_expected)));
+}
+
+}  // namespace sandrunner

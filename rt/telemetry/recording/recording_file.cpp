@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/recording/recording_file.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "rt/core/errors.h"
+#include "rt/telemetry/mcap/mcap_reader.h"
+#include "rt/telemetry/recording/cdr.h"
+#include "rt/tick_fields.h"
+
+namespace sandrunner {
+namespace {
+
+RecordingInfo info_of(const std::string& path, const McapReader& reader) {
+  RecordingInfo info;
+  const McapMetadata* run = nullptr;
+  for (const McapMetadata& metadata : reader.metadata()) {
+    if (metadata.name == kRunMetadata) run = &metadata;
+  }
+  if (!run)
+    throw InputError(fmt::format("{}: no metadata '{}': not our recording", path, kRunMetadata));
+  const auto value = [&](const char* key) {
+    const auto found = run->values.find(key);
+    if (found == run->values.end()) {
+      throw InputError(fmt::format("{}: metadata '{}' lacks '{}'", path, kRunMetadata, key));
+    }
+    return found->second;
+  };
+  info.build = value("build");
+  info.start_mode = value("start_mode");
+  info.clock = value("clock");
+  info.start_time_ns = std::strtoll(value("start_time_ns").c_str(), nullptr, 10);
+  for (const McapAttachment& attachment : reader.attachments()) {
+    if (attachment.name == kConfigAttachment) info.config = attachment.data;
+    if (attachment.name == kPolicyAttachment) info.policy = attachment.data;
+    if (attachment.name == kRobotAttachment) info.robot = attachment.data;
+  }
+  return info;
+}
+
+}  // namespace
+
+RecordingContents read_recording(const std::string& path,
+                                 const std::function<void(const RecordingInfo&)>& begin,
+                                 const std::function<bool(const TickRecord&)>& tick) {
+  McapReader reader(path);
+  RecordingContents contents;
+  bool begun = false, wanted = true;
+  std::uint64_t last_batch = 0;
+  const auto start = [&] {
+    begun = true;
+    contents.info = info_of(path, reader);
+    if (begin) begin(contents.info);
+  };
+  while (const McapMessage* message = reader.next()) {
+    if (!begun) start();
+    const McapChannel& channel = reader.channels().at(message->channel_id);
+    if (channel.topic != kTicksTopic) continue;
+    if (reader.schemas().at(channel.schema_id).data != tick_idl()) {
+      throw InputError(fmt::format("{}: its ticks are laid out otherwise than this build's", path));
+    }
+    CdrReader cdr(message->data);
+    const auto batch = cdr.number<std::uint64_t>();
+    const auto count = cdr.number<std::uint32_t>();
+    const std::span<const std::byte> bytes = cdr.block(count * sizeof(TickRecord), 8);
+    if (cdr.failed() || cdr.left() != 0 || batch != last_batch + 1) {
+      throw InputError(
+          fmt::format("{}: batch {} of ticks is damaged or missing", path, last_batch + 1));
+    }
+    last_batch = batch;
+    for (std::uint32_t i = 0; i < count && wanted; ++i) {
+      TickRecord record;
+      std::memcpy(&record, bytes.data() + i * sizeof record, sizeof record);
+      ++contents.ticks;
+      wanted = tick(record);
+    }
+    if (!wanted) return contents.complete = true, contents;
+  }
+  if (!begun) start();
+  contents.complete = reader.complete();
+  return contents;
+}
+
+}  // namespace sandrunner

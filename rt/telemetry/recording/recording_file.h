@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "rt/telemetry/recording/recorder.h"
+
+namespace sandrunner {
+
+/// What was read of a recording, besides its ticks.
+struct RecordingContents {
+  RecordingInfo info;
+  bool complete = false;  ///< false: cut, what is there was read up to its last whole chunk
+  std::uint64_t ticks = 0;
+};
+
+/// Reads a recording from its start; `tick` is called for each, in order, until it returns false.
+/// `begin`, if given, is called once before the first. Throws InputError if the file is none of
+/// ours or is damaged.
+RecordingContents read_recording(const std::string& path,
+                                 const std::function<void(const RecordingInfo&)>& begin,
+                                 const std::function<bool(const TickRecord&)>& tick);
+
+}  // namespace sandrunner

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/recording/ros_messages.h"
+
+#include <array>
+#include <vector>
+
+namespace sandrunner {
+namespace {
+
+const std::string kRule(80, '=');
+
+/// A definition followed by those of its parts, as `ros2msg` wants it.
+std::string with_parts(std::string text, const std::vector<std::array<const char*, 2>>& parts) {
+  for (const auto& [name, definition] : parts) {
+    text += kRule + "\nMSG: " + name + "\n" + definition;
+  }
+  return text;
+}
+
+constexpr const char* kTime = "int32 sec\nuint32 nanosec\n";
+constexpr const char* kHeader = "builtin_interfaces/Time stamp\nstring frame_id\n";
+constexpr const char* kVector3 = "float64 x\nfloat64 y\nfloat64 z\n";
+constexpr const char* kQuaternion = "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
+
+void header(CdrWriter& out, std::int64_t time_ns, const char* frame) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  out.number(static_cast<std::int32_t>(time_ns / kSecond));
+  out.number(static_cast<std::uint32_t>(time_ns % kSecond));
+  out.text(frame);
+}
+
+void quaternion(CdrWriter& out, const std::array<double, 4>& wxyz) {
+  out.number(wxyz[1]).number(wxyz[2]).number(wxyz[3]).number(wxyz[0]);
+}
+
+}  // namespace
+
+RosTopic joint_state_topic() {
+  return {"/joint_states", "sensor_msgs/msg/JointState",
+          with_parts("std_msgs/Header header\nstring[] name\nfloat64[] position\n"
+                     "float64[] velocity\nfloat64[] effort\n",
+                     {{"std_msgs/Header", kHeader}, {"builtin_interfaces/Time", kTime}})};
+}
+
+RosTopic imu_topic() {
+  return {"/imu/data", "sensor_msgs/msg/Imu",
+          with_parts("std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+                     "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+                     "float64[9] angular_velocity_covariance\n"
+                     "geometry_msgs/Vector3 linear_acceleration\n"
+                     "float64[9] linear_acceleration_covariance\n",
+                     {{"std_msgs/Header", kHeader},
+                      {"builtin_interfaces/Time", kTime},
+                      {"geometry_msgs/Quaternion", kQuaternion},
+                      {"geometry_msgs/Vector3", kVector3}})};
+}
+
+RosTopic odometry_topic() {
+  return {
+      "/odom", "nav_msgs/msg/Odometry",
+      with_parts("std_msgs/Header header\nstring child_frame_id\n"
+                 "geometry_msgs/PoseWithCovariance pose\n"
+                 "geometry_msgs/TwistWithCovariance twist\n",
+                 {{"std_msgs/Header", kHeader},
+                  {"builtin_interfaces/Time", kTime},
+                  {"geometry_msgs/PoseWithCovariance", "Pose pose\nfloat64[36] covariance\n"},
+                  {"geometry_msgs/Pose", "Point position\nQuaternion orientation\n"},
+                  {"geometry_msgs/Point", kVector3},
+                  {"geometry_msgs/Quaternion", kQuaternion},
+                  {"geometry_msgs/TwistWithCovariance", "Twist twist\nfloat64[36] covariance\n"},
+                  {"geometry_msgs/Twist", "Vector3 linear\nVector3 angular\n"},
+                  {"geometry_msgs/Vector3", kVector3}})};
+}
+
+RosTopic transform_topic() {
+  return {"/tf", "tf2_msgs/msg/TFMessage",
+          with_parts("geometry_msgs/TransformStamped[] transforms\n",
+                     {{"geometry_msgs/TransformStamped",
+                       "std_msgs/Header header\nstring child_frame_id\nTransform transform\n"},
+                      {"std_msgs/Header", kHeader},
+                      {"builtin_interfaces/Time", kTime},
+                      {"geometry_msgs/Transform", "Vector3 translation\nQuaternion rotation\n"},
+                      {"geometry_msgs/Vector3", kVector3},
+                      {"geometry_msgs/Quaternion", kQuaternion}})};
+}
+
+CdrWriter joint_state_message(const TickRecord& tick, std::int64_t time_ns) {
+  const JointState& joints = tick.input.sensors.joints;
+  CdrWriter out;
+  header(out, time_ns, "");
+  out.number(std::uint32_t{kNumJoints});
+  for (const char* name : kJointNames) out.text(name);
+  out.sequence(joints.position_rad).sequence(joints.velocity_radps).sequence(joints.torque_nm);
+  return out;
+}
+
+CdrWriter imu_message(const TickRecord& tick, std::int64_t time_ns) {
+  const ImuSample& imu = tick.input.sensors.imu;
+  constexpr std::array<double, 9> kUnknown{};
+  CdrWriter out;
+  header(out, time_ns, "imu");
+  quaternion(out, imu.orientation_wxyz);
+  out.numbers(kUnknown).numbers(imu.angular_velocity_radps).numbers(kUnknown);
+  out.numbers(imu.linear_acceleration_mps2).numbers(kUnknown);
+  return out;
+}
+
+CdrWriter odometry_message(const Odometry& odometry, std::int64_t time_ns) {
+  std::array<double, 36> pose{}, twist{};
+  pose[0] = pose[7] = odometry.horizontal_variance_m2();
+  pose[35] = odometry.yaw_variance_rad2();
+  twist[0] = twist[7] = twist[14] = kVelocityError_mps * kVelocityError_mps;
+  CdrWriter out;
+  header(out, time_ns, "odom");
+  out.text("base");
+  out.numbers(odometry.position_m());
+  quaternion(out, odometry.orientation_wxyz());
+  out.numbers(pose);
+  out.numbers(odometry.velocity_mps()).numbers(odometry.angular_velocity_radps()).numbers(twist);
+  return out;
+}
+
+CdrWriter transform_message(const Odometry& odometry, std::int64_t time_ns) {
+  CdrWriter out;
+  out.number(std::uint32_t{1});
+  header(out, time_ns, "odom");
+  out.text("base");
+  out.numbers(odometry.position_m());
+  quaternion(out, odometry.orientation_wxyz());
+  return out;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/command_inbox.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/rt/telemetry/dds/support.h"
+
+namespace sandrunner {
+namespace {
+
+// A robot that has been asked over DDS to stand up and walk, and two operators.
+struct Walking : LiveSetup {
+  Walking() : first(config), second(config), asker(first) {
+    EXPECT_TRUE(asker.ask("stand").accepted);
+    EXPECT_TRUE(wait_until([&] { return robot.mode() == Mode::kStand; }));
+    EXPECT_TRUE(asker.ask("walk").accepted);
+    EXPECT_EQ(robot.mode(), Mode::kWalk);
+    twist = first.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
+  }
+  // Sends at 50 Hz for this long.
+  void drive_for(double duration_s, double vx_mps) {
+    for (int i = 0; i < static_cast<int>(duration_s * 50.0); ++i) {
+      drive(twist, vx_mps);
+      sleep_s(0.02);
+    }
+  }
+  Peer first, second;
+  Asker asker;
+  dds_entity_t twist;
+};
+
+TEST(CommandInboxTest, NothingMovesUntilItIsAskedFor) {
+  LiveSetup setup;
+  Peer peer(setup.config);
+  const auto twist = peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
+  for (int i = 0; i < 10; ++i) {
+    drive(twist, 1.0);
+    sleep_s(0.02);
+  }
+  EXPECT_EQ(setup.inbox.counts().accepted, 10u);
+  EXPECT_EQ(setup.robot.mode(), Mode::kPassive);
+}
+
+TEST(CommandInboxTest, ATwistDrivesAndWhenItStopsTheRobotSlowsDown) {
+  Walking setup;
+  setup.drive_for(0.5, 0.8);
+  EXPECT_EQ(setup.inbox.counts().accepted, 25u);
+  EXPECT_EQ(setup.robot.speed_mps(), 0.8);
+  // 0.3 s after the last one, 0.02 s of which are over, it slows down at 1 m/s^2.
+  const auto last = std::chrono::steady_clock::now();
+  const auto since_last_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - last).count();
+  };
+  ASSERT_TRUE(wait_until([&] { return setup.robot.speed_mps() < 0.8; }));
+  EXPECT_NEAR(since_last_s(), 0.28, 0.1);
+  ASSERT_TRUE(wait_until([&] { return setup.robot.speed_mps() == 0.0; }));
+  EXPECT_NEAR(since_last_s(), 1.08, 0.2);
+  EXPECT_EQ(setup.robot.mode(), Mode::kWalk);
+}
+
+TEST(CommandInboxTest, WhatIsNotFiniteOrAbsurdIsCountedAndChangesNothing) {
+  Walking setup;
+  drive(setup.twist, std::numeric_limits<double>::quiet_NaN());
+  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().not_finite == 1; }));
+  drive(setup.twist, 1e9);
+  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().absurd == 1; }));
+  sleep_s(0.05);
+  EXPECT_EQ(setup.inbox.counts().accepted, 0u);
+  EXPECT_EQ(setup.robot.speed_mps(), 0.0);
+  EXPECT_EQ(setup.robot.mode(), Mode::kWalk);  // and not in Fault
+}
+
+TEST(CommandInboxTest, TheFirstOfTwoPublishersDrivesAndTheOtherTakesOverWhenHeIsSilent) {
+  Walking setup;
+  const auto other = setup.second.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
+  for (std::uint64_t i = 1; i <= 20; ++i) {
+    drive(setup.twist, 0.5);
+    ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == i; }));
+    drive(other, -0.5);
+    ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().other_publisher == i; }));
+    EXPECT_GE(setup.robot.speed_mps(), 0.0);
+  }
+  sleep_s(0.35);
+  drive(other, -0.5);
+  ASSERT_TRUE(wait_until([&] { return setup.robot.speed_mps() == -0.5; }));
+  EXPECT_EQ(setup.inbox.counts().accepted, 21u);
+}
+
+TEST(CommandInboxTest, StopAndDampAreTakenFromOneWhoDoesNotHoldTheCommand) {
+  Walking setup;
+  Asker bystander(setup.second);
+  setup.drive_for(0.2, 0.5);
+  EXPECT_TRUE(bystander.ask("stop").accepted);
+  EXPECT_TRUE(wait_until([&] {
+    drive(setup.twist, 0.5);  // goes on as if nothing had happened
+    sleep_s(0.02);
+    return setup.robot.mode() == Mode::kStand;
+  }));
+  EXPECT_TRUE(setup.asker.ask("walk").accepted);
+  const sandrunner_ModeReply damped = bystander.ask("damp");
+  EXPECT_TRUE(damped.accepted);
+  EXPECT_STREQ(damped.mode, "damping");
+  EXPECT_EQ(setup.robot.mode(), Mode::kDamping);
+}
+
+TEST(CommandInboxTest, RepliesSayWhyNot) {
+  LiveSetup setup;
+  Peer peer(setup.config);
+  Asker asker(peer);
+  const auto refused = [&](const char* wish, const char* reason) {
+    const sandrunner_ModeReply reply = asker.ask(wish);
+    EXPECT_FALSE(reply.accepted) << wish;
+    EXPECT_STREQ(reply.reason, reason);
+    EXPECT_STREQ(reply.mode, mode_name(setup.robot.mode()));
+  };
+  refused("walk", "the robot does not stand, stand comes first");
+  refused("reset_fault", "no fault is latched");
+  refused("dance", "unknown, expected stand, walk, stop, damp or reset_fault");
+  // Stop makes no robot stand up.
+  EXPECT_TRUE(asker.ask("stop").accepted);
+  sleep_s(0.01);
+  EXPECT_EQ(setup.robot.mode(), Mode::kPassive);
+
+  setup.robot.break_joint();
+  ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kFault; }));
+  refused("stand", "a fault is latched, reset_fault comes first");
+  refused("reset_fault", "the fault still holds, or the drives are still damping");
+  setup.robot.mend_joint();
+  sleep_s(0.01);
+  const sandrunner_ModeReply reset = asker.ask("reset_fault");
+  EXPECT_TRUE(reset.accepted) << reset.reason;
+  EXPECT_STREQ(reset.mode, "passive");
+  EXPECT_EQ(setup.inbox.counts().requests_refused, 5u);
+  EXPECT_EQ(setup.inbox.counts().requests_accepted, 2u);
+}
+
+TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
+  LiveSetup setup(test_config(), false);
+  Peer peer(setup.config);
+  Asker asker(peer);
+  EXPECT_TRUE(asker.ask("stand").accepted);
+  ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
+  EXPECT_STREQ(asker.ask("walk").reason, "no policy to walk with");
+}
+
+TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefused) {
+  const DdsConfig config = test_config();
+  DdsParticipant participant(config);
+  DdsOperator op(config.stale_ticks());
+  CommandInbox inbox(participant, config, true, op);
+  Peer peer(config);
+  EXPECT_STREQ(Asker(peer).ask("stand").reason, "the controller does not answer");
+}
+
+TEST(CommandInboxTest, TwistStampedIfTheConfigSaysSo) {
+  DdsConfig config = test_config();
+  config.stamped_cmd_vel = true;
+  LiveSetup setup(config);
+  Peer peer(config);
+  const auto writer = peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__TwistStamped__desc);
+  geometry_msgs_msg_dds__TwistStamped_ twist{};
+  char frame[] = "base";
+  twist.header.frame_id = frame;
+  twist.header.stamp.sec = 1;  // long ago: what counts is when it arrives
+  twist.twist.linear.x = 0.5;
+  dds_write(writer, &twist);
+  EXPECT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == 1; }));
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/dds_config.h"
+
+#include <gtest/gtest.h>
+
+#include "rt/core/errors.h"
+#include "rt/telemetry/dds/participant.h"
+
+namespace sandrunner {
+namespace {
+
+DdsConfig read(const std::string& toml) {
+  ConfigTree tree;
+  tree.add_text(toml, "test");
+  DdsConfig config = read_dds_config(tree);
+  tree.reject_unknown();
+  return config;
+}
+
+TEST(DdsConfigTest, TheDefaultIsThisComputerOnlyAndADomainOfItsOwn) {
+  const DdsConfig config = read("");
+  EXPECT_FALSE(config.enabled);
+  EXPECT_EQ(config.interface, "lo");
+  EXPECT_NE(config.domain, 0);
+  EXPECT_EQ(config.stale_ticks(), 1200u);
+  const std::string xml = cyclone_xml(config, "robot");
+  EXPECT_NE(xml.find("<AllowMulticast>false</AllowMulticast>"), std::string::npos);
+  EXPECT_EQ(xml.find("Security"), std::string::npos);
+}
+
+TEST(DdsConfigTest, AllKeysAreRead) {
+  const DdsConfig config = read(
+      "[dds]\nenabled = true\ndomain = 7\ninterface = \"eth<0\"\nros_hz = 200\nticks = false\n"
+      "cmd_vel = \"twist_stamped\"\nstale_s = 0.5\nsecurity_dir = \"keys\"\n");
+  EXPECT_TRUE(config.enabled);
+  EXPECT_EQ(config.domain, 7);
+  EXPECT_EQ(config.ros_hz, 200);
+  EXPECT_FALSE(config.ticks);
+  EXPECT_TRUE(config.stamped_cmd_vel);
+  EXPECT_EQ(config.stale_s, 0.5);
+  EXPECT_EQ(config.security_dir, "keys");
+  DdsConfig open = config;
+  open.security_dir.clear();
+  EXPECT_NE(cyclone_xml(open, "robot").find("eth&lt;0"), std::string::npos);
+}
+
+TEST(DdsConfigTest, AnInterfaceThatDoesNotExistIsNamed) {
+  DdsConfig config;
+  config.domain = 230;
+  config.interface = "nosuch0";
+  try {
+    DdsParticipant participant(config);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("domain 230 on interface nosuch0"), std::string::npos)
+        << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner

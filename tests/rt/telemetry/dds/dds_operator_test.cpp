@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/dds/dds_operator.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/rt/core/fake_robot.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr std::uint64_t kStale_ticks = 1200;
+
+TEST(DdsOperatorTest, ARobotWhoseOperatorSaysNothingStaysPassive) {
+  DdsOperator op(kStale_ticks);
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    const OperatorCommand command = op.command(tick);
+    EXPECT_EQ(command.request_id, 0u);
+    EXPECT_EQ(command.velocity.vx_mps, 0.0);
+    EXPECT_TRUE(op.advance({.mode = Mode::kPassive}).running);
+  }
+}
+
+TEST(DdsOperatorTest, AVelocityAgesInTicksFromWhenItWasFirstSeen) {
+  DdsOperator op(kStale_ticks);
+  op.command(99);
+  op.wish({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
+  EXPECT_EQ(op.command(100).velocity.vx_mps, 1.0);
+  const OperatorCommand last = op.command(100 + kStale_ticks);
+  EXPECT_EQ(last.velocity.vx_mps, 1.0);
+  EXPECT_EQ(last.tick, 100u);
+  const OperatorCommand stale = op.command(101 + kStale_ticks);
+  EXPECT_EQ(stale.velocity.vx_mps, 0.0);
+  EXPECT_EQ(stale.tick, 100u);  // for the controller's own judgement
+}
+
+TEST(DdsOperatorTest, ARequestDoesNotRefreshTheVelocity) {
+  DdsOperator op(kStale_ticks);
+  OperatorWish wish{.velocity = {.vx_mps = 1.0}, .velocity_number = 1};
+  op.wish(wish);
+  op.command(0);
+  wish.request = ModeRequest::kDamp;
+  wish.request_number = 1;
+  op.wish(wish);
+  const OperatorCommand command = op.command(kStale_ticks + 1);
+  EXPECT_EQ(command.velocity.vx_mps, 0.0);
+  EXPECT_EQ(command.request, ModeRequest::kDamp);
+}
+
+TEST(DdsOperatorTest, ACommandThatCameDuringMissedSlotsIsAsOldAsTheFirstOfThem) {
+  DdsOperator op(kStale_ticks);
+  op.command(10);
+  op.wish({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
+  EXPECT_EQ(op.command(1000).tick, 11u);
+}
+
+TEST(DdsOperatorTest, TheControllersFirstStepGetsNoRequestAndTheNextOneDoes) {
+  DdsOperator op(kStale_ticks);
+  op.wish({.velocity = {}, .request = ModeRequest::kStand, .request_number = 1});
+  EXPECT_EQ(op.command(0).request_id, 0u);
+  op.advance({.mode = Mode::kPassive});
+  EXPECT_EQ(op.considered(), 0u);
+  EXPECT_EQ(op.command(1).request_id, 1u);
+  op.advance({.mode = Mode::kStandUp});
+  EXPECT_EQ(op.considered(), 1u);
+  EXPECT_EQ(op.mode(), Mode::kStandUp);
+}
+
+TEST(DdsOperatorTest, AnInterruptDampsForHalfASecondAndTakesNoMoreRequests) {
+  DdsOperator op(kStale_ticks);
+  op.command(0);
+  EXPECT_TRUE(op.advance({.mode = Mode::kStand, .interrupted = true}).running);
+  op.wish({.velocity = {}, .request = ModeRequest::kWalk, .request_number = 1});
+  const OperatorCommand command = op.command(1);
+  EXPECT_EQ(command.request, ModeRequest::kDamp);
+  EXPECT_EQ(command.request_id, 1u);
+  int ticks = 1;
+  while (op.advance({.mode = Mode::kDamping, .interrupted = true}).running) ++ticks;
+  EXPECT_EQ(ticks, kControlHz / 2);
+}
+
+TEST(DdsOperatorTest, AnInterruptedRobotWithItsDrivesOffEndsAtOnce) {
+  DdsOperator op(kStale_ticks);
+  op.command(0);
+  EXPECT_FALSE(op.advance({.mode = Mode::kPassive, .interrupted = true}).running);
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cyclone DDS in another process, for tests:
+//   dds_peer DOMAIN INTERFACE drive VX_MPS COUNT [SECURITY_DIR IDENTITY]   Twists at 50 Hz
+//   dds_peer DOMAIN INTERFACE watch SECONDS [SECURITY_DIR IDENTITY]        batches of ticks
+//   dds_peer DOMAIN INTERFACE publish SECONDS                              telemetry of a robot
+// Prints what it did as one line; "matched" is printed as soon as it found the other end.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "rt/telemetry/dds/participant.h"
+#include "rt/telemetry/dds/ros.h"
+#include "rt/telemetry/dds/sandrunner.h"
+#include "tests/rt/telemetry/dds/example_tick.h"
+
+namespace sandrunner {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void say(const char* line) {
+  std::puts(line);
+  std::fflush(stdout);
+}
+
+int drive(const DdsParticipant& participant, double vx_mps, int count) {
+  const dds_entity_t writer =
+      participant.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc, 1);
+  for (int i = 0; i < 150; ++i) {
+    dds_publication_matched_status_t status;
+    dds_get_publication_matched_status(writer, &status);
+    if (status.current_count > 0) {
+      say("matched");
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  // The other end may still be exchanging keys.
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  geometry_msgs_msg_dds__Twist_ twist{};
+  twist.linear.x = vx_mps;
+  for (int i = 0; i < count; ++i) {
+    dds_write(writer, &twist);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  std::printf("sent %d\n", count);
+  return 0;
+}
+
+int watch(const DdsParticipant& participant, double duration_s) {
+  const dds_entity_t reader =
+      participant.reader("sandrunner/ticks", sandrunner_TickBatch_desc, 1000, true);
+  long batches = 0, gaps = 0, ticks = 0;
+  std::uint64_t last = 0;
+  const auto end = Clock::now() + std::chrono::duration<double>(duration_s);
+  while (Clock::now() < end) {
+    void* sample = nullptr;
+    dds_sample_info_t info;
+    while (dds_take(reader, &sample, &info, 1, 1) == 1) {
+      if (info.valid_data) {
+        const auto& batch = *static_cast<sandrunner_TickBatch*>(sample);
+        if (batches == 0) say("matched");
+        if (batches != 0 && batch.sequence_number != last + 1) ++gaps;
+        last = batch.sequence_number;
+        ++batches;
+        ticks += batch.ticks._length;
+      }
+      dds_return_loan(reader, &sample, 1);
+      sample = nullptr;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  std::printf("batches %ld gaps %ld ticks %ld last %llu\n", batches, gaps, ticks,
+              static_cast<unsigned long long>(last));
+  return 0;
+}
+
+int publish(const DdsParticipant& participant, const DdsConfig& config, double duration_s) {
+  Telemetry telemetry(participant, config, "<robot/>", nullptr);
+  const double longest_s = publish_for(telemetry, 0, duration_s);
+  std::printf("longest_us %.0f\nfailed %llu\n", longest_s * 1e6,
+              static_cast<unsigned long long>(telemetry.failed_writes()));
+  return 0;
+}
+
+int run(int argc, char** argv) {
+  if (argc < 5) return 2;
+  const std::string what = argv[3];
+  const int own = what == "drive" ? 6 : 5;
+  DdsConfig config;
+  config.domain = std::atoi(argv[1]);
+  config.interface = argv[2];
+  std::string identity;
+  if (argc == own + 2) {
+    config.security_dir = argv[own];
+    identity = argv[own + 1];
+  } else if (argc != own) {
+    return 2;
+  }
+  const DdsParticipant participant(config, identity);
+  if (what == "drive") return drive(participant, std::atof(argv[4]), std::atoi(argv[5]));
+  if (what == "watch") return watch(participant, std::atof(argv[4]));
+  return what == "publish" ? publish(participant, config, std::atof(argv[4])) : 2;
+}
+
+}  // namespace
+}  // namespace sandrunner
+
+int main(int argc, char** argv) {
+  try {
+    return sandrunner::run(argc, argv);
+  } catch (const std::exception& e) {
+    std::printf("refused: %s\n", e.what());
+    return 1;
+  }
+}

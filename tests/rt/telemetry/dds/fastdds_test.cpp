@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The robot and a peer that is built on another DDS, over the wire.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/rt/telemetry/dds/child.h"
+#include "tests/rt/telemetry/dds/example_tick.h"
+#include "tests/rt/telemetry/dds/support.h"
+
+namespace sandrunner {
+namespace {
+
+TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
+  LiveSetup setup;
+  Telemetry telemetry(setup.participant, setup.config, "<robot name=\"raibo\"/>", &setup.inbox,
+                      kExampleStart_ns);
+  {
+    Peer peer(setup.config);
+    Asker asker(peer);
+    ASSERT_TRUE(asker.ask("stand").accepted);
+    ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
+    ASSERT_TRUE(asker.ask("walk").accepted);
+  }
+  Child fast({SANDRUNNER_FASTDDS_PEER, std::to_string(setup.config.domain), "0.7", "4"});
+  double fastest_mps = 0.0;
+  const auto start = std::chrono::steady_clock::now();
+  for (std::uint64_t tick = 0; tick < 4 * kControlHz;) {
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    for (; tick < ticks_from_s(time.count()); ++tick) telemetry.add(example_tick(tick));
+    fastest_mps = std::max(fastest_mps, setup.robot.speed_mps());
+    sleep_s(0.002);
+  }
+  const double sent = fast.number("sent");
+  EXPECT_GT(sent, 50.0);
+  EXPECT_GE(static_cast<double>(setup.inbox.counts().accepted), 0.9 * sent);
+  EXPECT_EQ(fastest_mps, 0.7);
+
+  const std::string text = fast.wait();
+  SCOPED_TRACE(text);
+  for (const char* topic : {"joint_states", "imu", "odom", "tf"}) {
+    EXPECT_GE(fast.number(std::string("\n") + topic), 150.0) << topic;
+    EXPECT_LE(fast.number(std::string("\n") + topic), 400.0) << topic;
+  }
+  EXPECT_GE(fast.number("\ndiagnostics"), 1.0);
+  EXPECT_EQ(fast.number("\nrobot_description"), 1.0);
+
+  const auto has = [&](const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  };
+  has("<robot name=\"raibo\"/>");
+  // The stamp says which tick it is; the last joint's position says the same.
+  const auto at = text.find("joint_states ");
+  int count = 0;
+  double stamp_s = 0.0;
+  ASSERT_EQ(std::sscanf(text.c_str() + at, "joint_states %d stamp %lf", &count, &stamp_s), 2);
+  const double tick = (stamp_s - 1'700'000'000.9) * kControlHz;
+  std::ostringstream joints;
+  joints << "frame base names 12";
+  for (int j = 0; j < kNumJoints; ++j) {
+    char values[100];
+    std::snprintf(values, sizeof values, " %s %.6f %d.000000 %d.000000", kJointNames[j],
+                  0.1 * j + 1e-6 * std::round(tick), 1 + j, -2 - j);
+    joints << values;
+  }
+  has(joints.str());
+  has(" wxyz 0.707107 0.000000 0.000000 0.707107 gyro 0.100 0.200 0.300 acc 0.400 0.500 9.800\n");
+  has(" frames odom base y ");
+  has(" z 0.450 vx 0.800 yaw_variance 0.0000");
+  has(" odom base y ");
+  has(" w 0.707107\n");
+  has(" sandrunner level 0 message walk mode=walk faults=none ");
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A peer in the same process, and a robot that follows the commands.
+#pragma once
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "dds/dds.h"
+#include "rt/telemetry/dds/command_inbox.h"
+#include "rt/telemetry/dds/ros.h"
+#include "rt/telemetry/dds/sandrunner.h"
+#include "rt/telemetry/dds/telemetry.h"
+#include "tests/rt/core/fake_robot.h"
+
+namespace sandrunner {
+
+/// A domain of its own: 100 to 200, drawn by lot, and held by the name of a socket until this
+/// process ends, so that tests that run at the same time never meet.
+inline DdsConfig test_config() {
+  DdsConfig config;
+  std::random_device random;
+  for (int tries = 0; tries < 1000; ++tries) {
+    config.domain = 100 + static_cast<int>(random() % 101);
+    const std::string name = "sandrunner-test-domain-" + std::to_string(config.domain);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    name.copy(address.sun_path + 1, name.size());  // abstract: no file
+    const int held = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (bind(held, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) break;
+    close(held);
+  }
+  return config;
+}
+
+/// Waits until `holds`, at most 5 s.
+inline bool wait_until(const std::function<bool()>& holds) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+inline void sleep_s(double duration_s) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(duration_s));
+}
+
+/// Another participant of the same process and domain, with a mind of its own about QoS.
+class Peer {
+ public:
+  explicit Peer(const DdsConfig& config)
+      : participant_(
+            dds_create_participant(static_cast<dds_domainid_t>(config.domain), nullptr, nullptr)) {}
+  ~Peer() { dds_delete(participant_); }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  dds_entity_t reader(const char* topic, const dds_topic_descriptor_t& type, bool latched = false) {
+    return dds_create_reader(participant_, make_topic(topic, type), qos(latched).get(), nullptr);
+  }
+  /// Returns once `readers` readers have found it.
+  dds_entity_t writer(const char* topic, const dds_topic_descriptor_t& type,
+                      std::uint32_t readers = 1) {
+    const dds_entity_t writer =
+        dds_create_writer(participant_, make_topic(topic, type), qos(false).get(), nullptr);
+    wait_until([&] {
+      dds_publication_matched_status_t status;
+      dds_get_publication_matched_status(writer, &status);
+      return status.current_count >= readers;
+    });
+    return writer;
+  }
+
+ private:
+  struct QosDeleter {
+    void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+  };
+  using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+  static Qos qos(bool latched) {
+    Qos q(dds_create_qos());
+    dds_qset_reliability(q.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+    dds_qset_history(q.get(), DDS_HISTORY_KEEP_LAST, 1000);
+    if (latched) dds_qset_durability(q.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+    return q;
+  }
+  dds_entity_t make_topic(const char* name, const dds_topic_descriptor_t& type) {
+    return dds_create_topic(participant_, &type, name, nullptr, nullptr);
+  }
+
+  dds_entity_t participant_;
+};
+
+/// Takes all that is there; `use` sees each value.
+template <typename Message>
+int take(dds_entity_t reader, const std::function<void(const Message&)>& use) {
+  int count = 0;
+  void* sample = nullptr;
+  dds_sample_info_t info;
+  while (dds_take(reader, &sample, &info, 1, 1) == 1) {
+    if (info.valid_data) {
+      use(*static_cast<const Message*>(sample));
+      ++count;
+    }
+    dds_return_loan(reader, &sample, 1);
+    sample = nullptr;
+  }
+  return count;
+}
+
+/// Writes a Twist with this forward velocity.
+inline void drive(dds_entity_t writer, double vx_mps) {
+  geometry_msgs_msg_dds__Twist_ twist{};
+  twist.linear.x = vx_mps;
+  dds_write(writer, &twist);
+}
+
+/// A robot on 4 kHz of real time that does what a DdsOperator wants, in a thread of its own.
+class LiveRobot {
+ public:
+  LiveRobot(DdsOperator& op, const DdsConfig& config) : operator_(op) {
+    controller_.shaping.operator_hold_ticks = config.stale_ticks();
+    controller_.stand.fold_s = controller_.stand.extend_s = 0.05;  // stands up in no time
+    controller_.stand.max_speed_radps = 20.0;
+    loop_ = std::make_unique<FakeLoop>(Mode::kPassive, controller_);
+    thread_ = std::thread([this] { run(); });
+  }
+  ~LiveRobot() {
+    end_ = true;
+    thread_.join();
+  }
+
+  Mode mode() const { return mode_; }
+  double speed_mps() const { return speed_mps_; }  ///< that the policy is asked for
+  void break_joint() { broken_ = true; }           ///< until mend_joint(): a measured NaN
+  void mend_joint() { broken_ = false; }
+
+ private:
+  void run() {
+    loop_->spoil = [this](ControllerInput& input) {
+      if (broken_) input.sensors.joints.position_rad[0] = NAN;
+    };
+    const auto start = std::chrono::steady_clock::now();
+    std::uint64_t tick = 0;
+    while (!end_) {
+      const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+      for (const std::uint64_t due = ticks_from_s(time.count()); tick < due; ++tick) {
+        loop_->input.command = operator_.command(tick);
+        loop_->tick();
+        operator_.advance({.mode = loop_->output.mode, .faults = loop_->output.faults});
+        mode_ = loop_->output.mode;
+        speed_mps_ = loop_->output.policy_input.command.vx_mps;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+  DdsOperator& operator_;
+  ControllerConfig controller_;
+  std::unique_ptr<FakeLoop> loop_;
+  std::atomic<bool> end_{false}, broken_{false};
+  std::atomic<Mode> mode_{Mode::kPassive};
+  std::atomic<double> speed_mps_{0.0};
+  std::thread thread_;
+};
+
+/// Robot's side of the commands, complete.
+struct LiveSetup {
+  explicit LiveSetup(const DdsConfig& config_in = test_config(), bool can_walk = true)
+      : config(config_in),
+        participant(config),
+        op(config.stale_ticks()),
+        inbox(participant, config, can_walk, op),
+        robot(op, config) {}
+
+  DdsConfig config;
+  DdsParticipant participant;
+  DdsOperator op;
+  CommandInbox inbox;
+  LiveRobot robot;
+};
+
+/// An operator in the same process who asks for modes and waits for the answers.
+class Asker {
+ public:
+  explicit Asker(Peer& peer)
+      : replies_(peer.reader("sandrunner/mode_reply", sandrunner_ModeReply_desc)),
+        requests_(peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc)) {}
+
+  /// The reply; "no reply" as its reason if none came.
+  sandrunner_ModeReply ask(const std::string& wish) {
+    sandrunner_ModeRequest request{};
+    request.id = ++id_;
+    wish.copy(request.request, sizeof request.request - 1);
+    dds_write(requests_, &request);
+    sandrunner_ModeReply reply{};
+    std::string("no reply").copy(reply.reason, sizeof reply.reason - 1);
+    wait_until([&] {
+      bool came = false;
+      take<sandrunner_ModeReply>(replies_, [&](const sandrunner_ModeReply& r) {
+        if (r.id != id_) return;
+        came = true;
+        reply = r;
+      });
+      return came;
+    });
+    return reply;
+  }
+
+ private:
+  dds_entity_t replies_, requests_;
+  std::uint64_t id_ = 1000;
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What only shows between processes: deaths, stops, certificates.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/rt/telemetry/dds/child.h"
+#include "tests/rt/telemetry/dds/example_tick.h"
+#include "tests/rt/telemetry/dds/support.h"
+
+namespace sandrunner {
+namespace {
+
+std::vector<std::string> peer_command(const DdsConfig& config, std::vector<std::string> words) {
+  words.insert(words.begin(), {SANDRUNNER_DDS_PEER, std::to_string(config.domain), "lo"});
+  return words;
+}
+
+TEST(TwoProcessesTest, APublisherThatIsKilledLosesTheCommandAfterTheStaleTime) {
+  LiveSetup setup;
+  Child first(peer_command(setup.config, {"drive", "0.5", "1000"}));
+  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted > 5; }));
+  first.signal(SIGKILL);
+  first.wait();
+  Child second(peer_command(setup.config, {"drive", "0.6", "20"}));
+  EXPECT_EQ(second.number("sent"), 20);
+  const CommandCounts before = setup.inbox.counts();
+  EXPECT_GE(before.accepted, 20u);  // he came 0.3 s after the kill at the earliest
+}
+
+TEST(TwoProcessesTest, AStoppedSubscriberHoldsUpNobodyAndALiveOneMissesNothing) {
+  const DdsConfig config = test_config();
+  DdsParticipant participant(config);
+  Telemetry telemetry(participant, config, "", nullptr, kExampleStart_ns);
+  Child live(peer_command(config, {"watch", "6"}));
+  Child stopped(peer_command(config, {"watch", "60"}));
+  publish_for(telemetry, 0, 1.0);
+  ASSERT_TRUE(live.wait_for("matched"));
+  ASSERT_TRUE(stopped.wait_for("matched"));
+  stopped.signal(SIGSTOP);
+  const double longest_s = publish_for(telemetry, 4000, 3.5);
+  stopped.signal(SIGKILL);
+  publish_for(telemetry, 18000, 0.3);
+  EXPECT_EQ(telemetry.failed_writes(), 0u);
+  EXPECT_LT(longest_s, 0.1);  // half a second of ticks is what the control loop's ring holds
+  EXPECT_EQ(live.number("gaps"), 0);
+  EXPECT_GT(live.number("ticks"), 14000);  // at least all since the stop
+  RecordProperty("longest_add_us", static_cast<int>(longest_s * 1e6));
+}
+
+TEST(TwoProcessesTest, ANetworkInterfaceThatGoesAwayHoldsUpNobodyNotEvenTheEnd) {
+  const std::string in_own_network = "unshare --map-root-user --net sh -c ";
+  const std::string make_interface =
+      "ip link set lo up && ip link add v0 type veth peer name v1 && "
+      "ip addr add 10.9.8.7/24 dev v0 && ip link set v0 up && ip link set v1 up";
+  if (std::system((in_own_network + "'" + make_interface + "' 2>/dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "no network namespace with an interface of its own is to be had here";
+  }
+  const std::string peer = std::string(SANDRUNNER_DDS_PEER) + " 100 v0 ";
+  const std::string script = make_interface + "\n" + peer + "watch 60 >&2 & watcher=$!\n" + peer +
+                             "publish 3 & publisher=$!\n"
+                             "sleep 1.5; ip link del v0; wait $publisher; kill -9 $watcher";
+  Child robot({"/usr/bin/unshare", "--map-root-user", "--net", "/bin/sh", "-c", script});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_LT(robot.number("longest_us"), 100e3);
+  EXPECT_EQ(robot.number("failed"), 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+}
+
+class SecurityTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = std::filesystem::temp_directory_path() /
+           ("sandrunner-dds-security-" + std::to_string(getpid()));
+    std::filesystem::create_directory(dir_);
+    have_openssl_ = std::system("command -v openssl >/dev/null") == 0;
+    if (!have_openssl_) return;
+    for (const char* name : {"ours", "theirs"}) {
+      const std::string make =
+          std::string(SANDRUNNER_SECURITY_SCRIPT) + " " + (dir_ / name).string() + " >/dev/null";
+      ASSERT_EQ(std::system(make.c_str()), 0);
+    }
+  }
+  static void TearDownTestSuite() { std::filesystem::remove_all(dir_); }
+  void SetUp() override {
+    if (!have_openssl_) GTEST_SKIP() << "no openssl: no certificates";
+  }
+
+  // What a robot of "ours" accepts from a peer that sends 50 commands.
+  struct Outcome {
+    CommandCounts counts;
+    std::string said;
+  };
+  static Outcome try_to_drive(const std::vector<std::string>& credentials) {
+    DdsConfig config = test_config();
+    config.security_dir = (dir_ / "ours").string();
+    LiveSetup setup(config);
+    std::vector<std::string> words{"drive", "0.5", "50"};
+    words.insert(words.end(), credentials.begin(), credentials.end());
+    Child peer(peer_command(config, words));
+    const std::string said = peer.wait();
+    sleep_s(0.1);
+    return {setup.inbox.counts(), said};
+  }
+  static std::string folder(const char* name) { return (dir_ / name).string(); }
+
+  static inline std::filesystem::path dir_;
+  static inline bool have_openssl_ = false;
+};
+
+TEST_F(SecurityTest, AnOperatorsCommandsAreAllAccepted) {
+  const Outcome outcome = try_to_drive({folder("ours"), "operator"});
+  EXPECT_EQ(outcome.said, "matched\nsent 50\n");
+  EXPECT_EQ(outcome.counts.accepted, 50u);
+}
+
+TEST_F(SecurityTest, WithoutACertificateNothingIsAccepted) {
+  const Outcome outcome = try_to_drive({});
+  EXPECT_EQ(outcome.said, "sent 50\n");
+  EXPECT_EQ(outcome.counts.accepted, 0u);
+}
+
+TEST_F(SecurityTest, AnOperatorOfAnotherAuthorityIsNotAccepted) {
+  const Outcome outcome = try_to_drive({folder("theirs"), "operator"});
+  EXPECT_EQ(outcome.said, "sent 50\n");
+  EXPECT_EQ(outcome.counts.accepted, 0u);
+}
+
+TEST_F(SecurityTest, AViewerMayNotCommandButSeesTheTelemetry) {
+  const Outcome outcome = try_to_drive({folder("ours"), "viewer"});
+  EXPECT_EQ(outcome.said.rfind("refused: ", 0), 0u) << outcome.said;
+  EXPECT_EQ(outcome.counts.accepted, 0u);
+
+  DdsConfig config = test_config();
+  config.security_dir = folder("ours");
+  DdsParticipant participant(config);
+  Telemetry telemetry(participant, config, "", nullptr, kExampleStart_ns);
+  Child viewer(peer_command(config, {"watch", "2", folder("ours"), "viewer"}));
+  publish_for(telemetry, 0, 2.0);
+  EXPECT_GT(viewer.number("batches"), 50);
+}
+
+TEST_F(SecurityTest, AMissingFileIsNamed) {
+  DdsConfig config = test_config();
+  config.security_dir = folder("nowhere");
+  try {
+    DdsParticipant participant(config);
+    FAIL();
+  } catch (const std::exception& e) {
+    EXPECT_NE(std::string(e.what()).find("nowhere/"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner

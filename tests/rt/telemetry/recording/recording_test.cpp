@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <bit>
+#include <csignal>
+#include <cstdlib>
+
+#include "rt/replay.h"
+#include "rt/telemetry/mcap/mcap_reader.h"
+#include "rt/telemetry/mcap/mcap_writer.h"
+#include "rt/telemetry/recording/cdr.h"
+#include "rt/telemetry/recording/recording_file.h"
+#include "rt/tick_fields.h"
+#include "tests/policy/temporary_folder.h"
+#include "tests/rt/support.h"
+
+namespace sandrunner {
+namespace {
+
+class RecordingTest : public testing::Test {
+ protected:
+  /// Runs `sandrunner` or `sandrunner-replay`; returns the exit code.
+  int run(const char* program, const std::string& arguments) {
+    const int status = std::system(fmt_command(program, arguments).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string output() const { return read_file(folder_.path("out")); }
+  std::string path() const { return folder_.path("run.mcap"); }
+
+  /// Records a short lockstep walk.
+  void record(const std::string& more = "") {
+    ASSERT_EQ(run(SANDRUNNER_PROGRAM,
+                  "--start walk --duration 0.5 --command 1,0,0 --set "
+                  "sim.noise.joint_velocity_radps=0.1 --record '" +
+                      folder_.path("") + "' " + more),
+              0)
+        << output();
+  }
+
+  /// The recording again, with one of its ticks changed and all checksums right.
+  void rewrite(const std::string& to, std::uint64_t tick, std::size_t word, std::uint64_t mask) {
+    RecordingInfo info;
+    std::unique_ptr<Recorder> recorder;
+    read_recording(
+        path(),
+        [&](const RecordingInfo& found) {
+          recorder = std::make_unique<Recorder>(to, found, RecordingLimits{}, true);
+        },
+        [&](const TickRecord& record) {
+          auto words = std::bit_cast<TickWords>(record);
+          if (record.input.sensors.tick == tick) words[word] ^= mask;
+          recorder->add(std::bit_cast<TickRecord>(words));
+          return true;
+        });
+    recorder->close();
+  }
+
+  const TemporaryFolder folder_;
+
+ private:
+  std::string fmt_command(const char* program, const std::string& arguments) const {
+    return std::string("'") + program + "' " + arguments + " >'" + folder_.path("out") + "' 2>&1";
+  }
+};
+
+std::size_t word_named(const std::string& name) {
+  std::size_t word = 0;
+  while (tick_word_name(word) != name) ++word;
+  return word;
+}
+
+TEST_F(RecordingTest, HoldsEveryTickAndReplaysBitForBit) {
+  record();
+  std::uint64_t next = 0;
+  const RecordingContents contents = read_recording(
+      path(), {}, [&](const TickRecord& record) { return record.input.sensors.tick == next++; });
+  EXPECT_TRUE(contents.complete);
+  EXPECT_EQ(contents.ticks, 2000u);
+  EXPECT_EQ(next, 2000u);
+  EXPECT_EQ(contents.info.clock, "lockstep");
+  EXPECT_EQ(contents.info.start_mode, "walk");
+  EXPECT_NE(contents.info.config.find("sim"), std::string::npos);
+  EXPECT_NE(contents.info.robot.find("<robot"), std::string::npos);
+  EXPECT_EQ(contents.info.policy, shipped_policy_text());
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0);
+  EXPECT_EQ(output(), "2000 ticks and 50 policy steps compared: every bit agrees\n");
+}
+
+TEST_F(RecordingTest, ThreadedRunReplaysBitForBit) {
+  record("--clock realtime");
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
+}
+
+TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
+  const std::string walk = "--start walk --duration 0.5 ";
+  const auto hash = [&] {
+    const std::string text = output();
+    const std::size_t at = text.find("state hash");
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  run(SANDRUNNER_PROGRAM, walk);
+  const std::string without = hash();
+  run(SANDRUNNER_PROGRAM, walk + "--record '" + folder_.path("") + "'");
+  EXPECT_EQ(hash(), without);
+}
+
+TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
+  record();
+  const std::size_t word = word_named("command_position_rad[4]");
+  rewrite(folder_.path("flipped.mcap"), 777, word, 1);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
+  EXPECT_NE(output().find("DIFFERS at tick 777 (0.19425 s): command_position_rad[4]: recorded"),
+            std::string::npos)
+      << output();
+}
+
+TEST_F(RecordingTest, FlippedBitOfAnInputIsFoundByWhatItChanges) {
+  record();
+  // The lowest bit of an encoder in the tick that releases the policy.
+  rewrite(folder_.path("flipped.mcap"), 800, word_named("joint_position_rad[7]"), 1);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
+  EXPECT_NE(output().find("DIFFERS at tick 800 (0.20000 s): released_joint_position_rad[7]"),
+            std::string::npos)
+      << output();
+}
+
+TEST_F(RecordingTest, ChangedSettingIsNamedAtItsFirstTick) {
+  record();
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --set controller.walk.kd_nmsprad=0.6"), 1);
+  EXPECT_NE(output().find("DIFFERS at tick 0 (0.00000 s): command_kd_nmsprad[0]: recorded 0.5"),
+            std::string::npos)
+      << output();
+}
+
+TEST_F(RecordingTest, RangeIsComparedAndDrawn) {
+  record();
+  EXPECT_EQ(run(SANDRUNNER_REPLAY,
+                path() + " --from 0.1 --to 0.3 --plot '" + folder_.path("plots") + "'"),
+            0)
+      << output();
+  EXPECT_NE(output().find("801 ticks"), std::string::npos) << output();
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/strip.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.csv")));
+}
+
+TEST_F(RecordingTest, CutRecordingReadsUpToItsLastWholeChunk) {
+  record();
+  const std::string whole = read_file(path());
+  write_file(folder_.path("cut.mcap"), whole.substr(0, whole.size() - whole.size() / 4));
+  std::uint64_t ticks = 0;
+  const RecordingContents contents =
+      read_recording(folder_.path("cut.mcap"), {}, [&](const TickRecord& tick) {
+        EXPECT_EQ(tick.input.sensors.tick, ticks);
+        ++ticks;
+        return true;
+      });
+  EXPECT_FALSE(contents.complete);
+  EXPECT_GT(ticks, 100u);
+  EXPECT_LT(ticks, 2000u);
+}
+
+TEST_F(RecordingTest, FullDiskEndsTheRecordingAndNotTheRun) {
+  // As if the disk had room for 600 kB a file: the policy's attachment alone takes 430.
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit bytes{600'000, 600'000};
+    setrlimit(RLIMIT_FSIZE, &bytes);
+    _exit(run(SANDRUNNER_PROGRAM, "--start walk --duration 1 --record '" + folder_.path("") + "'"));
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
+  EXPECT_NE(output().find("STOPPED"), std::string::npos) << output();
+  // What is there can be read.
+  EXPECT_FALSE(read_recording(path(), {}, [](const TickRecord&) { return true; }).complete);
+}
+
+TEST_F(RecordingTest, LimitOfTimeEndsTheRecording) {
+  record("--set recording.limit_s=0.2");
+  EXPECT_NE(output().find("the limit of its time is reached"), std::string::npos) << output();
+  const auto contents = read_recording(path(), {}, [](const TickRecord&) { return true; });
+  EXPECT_TRUE(contents.complete);
+  EXPECT_NEAR(static_cast<double>(contents.ticks), 800.0, 80.0);
+}
+
+TEST_F(RecordingTest, EventsAreModesRequestsAndFaults) {
+  ASSERT_EQ(run(SANDRUNNER_PROGRAM, "--duration 0.5 --record '" + folder_.path("") + "'"), 0);
+  McapReader reader(path());
+  std::string events;
+  while (const McapMessage* message = reader.next()) {
+    if (reader.channels().at(message->channel_id).topic != kEventsTopic) continue;
+    CdrReader cdr(message->data);
+    cdr.number<std::uint64_t>();
+    for (int part = 0; part < 2; ++part) {
+      const auto size = cdr.number<std::uint32_t>();
+      const auto text = cdr.block(size, 1);
+      events += std::string(reinterpret_cast<const char*>(text.data()), size - 1) +
+                (part == 0 ? " " : "; ");
+    }
+  }
+  EXPECT_EQ(events,
+            "mode passive; request stand; mode stand_up; mode stand; mode walk; request walk; "
+            "request stand; mode stand; ");
+}
+
+TEST_F(RecordingTest, FileThatIsNoRecordingIsBadInput) {
+  write_file(folder_.path("none.mcap"), "not a recording");
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("none.mcap")), 2);
+  const std::string line = output();
+  EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("absent.mcap")), 2);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --from 3 --to 2"), 2);
+}
+
+}  // namespace
+}  // namespace sandrunner

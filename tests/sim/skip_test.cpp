@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ticks that a stalled control thread missed.
+#include <gtest/gtest.h>
+
+#include "sim/simulator.h"
+#include "tests/sim/support.h"
+
+namespace sandrunner::sim {
+namespace {
+
+std::uint64_t hash_of(const Simulator& simulator) {
+  StateHash hash;
+  simulator.add_to(hash);
+  return hash.value();
+}
+
+/// Stands on joints that sink a little from tick to tick: no two commands are the same.
+SafeCommand command_at(const Robot& robot, std::uint64_t tick) {
+  JointArray<double> target = robot.nominal_rad;
+  for (double& q : target) q += 1e-4 * static_cast<double>(tick);
+  return pass_gate(pd_command(target, 80.0, 1.0));
+}
+
+void run(Simulator& simulator, const Robot& robot, int ticks) {
+  SensorFrame frame;
+  for (int i = 0; i < ticks; ++i) {
+    simulator.read(frame);
+    simulator.write(command_at(robot, simulator.state().tick));
+  }
+}
+
+TEST(SimulatorSkipTest, SkippedTicksAreTicksUnderTheHeldCommand) {
+  struct Case {
+    int sensor_delay_ticks, actuator_delay_ticks;
+    std::uint64_t skipped;
+  };
+  const Robot robot = load_raibo();
+  ConfigTree tree;
+  add_terrain_layer(tree, "dry-sand");
+  SimulatorConfig config = read_simulator_config(tree);
+  config.seed = 4;
+  config.noise.joint_position_rad = 0.01;
+  for (const auto& [sensor, actuator, skipped] :
+       {Case{0, 0, 1}, {0, 0, 30}, {7, 0, 3}, {7, 0, 30}, {0, 5, 3}, {0, 5, 30}, {63, 63, 150}}) {
+    SCOPED_TRACE(testing::Message()
+                 << "delays " << sensor << " and " << actuator << ", " << skipped << " skipped");
+    config.sensor_delay_ticks = sensor;
+    config.actuator_delay_ticks = actuator;
+    Simulator stalled(robot, config), punctual(robot, config);
+    run(stalled, robot, 80);
+    run(punctual, robot, 80);
+    const SafeCommand held = command_at(robot, 79);
+    stalled.skip(skipped, held);
+    SensorFrame frame, late;
+    for (std::uint64_t i = 0; i < skipped; ++i) {
+      punctual.read(frame);
+      punctual.write(held);
+    }
+    EXPECT_EQ(stalled.state().tick, 80 + skipped);
+    EXPECT_EQ(hash_of(stalled), hash_of(punctual));
+    // What comes out of the delays afterwards is the same as well.
+    for (int i = 0; i < 70; ++i) {
+      stalled.read(late);
+      punctual.read(frame);
+      ASSERT_EQ(late.tick, frame.tick);
+      ASSERT_EQ(late.joints.position_rad, frame.joints.position_rad) << i;
+      run(stalled, robot, 1);
+      run(punctual, robot, 1);
+    }
+    EXPECT_EQ(hash_of(stalled), hash_of(punctual));
+  }
+}
+
+TEST(SimulatorSkipTest, NothingSkippedIsNothingDone) {
+  const Robot robot = load_raibo();
+  ConfigTree tree;
+  add_terrain_layer(tree, "rigid");
+  SimulatorConfig config = read_simulator_config(tree);
+  config.sensor_delay_ticks = config.actuator_delay_ticks = 5;
+  Simulator simulator(robot, config);
+  run(simulator, robot, 10);
+  const std::uint64_t before = hash_of(simulator);
+  simulator.skip(0, command_at(robot, 10));
+  EXPECT_EQ(hash_of(simulator), before);
+}
+
+}  // namespace
+}  // namespace sandrunner::sim
