@@ -8,10 +8,10 @@
 
 namespace sandrunner {
 
-/// Takes SIGINT, SIGTERM and SIGHUP away from all threads that start after it, and waits for them
-/// in a thread of its own: no code runs in a signal handler, no system call of another thread is
-/// interrupted. Also ignores SIGPIPE: a closed standard output is an error of a write, not the end
-/// of a process that controls a robot.
+/// Takes SIGINT, SIGTERM and SIGHUP (but for those that were ignored from the start, as by nohup)
+/// away from all threads that start after it, and waits for them in a thread of its own: no code
+/// runs in a signal handler, no system call of another thread is interrupted. Also ignores SIGPIPE:
+/// a closed standard output is an error of a write, not the end of a process that controls a robot.
 class SignalWatch {
  public:
   SignalWatch();

@@ -61,12 +61,16 @@ std::vector<int> allowed_cpus() {
 }
 
 RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
+  // The last processor that the other thread does not have; with one only, that one.
   const std::vector<int> cpus = allowed_cpus();
-  if (!cpus.empty()) {
-    if (config_.control_cpu < 0) config_.control_cpu = cpus.back();
-    if (config_.policy_cpu < 0)
-      config_.policy_cpu = cpus.size() > 1 ? cpus[cpus.size() - 2] : cpus[0];
-  }
+  const auto free_cpu = [&](int taken) {
+    for (auto cpu = cpus.rbegin(); cpu != cpus.rend(); ++cpu) {
+      if (*cpu != taken) return *cpu;
+    }
+    return taken;
+  };
+  if (config_.control_cpu < 0) config_.control_cpu = free_cpu(config_.policy_cpu);
+  if (config_.policy_cpu < 0) config_.policy_cpu = free_cpu(config_.control_cpu);
   if (config_.lock_memory != Need::kOff) {
     // The heap keeps what it has once had, and takes it from one piece.
     mallopt(M_TRIM_THRESHOLD, -1);

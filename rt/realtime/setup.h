@@ -21,8 +21,9 @@ struct RealtimeConfig {
   Need dma_latency = Need::kWarn;  ///< no deep idle states of the processor
   int control_priority = 80;
   int policy_priority = 70;  ///< below the control thread's
-  int control_cpu = -1;      ///< -1: the last processor that the process may use
-  int policy_cpu = -1;       ///< -1: the last but one, or the same if there is only one
+  // -1: the last processor that the process may use and the other thread does not have.
+  int control_cpu = -1;
+  int policy_cpu = -1;
 };
 
 /// Reads the table [realtime]. Throws InputError.

@@ -174,6 +174,7 @@ class InterruptTest : public CommandLineTest {
     if (child == 0) {
       const int file = open(printed.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
       dup2(file, STDOUT_FILENO);
+      for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
       if (in_child) in_child();
       execv(SANDRUNNER_PROGRAM, argv.data());
       _exit(127);

@@ -21,6 +21,7 @@ bool comes_true(const std::atomic<bool>& flag) {
 TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     const auto child = [number] {
+      signal(number, SIG_DFL);  // whatever the test's own parent did
       const SignalWatch watch;
       if (watch.interrupted()) _exit(1);
       kill(getpid(), number);
@@ -35,6 +36,7 @@ TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
 
 TEST(SignalWatchDeathTest, DoesNotInterruptCallsOfOtherThreads) {
   const auto child = [] {
+    signal(SIGINT, SIG_DFL);
     const SignalWatch watch;
     std::atomic<int> undisturbed{0};
     std::atomic<bool> asleep{false};
@@ -60,6 +62,17 @@ TEST(SignalWatchDeathTest, ClosedPipeIsAnErrorOfTheWrite) {
     if (pipe(ends) != 0) _exit(2);
     close(ends[0]);
     _exit(write(ends[1], "x", 1) == -1 && errno == EPIPE && !watch.interrupted() ? 0 : 1);
+  };
+  EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
+}
+
+TEST(SignalWatchDeathTest, WhatWasIgnoredFromTheStartStaysIgnored) {
+  const auto child = [] {
+    signal(SIGHUP, SIG_IGN);  // nohup
+    const SignalWatch watch;
+    kill(getpid(), SIGHUP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    _exit(watch.interrupted() ? 1 : 0);
   };
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
 }

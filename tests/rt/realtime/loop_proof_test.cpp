@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/rt/realtime/live_operator.h"
+#include "rt/telemetry/dds/dds_operator.h"
 #include "tests/rt/realtime/watched_section.h"
 #include "tests/rt/support.h"
 
@@ -31,28 +31,37 @@ void expect_clean(const WatchedDeeds& deeds) {
 TEST(LoopProofTest, NeitherThreadAllocatesLocksCallsTheKernelOrFaults) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  LiveOperator op;
+  DdsOperator op(1200);
   RealtimeHooks hooks;
   hooks.op = &op;
   hooks.control = {.entered = begin_watch, .left = []() noexcept { control_deeds = end_watch(); }};
   hooks.policy = {.entered = begin_watch, .left = []() noexcept { policy_deeds = end_watch(); }};
-  // Commands all the time, a change of mode, a fault.
-  int step = 0;
-  bool walked = false, stood = false;
+  // Commands all the time, a change of mode, a fault, the end.
+  std::atomic<bool> interrupt{false};
+  OperatorWish wish;
+  int looks = 0;
+  bool walked = false, stood = false, faulted = false;
   hooks.meanwhile = [&](PolicyThread&) {
-    op.want(VelocityCommand{0.5, 0.0, 0.1 * (++step % 3)});
+    ++looks;
     walked = walked || op.mode() == Mode::kWalk;
     stood = stood || op.mode() == Mode::kStand;
-    if (step == 60) op.want(ModeRequest::kStand);
-    if (stood) op.want(VelocityCommand{kNan, 0.0, 0.0});
-    if (op.mode() == Mode::kFault || op.time_s() > 10.0) op.end();
+    faulted = faulted || op.mode() == Mode::kFault;
+    if (looks == 60) {
+      wish.request = ModeRequest::kStand;
+      ++wish.request_number;
+    }
+    wish.velocity = {stood ? kNan : 0.5, 0.0, 0.1 * (looks % 3)};
+    ++wish.velocity_number;
+    op.wish(wish);
+    interrupt = faulted || looks > 2000;
   };
-  const std::atomic<bool> interrupt{false};
   const RunResult result = run_realtime(config, &policy, CommandSource("0,0,0"),
                                         {.start_walking = true}, false, interrupt, {}, {}, hooks);
   EXPECT_TRUE(walked);
   EXPECT_TRUE(stood);
-  EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kNonFiniteCommand));
+  EXPECT_TRUE(faulted);
+  EXPECT_EQ(result.fall_reason, "non_finite_command");
+  EXPECT_EQ(result.realtime->records_dropped, 0u);
   expect_clean(control_deeds);
   expect_clean(policy_deeds);
   ASSERT_FALSE(result.realtime->setup.empty());
