@@ -21,12 +21,14 @@ void prepare_folder(const std::string& folder, const std::string& option) {
 }
 
 std::string read_whole_file(const std::string& path) {
+  if (!std::filesystem::exists(path)) throw InputError(fmt::format("'{}': no such file", path));
+  if (!std::filesystem::is_regular_file(path)) {
+    throw InputError(fmt::format("'{}': not a regular file", path));
+  }
   std::ifstream in(path, std::ios::binary);
   std::ostringstream content;
   content << in.rdbuf();
-  if (!in || std::filesystem::is_directory(path)) {
-    throw InputError(fmt::format("{}: cannot be read", path));
-  }
+  if (!in) throw InputError(fmt::format("'{}': cannot be read", path));
   return content.str();
 }
 

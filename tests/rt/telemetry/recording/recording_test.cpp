@@ -6,6 +6,9 @@
 #include <bit>
 #include <csignal>
 #include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
 
 #include "rt/replay.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
@@ -206,6 +209,34 @@ TEST_F(RecordingTest, EventsAreModesRequestsAndFaults) {
   EXPECT_EQ(events,
             "mode passive; request stand; mode stand_up; mode stand; mode walk; request walk; "
             "request stand; mode stand; ");
+}
+
+// Every topic and field of the layout, e.g. "/odom.twist.twist.linear.x", is in a recording.
+TEST_F(RecordingTest, FoxgloveLayoutShowsWhatExists) {
+  record();
+  McapReader reader(path());
+  std::map<std::string, std::string> schema_of;
+  while (const McapMessage* message = reader.next()) {
+    const McapChannel& channel = reader.channels().at(message->channel_id);
+    schema_of[channel.topic] = reader.schemas().at(channel.schema_id).data;
+  }
+  const std::string layout = read_file(SANDRUNNER_FOXGLOVE_LAYOUT);
+  ASSERT_TRUE(nlohmann::json::accept(layout));
+  int shown = 0;
+  const std::regex shown_topic("\"(/[a-z_/]+)([^\" ]*)\"");
+  for (auto match = std::sregex_iterator(layout.begin(), layout.end(), shown_topic);
+       match != std::sregex_iterator(); ++match) {
+    const std::string topic = (*match)[1], fields = (*match)[2];
+    ASSERT_TRUE(schema_of.contains(topic)) << topic;
+    const std::regex name("[a-z_]+");
+    for (auto field = std::sregex_iterator(fields.begin(), fields.end(), name);
+         field != std::sregex_iterator(); ++field) {
+      const std::string word = field->str();
+      EXPECT_NE(schema_of[topic].find(word), std::string::npos) << topic << " has no " << word;
+    }
+    ++shown;
+  }
+  EXPECT_GE(shown, 12);
 }
 
 TEST_F(RecordingTest, FileThatIsNoRecordingIsBadInput) {

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sandrunner-ctl as an operator runs it, against a robot in this process.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+
+#include "fake_robot.h"
+#include "program.h"
+#include "tests/policy/temporary_folder.h"
+
+namespace sandrunner::ctl {
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+auto lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+Ended run(std::vector<std::string> words, const DdsConfig& config) {
+  return Program(std::move(words), config).wait();
+}
+
+void expect_error(const Ended& ended, int code, const std::string& part) {
+  EXPECT_EQ(ended.code, code);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_EQ(lines(ended.err), 1) << ended.err;
+  EXPECT_EQ(ended.err.rfind("sandrunner-ctl: ", 0), 0u) << ended.err;
+  EXPECT_TRUE(has(ended.err, part)) << ended.err;
+}
+
+TEST(CtlProgramTest, BadInputIsOneLineAndExitCodeTwo) {
+  const DdsConfig config = test_config();
+  expect_error(run({"mode", "jump"}, config), 2, "mode: found 'jump'");
+  expect_error(run({"cmd", "nan", "0", "0"}, config), 2, "VX: found nan");
+  expect_error(run({"watch", "rt/nothing"}, config), 2, "expected rt/joint_states");
+  expect_error(run({}, config), 2, "subcommand");
+  expect_error(run({"drive"}, config), 2, "no terminal");
+  expect_error(run({"status", "--once", "--security", "/nowhere"}, config), 2, "/nowhere/");
+  // After what Cyclone DDS itself has to say.
+  const Ended ended = run({"status", "--once", "--interface", "nosuch0"}, config);
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(has(ended.err, "sandrunner-ctl: DDS: domain ")) << ended.err;
+  EXPECT_TRUE(has(ended.err, " on interface nosuch0: ")) << ended.err;
+}
+
+TEST(CtlProgramTest, WithoutARobotItSaysSoWithExitCodeOne) {
+  const DdsConfig config = test_config();
+  DdsParticipant us(config);
+  Program status({"status"}, config), mode({"mode", "damp"}, config),
+      cmd({"cmd", "0", "0", "0"}, config);
+  expect_error(status.wait(), 1, "no robot: nothing came in domain");
+  expect_error(mode.wait(), 1, "damp: no robot answered in domain");
+  expect_error(cmd.wait(), 1, "no robot listens on rt/cmd_vel in domain");
+}
+
+TEST(CtlProgramTest, ARobotThatDoesNotAnswerIsWaitedForTwoSeconds) {
+  const DdsConfig config = test_config();
+  DdsParticipant us(config);
+  us.reader("sandrunner/mode_request", sandrunner_ModeRequest_desc, 1, true);
+  const dds_entity_t replies = us.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1);
+  const auto start = std::chrono::steady_clock::now();
+  Program program({"mode", "damp"}, config);
+  // An answer to somebody else's question.
+  sandrunner_ModeReply reply{};
+  reply.id = 1;
+  reply.accepted = true;
+  for (int i = 0; i < 20; ++i) {
+    dds_write(replies, &reply);
+    sleep_s(0.05);
+  }
+  expect_error(program.wait(), 1, "damp: no answer");
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_GE(took.count(), 2.0);
+  EXPECT_LT(took.count(), 4.0);
+}
+
+TEST(CtlProgramTest, ModePrintsWhatTheRobotSays) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  expect_error(run({"mode", "walk"}, config), 1,
+               "walk: refused in mode passive: the robot does not stand, stand comes first");
+  expect_error(run({"mode", "reset_fault"}, config), 1, "refused in mode passive: no fault");
+  Ended ended = run({"mode", "stand"}, config);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.out, "stand: accepted, mode stand_up\n");
+  ASSERT_TRUE(robot.wait_for(Mode::kStand));
+  ended = run({"mode", "walk"}, config);
+  EXPECT_EQ(ended.out, "walk: accepted, mode walk\n") << ended.err;
+  ended = run({"mode", "stop"}, config);
+  EXPECT_TRUE(has(ended.out, "stop: accepted, mode ")) << ended.err;
+  ended = run({"mode", "damp"}, config);
+  EXPECT_EQ(ended.out, "damp: accepted, mode damping\n") << ended.err;
+  robot.robot().break_joint();
+  ASSERT_TRUE(robot.wait_for(Mode::kFault));
+  expect_error(run({"mode", "stand"}, config), 1, "refused in mode fault: a fault is latched");
+}
+
+TEST(CtlProgramTest, CmdSendsTwentyASecondThenZero) {
+  const DdsConfig config = test_config();
+  DdsParticipant us(config);
+  Peer peer(config);
+  CommandLog log(peer);
+  const Ended ended = run({"cmd", "0.5", "-0.1", "0.2", "--for", "1"}, config);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.out, "sent 20 commands in 1.00 s, then zero\n");
+  const auto entries = log.entries();
+  const auto zero =
+      std::find_if(entries.begin(), entries.end(), [](auto& e) { return e.is_zero(); });
+  EXPECT_EQ(entries.end() - zero, 5);
+  EXPECT_TRUE(std::all_of(zero, entries.end(), [](auto& e) { return e.is_zero(); }));
+  const auto sent = zero - entries.begin();
+  ASSERT_GE(sent, 18);  // the first ones may come before this process knows the sender
+  EXPECT_LE(sent, 20);
+  for (auto e = entries.begin(); e != zero; ++e) {
+    EXPECT_EQ(e->vx_mps, 0.5);
+    EXPECT_EQ(e->vy_mps, -0.1);
+    EXPECT_EQ(e->wz_radps, 0.2);
+  }
+  const double took_s = 1e-9 * static_cast<double>((zero - 1)->sent_ns - entries[0].sent_ns);
+  EXPECT_NEAR(took_s, 0.05 * static_cast<double>(sent - 1), 0.1);
+}
+
+TEST(CtlProgramTest, CmdWithoutAnEndIsEndedBySignalsWithZero) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  Peer peer(config);
+  for (const int number : {SIGINT, SIGTERM}) {
+    CommandLog log(peer);
+    Program program({"cmd", "0.5", "0", "0"}, config);
+    ASSERT_TRUE(wait_until([&] { return log.entries().size() >= 5; }));
+    program.signal(number);
+    const Ended& ended = program.wait();
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    ASSERT_TRUE(wait_until([&] { return log.entries().back().is_zero(); }));
+  }
+}
+
+TEST(CtlProgramTest, CmdReachesAStampedRobotWhenToldSo) {
+  DdsConfig config = test_config();
+  config.stamped_cmd_vel = true;
+  LiveSetup setup(config);
+  const Ended ended =
+      run({"--cmd-vel", "twist_stamped", "cmd", "0.5", "0", "0", "--for", "0.3"}, config);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_GE(setup.inbox.counts().accepted, 6u);
+  expect_error(run({"cmd", "0.5", "0", "0", "--for", "0.3"}, config), 1, "no robot listens");
+}
+
+TEST(CtlProgramTest, CmdSaysWhenTheRobotIsGone) {
+  const DdsConfig config = test_config();
+  auto robot = std::make_unique<LiveSetup>(config);
+  Program program({"cmd", "0.5", "0", "0"}, config);
+  ASSERT_TRUE(wait_until([&] { return robot->inbox.counts().accepted > 3; }));
+  robot.reset();
+  expect_error(program.wait(), 1, "the robot is gone after ");
+}
+
+TEST(CtlProgramTest, WatchPrintsEachMessageOfEachTopicInOneLine) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  const std::pair<const char*, const char*> kCases[] = {
+      {"rt/joint_states", "  LF_HFE 0.1"},
+      {"rt/imu/data", "turning 0.100 0.200 0.300 rad/s"},
+      {"rt/odom", "velocity 0.000 0.000 0.000 m/s"},
+      {"rt/tf", "odom to base: "},
+      {"rt/diagnostics", "sandrunner ok: passive; mode=passive; faults=none;"},
+      {"sandrunner/ticks", "mode passive  faults none  command 0.90 -0.10 0.20"}};
+  for (const auto& [topic, part] : kCases) {
+    const Ended ended = run({"watch", topic, "--count", "2"}, config);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(lines(ended.out), 2) << ended.out;
+    EXPECT_TRUE(has(ended.out, part)) << ended.out;
+    EXPECT_EQ(ended.err, "");
+  }
+  const Ended ended = run({"watch", "rt/robot_description", "--count", "1"}, config);
+  EXPECT_EQ(ended.out, "<robot name=\"fake\"/>\n");  // came before; its line break is none here
+}
+
+TEST(CtlProgramTest, WatchSeesEveryTickMessageInOrder) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  const Ended ended = run({"watch", "sandrunner/ticks", "--count", "150"}, config);
+  long long last = -1;
+  std::size_t at = 0;
+  int gaps = 0;
+  for (int i = 0; i < 150; ++i) {
+    ASSERT_EQ(ended.out.at(at), '#');
+    const long long number = std::stoll(ended.out.substr(at + 1));
+    if (last >= 0 && number != last + 1) ++gaps;
+    last = number;
+    at = ended.out.find('\n', at) + 1;
+  }
+  EXPECT_EQ(gaps, 0);
+  EXPECT_EQ(at, ended.out.size());
+}
+
+TEST(CtlProgramTest, WatchShowsWhatOthersAskAndWhatTheRobotAnswers) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  Peer peer(config);
+  Program commands({"watch", "rt/cmd_vel"}, config);
+  Program requests({"watch", "sandrunner/mode_request"}, config);
+  Program replies({"watch", "sandrunner/mode_reply"}, config);
+  // Each returns when all that read the topic are known: the robot and the program, or only that.
+  const auto cmd_vel = peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc, 2);
+  const auto request = peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc, 2);
+  peer.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1);
+  const sandrunner_ModeRequest asked[] = {{.id = 0xabc, .request = "reset_fault"},
+                                          {.id = 0xdef, .request = "stand"}};
+  for (int i = 0; i < 20; ++i) {  // they may not yet know these writers
+    for (const auto& a : asked) dds_write(request, &a);
+    drive(cmd_vel, 0.5);
+    sleep_s(0.05);
+  }
+  for (Program* program : {&commands, &requests, &replies}) {
+    program->signal(SIGINT);
+    EXPECT_EQ(program->wait().code, 0);
+    EXPECT_GE(lines(program->wait().out), 10);
+  }
+  EXPECT_TRUE(has(commands.wait().out, "linear 0.500 0.000 0.000 m/s  angular 0.000 0.000 0.000"));
+  EXPECT_TRUE(has(requests.wait().out, "0000000000000abc  reset_fault\n0000000000000def  stand\n"));
+  EXPECT_TRUE(has(replies.wait().out, "0000000000000abc  refused: no fault is latched  mode "));
+  EXPECT_TRUE(has(replies.wait().out, "0000000000000def  accepted  mode stand\n"));
+}
+
+TEST(CtlProgramTest, WatchIsEndedBySignals) {
+  const DdsConfig config = test_config();
+  DdsParticipant us(config);
+  for (const int number : {SIGINT, SIGTERM}) {
+    Peer peer(config);
+    Program program({"watch", "rt/cmd_vel"}, config);
+    peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
+    program.signal(number);
+    EXPECT_EQ(program.wait().code, 0) << number;
+    EXPECT_EQ(program.wait().err, "");
+  }
+}
+
+TEST(CtlProgramTest, WatchEndsWhenNobodyReadsItsOutput) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  Program program({"watch", "rt/imu/data"}, config);
+  program.close_out();
+  EXPECT_EQ(program.wait().code, 0);
+}
+
+TEST(CtlProgramTest, StatusOnceShowsTheRobot) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  const Ended ended = run({"status", "--once"}, config);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  for (const char* part :
+       {"mode           passive\n", "faults         none\n",
+        "command        0.90 -0.10 m/s 0.20 rad/s\n", "speed          0.00 0.00 m/s",
+        "late, us       last 2 s: p50 2.0, p99 2.0  since the start: p50 2.0",
+        "control, us    last 2 s: p50 4.0, p99 4.0", "write, us      last 2 s: p50 5.0, p99 5.0",
+        "slots missed   0 while watching, 0 since the start\n", "messages lost  0 lost and "}) {
+    EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
+  }
+  const auto rate = [&](const std::string& name) {
+    const std::size_t at = ended.out.find(name + " ");
+    return at == std::string::npos ? -1.0 : std::stod(ended.out.substr(at + name.size()));
+  };
+  EXPECT_NEAR(rate("joint_states"), 100.0, 10.0) << ended.out;
+  EXPECT_NEAR(rate("odom"), 100.0, 10.0);
+  EXPECT_NEAR(rate("diagnostics"), 1.0, 0.2);
+  EXPECT_NEAR(rate("ticks"), 4000.0, 400.0);
+  EXPECT_FALSE(has(ended.out, "\x1b"));
+}
+
+TEST(CtlProgramTest, WithSecurityOnlyTheOperatorIsHeard) {
+  if (std::system("command -v openssl >/dev/null") != 0) GTEST_SKIP() << "no openssl";
+  const TemporaryFolder folder;
+  const std::string keys = folder.path("keys");
+  ASSERT_EQ(std::system((SANDRUNNER_SECURITY_SCRIPT " " + keys + " >/dev/null").c_str()), 0);
+  DdsConfig config = test_config();
+  config.security_dir = keys;
+  FakeRobot robot(config);
+  Program stranger({"mode", "stand"}, config);
+  const Ended ended = run({"--security", keys, "mode", "stand"}, config);
+  EXPECT_EQ(ended.out, "stand: accepted, mode stand_up\n") << ended.err;
+  EXPECT_TRUE(
+      has(run({"--security", keys, "status", "--once"}, config).out, "mode           stand"));
+  EXPECT_EQ(run({"--security", keys, "cmd", "0", "0", "0", "--for", "0.1"}, config).code, 0);
+  expect_error(stranger.wait(), 1, "stand: no robot answered");
+}
+
+}  // namespace
+}  // namespace sandrunner::ctl

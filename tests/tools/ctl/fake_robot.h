@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "tests/rt/telemetry/dds/example_tick.h"
+#include "tests/rt/telemetry/dds/support.h"
+
+namespace sandrunner::ctl {
+
+/// A robot on DDS: it follows velocities and mode requests, and publishes all topics at the rate of
+/// a real one (example_tick.h, with its mode).
+class FakeRobot {
+ public:
+  explicit FakeRobot(const DdsConfig& config)
+      : setup_(config),
+        telemetry_(setup_.participant, config, "<robot\nname=\"fake\"/>", &setup_.inbox),
+        thread_([this] { publish(); }) {}
+  ~FakeRobot() {
+    end_ = true;
+    thread_.join();
+  }
+
+  LiveRobot& robot() { return setup_.robot; }
+  Mode mode() const { return setup_.robot.mode(); }
+  bool wait_for(Mode wanted) const {
+    return wait_until([&] { return mode() == wanted; });
+  }
+
+ private:
+  void publish() {
+    const auto start = std::chrono::steady_clock::now();
+    std::uint64_t tick = 0;
+    while (!end_) {
+      const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+      for (const std::uint64_t due = ticks_from_s(time.count()); tick < due; ++tick) {
+        TickRecord record = example_tick(tick);
+        record.output.mode = mode();
+        telemetry_.add(record);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+  LiveSetup setup_;
+  Telemetry telemetry_;
+  std::atomic<bool> end_{false};
+  std::thread thread_;
+};
+
+/// Everything that comes on rt/cmd_vel, with the time at which it was sent.
+class CommandLog {
+ public:
+  struct Entry {
+    std::int64_t sent_ns;  ///< wall clock
+    double vx_mps, vy_mps, wz_radps;
+    bool is_zero() const { return vx_mps == 0.0 && vy_mps == 0.0 && wz_radps == 0.0; }
+  };
+
+  explicit CommandLog(Peer& peer)
+      : reader_(peer.reader("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {}
+
+  const std::vector<Entry>& entries() {
+    void* sample = nullptr;
+    dds_sample_info_t info;
+    while (dds_take(reader_, &sample, &info, 1, 1) == 1) {
+      if (info.valid_data) {
+        const auto& t = *static_cast<const geometry_msgs_msg_dds__Twist_*>(sample);
+        entries_.push_back({info.source_timestamp, t.linear.x, t.linear.y, t.angular.z});
+      }
+      dds_return_loan(reader_, &sample, 1);
+      sample = nullptr;
+    }
+    return entries_;
+  }
+
+ private:
+  dds_entity_t reader_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace sandrunner::ctl

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/ctl/command_pacer.h"
+
+#include "tools/ctl/commands.h"
+
+namespace sandrunner::ctl {
+
+std::optional<VelocityCommand> CommandPacer::due(const std::optional<VelocityCommand>& wish,
+                                                 std::int64_t now_ns) {
+  const bool first_zero = !wish && !stopping_;
+  stopping_ = !wish;
+  if (wish) zeros_left_ = kZeros;
+  if (zeros_left_ == 0 || (now_ns < next_ns_ && !first_zero)) return std::nullopt;
+  // On the grid while it is kept; after a pause or a stall a new one begins.
+  const bool late = now_ns - next_ns_ >= kCommandPeriod_ns;
+  next_ns_ = (late || first_zero ? now_ns : next_ns_) + kCommandPeriod_ns;
+  if (wish) return wish;
+  --zeros_left_;
+  return VelocityCommand{};
+}
+
+}  // namespace sandrunner::ctl

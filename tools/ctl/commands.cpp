@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/ctl/commands.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "rt/core/errors.h"
+#include "tools/ctl/dds_io.h"
+#include "tools/ctl/errors.h"
+#include "tools/ctl/topics.h"
+#include "tools/ctl/view_reader.h"
+
+namespace sandrunner::ctl {
+namespace {
+
+// False: whoever read it has gone.
+bool print(const std::string& text) {
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
+         std::fflush(stdout) == 0;
+}
+
+// At the start of a screen; each line clears what was right of it, the end what was below.
+std::string on_screen(const std::string& lines) {
+  std::string out = "\x1b[H";
+  for (char c : lines) {
+    if (c == '\n') out += "\x1b[K";
+    out += c;
+  }
+  return out + "\x1b[J";
+}
+
+}  // namespace
+
+void show_status(const Options& options, Interrupt& interrupt) {
+  constexpr std::int64_t kRefresh_ns = 200 * kMs_ns;
+  // Diagnostics come once a second, and a rate needs two messages.
+  constexpr std::int64_t kCollect_ns = 2200 * kMs_ns;
+  const DdsParticipant participant(options.dds, kIdentity);
+  ViewReader reader(participant);
+  RobotView view;
+  const std::int64_t start_ns = steady_ns();
+  if (options.once || isatty(STDOUT_FILENO) == 0) {
+    while (steady_ns() - start_ns < kCollect_ns && !interrupt.wait(kLook_ns)) {
+      reader.take_into(view);
+      if (steady_ns() - start_ns > kSecond_ns && !view.alive(steady_ns())) break;
+    }
+    if (!view.alive(steady_ns())) {
+      throw RefusedError(fmt::format("no robot: nothing came {} for 1 s", place(options.dds)));
+    }
+    print(view.screen(steady_ns()));
+    return;
+  }
+  const std::string title = fmt::format("sandrunner {}; Ctrl-C ends\n", place(options.dds));
+  if (!print("\x1b[2J")) return;
+  for (std::int64_t next_ns = start_ns + kRefresh_ns; !interrupt.wait(kLook_ns);) {
+    reader.take_into(view);
+    const std::int64_t now_ns = steady_ns();
+    if (now_ns < next_ns) continue;
+    next_ns = std::max(next_ns + kRefresh_ns, now_ns);
+    if (!print(on_screen(title + view.screen(now_ns)))) return;
+  }
+}
+
+void send_command(const Options& options, Interrupt& interrupt) {
+  const DdsParticipant participant(options.dds, kIdentity);
+  CommandWriter writer(participant, options.dds);
+  if (!interrupt.wait_until(kFindRobot_ns, [&] { return writer.has_robot(); })) {
+    throw RefusedError(fmt::format("no robot listens on rt/cmd_vel {}", place(options.dds)));
+  }
+  const std::int64_t start_ns = steady_ns();
+  const long long wanted =
+      options.for_s ? std::max(1LL, std::llround(*options.for_s * 20.0)) : INT64_MAX;
+  long long sent = 0;
+  // Each at its own time since the start: a late one does not delay the next.
+  while (sent < wanted && !interrupt.came()) {
+    if (!writer.has_robot()) {
+      throw RefusedError(fmt::format("the robot is gone after {} commands", sent));
+    }
+    writer.send(options.velocity);
+    ++sent;
+    if (interrupt.wait(start_ns + sent * kCommandPeriod_ns - steady_ns())) break;
+  }
+  // No wait of `interrupt` any more: after a signal it would be none.
+  for (int i = 0; i < kZeros; ++i) {
+    if (i > 0) usleep(kCommandPeriod_ns / 1000);
+    writer.send({});
+  }
+  print(fmt::format("sent {} commands in {:.2f} s, then zero\n", sent,
+                    static_cast<double>(sent * kCommandPeriod_ns) * 1e-9));
+}
+
+void request_mode(const Options& options, Interrupt& interrupt) {
+  const DdsParticipant participant(options.dds, kIdentity);
+  ModeClient client(participant);
+  if (!interrupt.wait_until(kFindRobot_ns, [&] { return client.has_robot(); })) {
+    throw RefusedError(fmt::format("{}: no robot answered {}", options.mode, place(options.dds)));
+  }
+  // The robot may see us a moment after we see it; a request before that would be lost.
+  interrupt.wait(kSettle_ns);
+  client.ask(options.mode);
+  std::optional<sandrunner_ModeReply> reply;
+  interrupt.wait_until(kAnswer_ns, [&] { return (reply = client.reply()).has_value(); });
+  if (!reply) {
+    throw RefusedError(
+        fmt::format("{}: no answer; whether the robot has heard it is not known", options.mode));
+  }
+  const std::string mode = one_line(reply->mode);
+  if (!reply->accepted) {
+    throw RefusedError(
+        fmt::format("{}: refused in mode {}: {}", options.mode, mode, one_line(reply->reason)));
+  }
+  print(fmt::format("{}: accepted, mode {}\n", options.mode, mode));
+}
+
+void watch_topic(const Options& options, Interrupt& interrupt) {
+  const Topic topic = find_topic(options.topic, options.dds);
+  const DdsParticipant participant(options.dds, kIdentity);
+  const dds_entity_t reader =
+      participant.reader(topic.name, *topic.type, topic.depth, topic.reliable, topic.latched);
+  const long long wanted = options.count > 0 ? options.count : INT64_MAX;
+  long long printed = 0;
+  bool open = true;
+  const auto look = [&] {
+    take(
+        reader,
+        [&](const void* message) {
+          open = open && print(topic.text(message) + "\n");
+          ++printed;
+        },
+        wanted - printed);
+    return printed == wanted || !open;
+  };
+  if (!interrupt.wait_until(kFindRobot_ns, [&] { return look() || writers_of(reader) > 0; }) &&
+      !interrupt.came()) {
+    fmt::print(stderr, "sandrunner-ctl: nobody publishes {} {} yet, waiting\n", topic.name,
+               place(options.dds));
+  }
+  while (!look() && !interrupt.wait(kLook_ns)) {
+  }
+}
+
+}  // namespace sandrunner::ctl

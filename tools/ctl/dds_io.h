@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The operator's end of the topics.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rt/core/messages.h"
+#include "rt/telemetry/dds/participant.h"
+#include "rt/telemetry/dds/sandrunner.h"
+
+namespace sandrunner::ctl {
+
+/// Takes at most `limit` messages of what has come; `use` sees each one as const void*.
+template <typename Use>
+void take(dds_entity_t reader, const Use& use, long long limit = INT64_MAX) {
+  void* sample = nullptr;
+  dds_sample_info_t info;
+  while (limit > 0 && dds_take(reader, &sample, &info, 1, 1) == 1) {
+    if (info.valid_data) {
+      use(static_cast<const void*>(sample));
+      --limit;
+    }
+    dds_return_loan(reader, &sample, 1);
+    sample = nullptr;
+  }
+}
+
+/// How many readers this writer has found, how many writers this reader.
+std::uint32_t readers_of(dds_entity_t writer);
+std::uint32_t writers_of(dds_entity_t reader);
+
+/// "in domain 42 on lo".
+std::string place(const DdsConfig& config);
+
+/// Writes velocity commands to rt/cmd_vel.
+class CommandWriter {
+ public:
+  /// Throws InputError.
+  CommandWriter(const DdsParticipant& participant, const DdsConfig& config);
+
+  bool has_robot() const { return readers_of(writer_) > 0; }
+  void send(const VelocityCommand& command);
+
+ private:
+  bool stamped_;
+  dds_entity_t writer_;
+};
+
+/// Asks for modes and gets the answers, one request at a time.
+class ModeClient {
+ public:
+  /// Throws InputError.
+  explicit ModeClient(const DdsParticipant& participant);
+
+  /// Whether a robot is there who could hear a request and be heard.
+  bool has_robot() const { return readers_of(requests_) > 0 && writers_of(replies_) > 0; }
+  /// Asks, by the request's name.
+  void ask(std::string_view request);
+  /// The answer to the latest question, once.
+  std::optional<sandrunner_ModeReply> reply();
+
+ private:
+  dds_entity_t replies_, requests_;
+  std::uint64_t id_ = 0;
+};
+
+}  // namespace sandrunner::ctl

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "rt/core/errors.h"
+#include "tools/ctl/command_pacer.h"
+#include "tools/ctl/commands.h"
+#include "tools/ctl/dds_io.h"
+#include "tools/ctl/errors.h"
+#include "tools/ctl/gamepad_device.h"
+#include "tools/ctl/key_driver.h"
+#include "tools/ctl/raw_terminal.h"
+#include "tools/ctl/view_reader.h"
+
+namespace sandrunner::ctl {
+namespace {
+
+constexpr const char* kHelp =
+    "w/s forward, back   a/d left, right   q/e turn   +/- faster, slower   space stops\n"
+    "g stand   f walk   x damp   ESC or Ctrl-C quits\n";
+
+// Whether somebody can read it is not worth the end of the drive.
+void say(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+// What fits into one line; a longer one would scroll.
+std::size_t columns() {
+  winsize size{};
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col - 1u : 79u;
+}
+
+const char* request_of(KeyAction action) {
+  switch (action) {
+    case KeyAction::kStop:
+      return "stop";
+    case KeyAction::kStand:
+      return "stand";
+    case KeyAction::kWalk:
+      return "walk";
+    case KeyAction::kDamp:
+      return "damp";
+    default:
+      return nullptr;
+  }
+}
+
+class Drive {
+ public:
+  Drive(const Options& options, Interrupt& interrupt)
+      : interrupt_(interrupt),
+        participant_(options.dds, kIdentity),
+        writer_(participant_, options.dds),
+        modes_(participant_),
+        reader_(participant_),
+        device_(GamepadDevice::find()) {
+    if (!interrupt_.wait_until(kFindRobot_ns,
+                               [&] { return writer_.has_robot() && modes_.has_robot(); })) {
+      throw RefusedError(fmt::format("drive: no robot answered {}", place(options.dds)));
+    }
+    if (device_) gamepad_.emplace(device_->ranges());
+  }
+
+  void run() {
+    RawTerminal terminal;
+    say(fmt::format(
+        "{}{}", kHelp,
+        device_ ? "gamepad " + device_->name() +
+                      ": hold the left shoulder button; left stick moves, right stick turns\n"
+                : "no gamepad\n"));
+    while (!quit_ && !interrupt_.came()) {
+      poll_inputs(terminal);
+      step();
+    }
+    keys_.press(' ', steady_ns());
+    if (gamepad_) gamepad_->stop();
+    while (pacer_.busy()) {
+      send(std::nullopt);
+      usleep(5000);
+    }
+    say("\n");
+  }
+
+ private:
+  void poll_inputs(RawTerminal& terminal) {
+    pollfd fds[3] = {{interrupt_.fd(), POLLIN, 0},
+                     {STDIN_FILENO, POLLIN, 0},
+                     {device_ ? device_->fd() : -1, POLLIN, 0}};
+    if (poll(fds, 3, kLook_ns / kMs_ns) <= 0) return;
+    if (fds[1].revents != 0) {
+      const std::string bytes = terminal.read();
+      if (bytes.empty()) quit_ = true;
+      for (const char key : keys_from(bytes)) press(key);
+    }
+    if (fds[2].revents != 0 && !device_->read_into(*gamepad_)) {
+      device_.reset();
+      gamepad_.reset();
+      report("the gamepad is gone");
+    }
+  }
+
+  void press(char key) {
+    const KeyAction action = keys_.press(key, steady_ns());
+    if (action == KeyAction::kNone) return;
+    if (gamepad_) gamepad_->stop();
+    quit_ = quit_ || action == KeyAction::kQuit;
+    const char* const request = request_of(action);
+    if (!request) return;
+    send(std::nullopt);  // zero at once, before the request
+    modes_.ask(request);
+    asked_ = request;
+    asked_ns_ = steady_ns();
+  }
+
+  void step() {
+    const std::int64_t now_ns = steady_ns();
+    if (const auto reply = modes_.reply()) {
+      report(asked_ + (reply->accepted ? ": accepted" : ": refused: " + one_line(reply->reason)));
+      asked_.clear();
+    } else if (!asked_.empty() && now_ns - asked_ns_ > kAnswer_ns) {
+      report(asked_ + ": no answer");
+      asked_.clear();
+    }
+    const double scale = 0.1 * keys_.scale_tenths();
+    std::optional<VelocityCommand> wish = keys_.command(now_ns);
+    if (!wish && gamepad_) wish = gamepad_->command(scale);
+    send(wish);
+    reader_.take_into(view_);
+    if (now_ns < next_line_ns_) return;
+    next_line_ns_ = now_ns + 200 * kMs_ns;
+    const std::string line = fmt::format("scale {:.1f}  {}", scale, view_.line(now_ns));
+    say("\r\x1b[K" + line.substr(0, columns()));
+  }
+
+  // A line that stays, above the one that changes.
+  static void report(const std::string& text) { say("\r\x1b[K" + text + "\n"); }
+
+  void send(const std::optional<VelocityCommand>& wish) {
+    if (const auto command = pacer_.due(wish, steady_ns())) writer_.send(*command);
+  }
+
+  Interrupt& interrupt_;
+  DdsParticipant participant_;
+  CommandWriter writer_;
+  ModeClient modes_;
+  ViewReader reader_;
+  RobotView view_;
+  KeyDriver keys_;
+  CommandPacer pacer_;
+  std::optional<GamepadDevice> device_;
+  std::optional<Gamepad> gamepad_;
+  bool quit_ = false;
+  std::string asked_;  // the open request
+  std::int64_t asked_ns_ = 0, next_line_ns_ = 0;
+};
+
+}  // namespace
+
+void drive_robot(const Options& options, Interrupt& interrupt) {
+  if (isatty(STDIN_FILENO) == 0) {
+    throw InputError("drive: found a standard input that is no terminal, expected a keyboard");
+  }
+  Drive(options, interrupt).run();
+}
+
+}  // namespace sandrunner::ctl

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/ctl/key_driver.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace sandrunner::ctl {
+
+std::vector<char> keys_from(std::string_view bytes) {
+  std::vector<char> keys;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const char c = bytes[i];
+    const bool sequence =
+        c == kKeyEscape && i + 1 < bytes.size() && (bytes[i + 1] == '[' || bytes[i + 1] == 'O');
+    if (sequence) {
+      // ESC [ parameters final, or ESC O final; finals are '@' to '~'.
+      i += 2;
+      while (i < bytes.size() && (bytes[i] < '@' || bytes[i] > '~')) ++i;
+    } else {
+      keys.push_back(c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c);
+    }
+  }
+  return keys;
+}
+
+KeyAction KeyDriver::press(char key, std::int64_t now_ns) {
+  const auto stop_and = [this](KeyAction action) {
+    key_ = '\0';
+    return action;
+  };
+  switch (key) {
+    case 'w':
+    case 's':
+    case 'a':
+    case 'd':
+    case 'q':
+    case 'e':
+      key_ = key;
+      last_ns_ = now_ns;
+      return KeyAction::kNone;
+    case '+':
+    case '=':
+      rescale(scale_tenths_ + 1, now_ns);
+      return KeyAction::kNone;
+    case '-':
+      rescale(scale_tenths_ - 1, now_ns);
+      return KeyAction::kNone;
+    case ' ':
+      return stop_and(KeyAction::kStop);
+    case 'g':
+      return stop_and(KeyAction::kStand);
+    case 'f':
+      return stop_and(KeyAction::kWalk);
+    case 'x':
+      return stop_and(KeyAction::kDamp);
+    case kKeyEscape:
+    case kKeyCtrlC:
+      return stop_and(KeyAction::kQuit);
+    default:
+      return KeyAction::kNone;
+  }
+}
+
+void KeyDriver::rescale(int tenths, std::int64_t now_ns) {
+  // Not for a key that is over already: it would start again.
+  if (command(now_ns)) last_ns_ = now_ns;
+  scale_tenths_ = std::clamp(tenths, 1, 20);
+}
+
+std::optional<VelocityCommand> KeyDriver::command(std::int64_t now_ns) const {
+  if (key_ == '\0' || now_ns - last_ns_ >= kHold_ns) return std::nullopt;
+  const double scale = 0.1 * scale_tenths_;
+  const double vx_mps = scale * kFullSpeed.vx_mps;
+  const double vy_mps = scale * kFullSpeed.vy_mps;
+  const double wz_radps = scale * kFullSpeed.wz_radps;
+  switch (key_) {
+    case 'w':
+      return VelocityCommand{.vx_mps = vx_mps};
+    case 's':
+      return VelocityCommand{.vx_mps = -vx_mps};
+    case 'a':
+      return VelocityCommand{.vy_mps = vy_mps};
+    case 'd':
+      return VelocityCommand{.vy_mps = -vy_mps};
+    case 'q':
+      return VelocityCommand{.wz_radps = wz_radps};
+    default:
+      return VelocityCommand{.wz_radps = -wz_radps};
+  }
+}
+
+}  // namespace sandrunner::ctl

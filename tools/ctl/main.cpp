@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sandrunner-ctl: watches and commands a robot over DDS.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "rt/core/errors.h"
+#include "tools/ctl/commands.h"
+#include "tools/ctl/errors.h"
+
+namespace {
+
+using namespace sandrunner;
+using namespace sandrunner::ctl;
+
+int run(int argc, char** argv) {
+  const std::optional<Options> options = parse_options(argc, argv);
+  if (!options) return kExitOk;
+  Interrupt interrupt;  // before DDS, which starts threads
+  if (options->subcommand == "status") show_status(*options, interrupt);
+  if (options->subcommand == "cmd") send_command(*options, interrupt);
+  if (options->subcommand == "mode") request_mode(*options, interrupt);
+  if (options->subcommand == "watch") watch_topic(*options, interrupt);
+  if (options->subcommand == "drive") drive_robot(*options, interrupt);
+  return kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto say = [](const std::string& line) {
+    fmt::print(stderr, "sandrunner-ctl: {}\n", one_line(line));
+  };
+  try {
+    return run(argc, argv);
+  } catch (const RefusedError& error) {
+    say(error.what());
+    return kExitRefused;
+  } catch (const InputError& error) {
+    say(error.what());
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    say(std::string("internal error: ") + error.what());
+    return kExitInternal;
+  }
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/ctl/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <vector>
+
+#include "rt/core/errors.h"
+#include "rt/telemetry/dds/command_gate.h"
+#include "rt/telemetry/dds/mode_requests.h"
+#include "tools/ctl/topics.h"
+
+namespace sandrunner::ctl {
+namespace {
+
+// What the robot would refuse is refused here, where somebody reads it.
+void check_speed(const char* name, double value, double limit, const char* unit) {
+  if (!std::isfinite(value) || std::abs(value) > limit) {
+    throw InputError(
+        fmt::format("{}: found {}, expected at most {} {} either way", name, value, limit, unit));
+  }
+}
+
+void check(const Options& o) {
+  if (o.dds.domain < 0 || o.dds.domain > 230) {
+    throw InputError(fmt::format("--domain: found {}, expected 0 to 230", o.dds.domain));
+  }
+  if (o.dds.interface.empty()) {
+    throw InputError(
+        "--interface: found an empty name, expected a network interface, \"lo\" for this computer "
+        "only");
+  }
+  if (o.subcommand == "cmd") {
+    check_speed("VX", o.velocity.vx_mps, kAbsurdSpeed_mps, "m/s");
+    check_speed("VY", o.velocity.vy_mps, kAbsurdSpeed_mps, "m/s");
+    check_speed("WZ", o.velocity.wz_radps, kAbsurdYawRate_radps, "rad/s");
+    if (o.for_s && !(*o.for_s > 0.0 && *o.for_s <= 86400.0)) {
+      throw InputError(fmt::format("--for: found {}, expected above 0 to 86400 s", *o.for_s));
+    }
+  } else if (o.subcommand == "mode" && !wish_from(o.mode)) {
+    throw InputError(
+        fmt::format("mode: found '{}', expected stand, walk, stop, damp or reset_fault", o.mode));
+  } else if (o.subcommand == "watch") {
+    find_topic(o.topic, o.dds);
+    if (o.count < 0) {
+      throw InputError(fmt::format("--count: found {}, expected 0 (no end) or more", o.count));
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<Options> parse_options(int argc, const char* const* argv) {
+  Options o;
+  std::string cmd_vel = "twist";
+  double for_s = 0.0;
+  CLI::App app{"Watches and commands a robot that runs sandrunner, over DDS."};
+  app.option_defaults()->always_capture_default();
+  app.require_subcommand(1);
+  app.fallthrough();  // options of all subcommands may stand after the subcommand too
+  app.add_option("--domain", o.dds.domain, "as the robot's dds.domain")->type_name("N");
+  app.add_option("--interface", o.dds.interface, "as the robot's dds.interface; lo: this computer")
+      ->type_name("NAME");
+  app.add_option("--security", o.dds.security_dir,
+                 "folder with the files of the identity \"operator\" (tools/dds_security.sh)")
+      ->type_name("DIR");
+  app.add_option("--cmd-vel", cmd_vel, "as the robot's dds.cmd_vel")
+      ->type_name("twist|twist_stamped");
+  app.set_version_flag("--version", std::string("sandrunner-ctl ") + SANDRUNNER_VERSION);
+
+  CLI::App* status = app.add_subcommand("status", "how the robot is; refreshes on a terminal");
+  status->add_flag("--once", o.once, "print it once")->always_capture_default(false);
+  CLI::App* cmd = app.add_subcommand("cmd", "send a velocity at 20 Hz, then zero");
+  const auto velocity = [cmd](const char* name, double& value, const char* text) {
+    cmd->add_option(name, value, text)->required()->always_capture_default(false);
+  };
+  velocity("VX", o.velocity.vx_mps, "forward, m/s");
+  velocity("VY", o.velocity.vy_mps, "to the left, m/s");
+  velocity("WZ", o.velocity.wz_radps, "turning to the left, rad/s");
+  const CLI::Option* has_for = cmd->add_option("--for", for_s, "this long; else until Ctrl-C")
+                                   ->type_name("S")
+                                   ->always_capture_default(false);
+  CLI::App* mode = app.add_subcommand("mode", "ask for a mode and print the answer");
+  mode->add_option("REQUEST", o.mode, "stand, walk, stop, damp or reset_fault")
+      ->required()
+      ->always_capture_default(false);
+  CLI::App* watch = app.add_subcommand("watch", "print each message of a topic, a line each");
+  watch->add_option("TOPIC", o.topic, topic_names())->required()->always_capture_default(false);
+  watch->add_option("--count", o.count, "end after so many; 0: Ctrl-C ends it")->type_name("N");
+  app.add_subcommand("drive", "drive with the keyboard, and with a gamepad if there is one");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {  // --help, --version
+    app.exit(done);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("command line: {}", error.what()));
+  }
+  if (cmd_vel != "twist" && cmd_vel != "twist_stamped") {
+    throw InputError(
+        fmt::format("--cmd-vel: found '{}', expected twist or twist_stamped", cmd_vel));
+  }
+  o.dds.stamped_cmd_vel = cmd_vel == "twist_stamped";
+  o.subcommand = app.get_subcommands().front()->get_name();
+  if (has_for->count() > 0) o.for_s = for_s;
+  check(o);
+  return o;
+}
+
+}  // namespace sandrunner::ctl

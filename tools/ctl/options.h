@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "rt/core/messages.h"
+#include "rt/telemetry/dds/dds_config.h"
+
+namespace sandrunner::ctl {
+
+/// The command line of `sandrunner-ctl`.
+struct Options {
+  DdsConfig dds;                ///< where the robot is: the defaults are the robot's
+  std::string subcommand;       ///< status, cmd, mode, watch, drive
+  bool once = false;            ///< status
+  VelocityCommand velocity;     ///< cmd
+  std::optional<double> for_s;  ///< cmd; none: until interrupted
+  std::string mode;             ///< mode: what to ask for
+  std::string topic;            ///< watch
+  long long count = 0;          ///< watch: messages; 0: until interrupted
+};
+
+/// Parses and checks the command line. Returns nothing if all is said (--help, --version, which
+/// print to standard output). Throws InputError.
+std::optional<Options> parse_options(int argc, const char* const* argv);
+
+}  // namespace sandrunner::ctl

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/ctl/raw_terminal.h"
+
+#include <signal.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "rt/core/errors.h"
+
+namespace sandrunner::ctl {
+namespace {
+
+termios before;
+
+constexpr int kCrashes[] = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGQUIT};
+
+// Restores, then lets the signal do what it does by default: SA_RESETHAND.
+void crash(int number) {
+  tcsetattr(STDIN_FILENO, TCSANOW, &before);
+  raise(number);
+}
+
+}  // namespace
+
+RawTerminal::RawTerminal() {
+  if (tcgetattr(STDIN_FILENO, &before) != 0) {
+    throw InputError("drive: found a standard input that is no terminal, expected a keyboard");
+  }
+  struct sigaction action {};
+  action.sa_handler = crash;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int number : kCrashes) sigaction(number, &action, nullptr);
+  termios raw = before;
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | ISIG | IEXTEN);
+  raw.c_iflag &= ~static_cast<tcflag_t>(IXON);
+  raw.c_cc[VMIN] = 1;
+  raw.c_cc[VTIME] = 0;
+  tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+}
+
+RawTerminal::~RawTerminal() {
+  // What was typed and not read is not for the shell.
+  tcsetattr(STDIN_FILENO, TCSAFLUSH, &before);
+  for (const int number : kCrashes) signal(number, SIG_DFL);
+}
+
+std::string RawTerminal::read() {
+  char bytes[64];
+  ssize_t size;
+  do {
+    size = ::read(STDIN_FILENO, bytes, sizeof bytes);
+  } while (size < 0 && errno == EINTR);
+  return size > 0 ? std::string(bytes, static_cast<std::size_t>(size)) : std::string();
+}
+
+}  // namespace sandrunner::ctl
