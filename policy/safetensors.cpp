@@ -31,25 +31,6 @@ constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;  // a policy has ha
   fail_file(path, "{}: {}", what, std::generic_category().message(errno));
 }
 
-std::string read_bytes(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail_file(path, "no such file");
-  if (!std::filesystem::is_regular_file(status)) fail_file(path, "not a regular file");
-  const auto size = std::filesystem::file_size(path, error);
-  if (error) fail_file(path, "cannot be read: {}", error.message());
-  if (size > kMaxFileBytes) {
-    fail_file(path, "{} bytes, expected at most {}", size, kMaxFileBytes);
-  }
-  std::string bytes(size, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) fail_with_errno(path, "cannot be read");
-  stream.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (stream.gcount() != static_cast<std::streamsize>(size))
-    fail_file(path, "changed while it was read");
-  return bytes;
-}
-
 /// Parses the header; a key that occurs twice in one object is an error.
 Json parse_header(const std::string& path, std::string_view text) {
   std::vector<std::set<std::string>> open_objects;
@@ -193,8 +174,27 @@ class TemporaryFile {
 
 }  // namespace
 
+std::string read_safetensors_bytes(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) fail_file(path, "no such file");
+  if (!std::filesystem::is_regular_file(status)) fail_file(path, "not a regular file");
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) fail_file(path, "cannot be read: {}", error.message());
+  if (size > kMaxFileBytes) {
+    fail_file(path, "{} bytes, expected at most {}", size, kMaxFileBytes);
+  }
+  std::string bytes(size, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail_with_errno(path, "cannot be read");
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (stream.gcount() != static_cast<std::streamsize>(size))
+    fail_file(path, "changed while it was read");
+  return bytes;
+}
+
 TensorFile read_safetensors(const std::string& path) {
-  return parse_safetensors(read_bytes(path), path);
+  return parse_safetensors(read_safetensors_bytes(path), path);
 }
 
 TensorFile parse_safetensors(std::string_view bytes, const std::string& path) {

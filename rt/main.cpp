@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "policy/policy_file.h"
+#include "policy/safetensors.h"
 #include "rt/command_source.h"
 #include "rt/core/errors.h"
 #include "rt/core/floating_point.h"
@@ -52,7 +53,7 @@ int run(int argc, char** argv) {
   const CommandSource command(options->live ? "0,0,0" : options->command);
   const std::string policy_text = options->policy_path.empty()
                                       ? std::string(shipped_policy_text())
-                                      : read_whole_file(options->policy_path);
+                                      : read_safetensors_bytes(options->policy_path);
   Policy policy =
       load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
                                                                  : options->policy_path);

@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "rt/core/errors.h"
 
@@ -18,18 +17,6 @@ void prepare_folder(const std::string& folder, const std::string& option) {
   if (error || !std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK | X_OK) != 0) {
     throw InputError(fmt::format("{}: folder '{}' cannot be written", option, folder));
   }
-}
-
-std::string read_whole_file(const std::string& path) {
-  if (!std::filesystem::exists(path)) throw InputError(fmt::format("'{}': no such file", path));
-  if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(fmt::format("'{}': not a regular file", path));
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in) throw InputError(fmt::format("'{}': cannot be read", path));
-  return content.str();
 }
 
 void write_text(const std::string& text, const std::string& path) {

@@ -9,9 +9,6 @@ namespace sandrunner {
 /// there: now rather than after the run.
 void prepare_folder(const std::string& folder, const std::string& option);
 
-/// All bytes of a file. Throws InputError.
-std::string read_whole_file(const std::string& path);
-
 /// Writes `text` to a file beside `path` and renames it: whole or absent. InputError if it cannot.
 void write_text(const std::string& text, const std::string& path);
 
