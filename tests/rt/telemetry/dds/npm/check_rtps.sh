@@ -8,23 +8,7 @@ peer=$1
 folder=$2
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 
-skip() {
-  echo "SKIPPED: the check of the ROS topics by @foxglove/rtps needs $1"
-  exit 77
-}
-
-command -v node >/dev/null && command -v npm >/dev/null || skip "node and npm, which are not installed"
-mkdir -p "$folder"
-# The stamp is written last, so that a broken installation is done again.
-if ! cmp -s "$here/package-lock.json" "$folder/installed.json"; then
-  cp "$here/package.json" "$here/package-lock.json" "$folder/"
-  if ! (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=20000 \
-      >npm.log 2>&1); then
-    npm ping --fetch-retries=0 --fetch-timeout=5000 >/dev/null 2>&1 || skip "the npm registry, which does not answer"
-    cat "$folder/npm.log"
-    exit 1
-  fi
-  cp "$here/package-lock.json" "$folder/installed.json"
-fi
+source "$here/../../npm_packages.sh"
+npm_packages "the check of the ROS topics by @foxglove/rtps" "$here" "$folder"
 cp "$here/check_rtps.mjs" "$folder/"
 node "$folder/check_rtps.mjs" "$peer"
