@@ -8,6 +8,9 @@
 
 namespace sandrunner {
 
+/// How long a robot is damped before its loop ends: after a fall, a fault or an interrupt.
+inline constexpr std::uint64_t kDampingEnd_ticks = kControlHz / 2;
+
 /// What an operator sees of the tick that was just done.
 struct TickFacts {
   std::uint64_t ticks = 1;  ///< how far time went on: 1, and the slots skipped before it

@@ -5,8 +5,6 @@ namespace sandrunner {
 namespace {
 
 constexpr std::uint64_t kSettle_ticks = kControlHz;  // in Stand, before Walk and at the end
-constexpr std::uint64_t kDampingEnd_ticks =
-    kControlHz / 2;  // after a fall, a fault or an interrupt
 
 }  // namespace
 

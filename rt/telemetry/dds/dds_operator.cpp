@@ -4,11 +4,6 @@
 #include <algorithm>
 
 namespace sandrunner {
-namespace {
-
-constexpr std::uint64_t kDampingEnd_ticks = kControlHz / 2;  // after an interrupt
-
-}  // namespace
 
 OperatorCommand DdsOperator::command(std::uint64_t tick) noexcept {
   const OperatorWish& wish = wishes_.read();
