@@ -19,7 +19,8 @@ class InputError : public std::runtime_error {
 /// breaks.
 inline std::string one_line(std::string message) {
   std::replace_if(
-      message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+      message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
+      ' ');
   return message;
 }
 

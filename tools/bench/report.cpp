@@ -14,7 +14,8 @@ namespace sandrunner::bench {
 
 void print(const Report& report) {
   for (const auto& [name, text] : report.facts) fmt::print("{:<12}{}\n", name, text);
-  fmt::print("\n{:<32}{:>12}{:>12}{:>12}{:>7}\n", "steps/s or as named", "median", "q1", "q3", "runs");
+  fmt::print("\n{:<32}{:>12}{:>12}{:>12}{:>7}\n", "steps/s or as named", "median", "q1", "q3",
+             "runs");
   for (const auto& [name, q] : report.rates) {
     fmt::print("{:<32}{:>12.5g}{:>12.5g}{:>12.5g}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
   }
