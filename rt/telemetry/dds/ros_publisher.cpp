@@ -10,12 +10,9 @@ namespace sandrunner {
 namespace {
 
 constexpr int kDepth = 10;  // what a ROS 2 publisher has unless told otherwise
-// The generated C structs have no const.
-char kOdomFrame[] = "odom";
-char kBaseFrame[] = "base";
 
-// A variance that says: not known.
-constexpr double kUnknown = 1e6;
+// The generated C structs have no const.
+char* text(const char* constant) { return const_cast<char*>(constant); }
 
 geometry_msgs_msg_dds__Vector3_ vector3(const Vector3& v) { return {v[0], v[1], v[2]}; }
 geometry_msgs_msg_dds__Quaternion_ quaternion(const std::array<double, 4>& q) {
@@ -36,25 +33,19 @@ struct RosPublisher::Messages {
   JointArray<double> position{}, velocity{}, effort{};
 
   Messages() {
-    for (int j = 0; j < kNumJoints; ++j) names[j] = const_cast<char*>(kJointNames[j]);
+    for (int j = 0; j < kNumJoints; ++j) names[j] = text(kJointNames[j]);
     constexpr std::uint32_t kCount = kNumJoints;
-    joint_states.header.frame_id = kBaseFrame;
+    joint_states.header.frame_id = text(kBaseFrame);
     joint_states.name = {kCount, kCount, names.data(), false};
     joint_states.position = {kCount, kCount, position.data(), false};
     joint_states.velocity = {kCount, kCount, velocity.data(), false};
     joint_states.effort = {kCount, kCount, effort.data(), false};
-    imu.header.frame_id = kBaseFrame;
-    odom.header.frame_id = kOdomFrame;
-    odom.child_frame_id = kBaseFrame;
-    base.header.frame_id = kOdomFrame;
-    base.child_frame_id = kBaseFrame;
+    imu.header.frame_id = text(kBaseFrame);
+    odom.header.frame_id = text(kOdomFrame);
+    odom.child_frame_id = text(kBaseFrame);
+    base.header.frame_id = text(kOdomFrame);
+    base.child_frame_id = text(kBaseFrame);
     tf.transforms = {1, 1, &base, false};
-    // Diagonals of the 6 x 6 covariances: x, y, z, then about these axes.
-    for (double& c : odom.pose.covariance) c = 0.0;
-    for (double& c : odom.twist.covariance) c = 0.0;
-    constexpr double kTilt_rad2 = 1e-4, kTurn_radps2 = 1e-3;
-    for (int i : {3, 4}) odom.pose.covariance[7 * i] = kTilt_rad2;
-    for (int i : {3, 4, 5}) odom.twist.covariance[7 * i] = kTurn_radps2;
   }
 };
 
@@ -68,8 +59,8 @@ RosPublisher::RosPublisher(const DdsParticipant& participant, const std::string&
   m.tf_writer = participant.writer("rt/tf", tf2_msgs_msg_dds__TFMessage__desc, kDepth);
   const dds_entity_t description =
       participant.writer("rt/robot_description", std_msgs_msg_dds__String__desc, 1, true);
-  const std_msgs_msg_dds__String_ text{const_cast<char*>(robot_description.c_str())};
-  check_dds(dds_write(description, &text), "rt/robot_description");
+  const std_msgs_msg_dds__String_ urdf{text(robot_description.c_str())};
+  check_dds(dds_write(description, &urdf), "rt/robot_description");
 }
 
 RosPublisher::~RosPublisher() = default;
@@ -96,13 +87,8 @@ int RosPublisher::publish(const TickRecord& tick, const Odometry& odometry, std:
   m.odom.pose.pose.orientation = quaternion(odometry.orientation_wxyz());
   m.odom.twist.twist.linear = vector3(odometry.velocity_mps());
   m.odom.twist.twist.angular = vector3(odometry.angular_velocity_radps());
-  const bool walking = tick.output.mode == Mode::kWalk;
-  m.odom.pose.covariance[0] = m.odom.pose.covariance[7] = odometry.horizontal_variance_m2();
-  m.odom.pose.covariance[14] = walking ? kVelocityError_mps * kVelocityError_mps : kUnknown;
-  m.odom.pose.covariance[35] = odometry.yaw_variance_rad2();
-  for (int i : {0, 1, 2}) {
-    m.odom.twist.covariance[7 * i] = kVelocityError_mps * kVelocityError_mps;
-  }
+  std::ranges::copy(odometry.pose_covariance(), m.odom.pose.covariance);
+  std::ranges::copy(odometry.twist_covariance(), m.odom.twist.covariance);
 
   m.base.header.stamp = stamp;
   m.base.transform.translation = vector3(position_m);

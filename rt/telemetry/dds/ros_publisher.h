@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "rt/telemetry/dds/odometry.h"
+#include "rt/telemetry/odometry.h"
 #include "rt/telemetry/dds/participant.h"
 #include "rt/tick_record.h"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "rt/telemetry/dds/odometry.h"
+#include "rt/telemetry/odometry.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
 #include "rt/tick_record.h"
 

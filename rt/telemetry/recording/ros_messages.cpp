@@ -87,7 +87,7 @@ RosTopic transform_topic() {
 CdrWriter joint_state_message(const TickRecord& tick, std::int64_t time_ns) {
   const JointState& joints = tick.input.sensors.joints;
   CdrWriter out;
-  header(out, time_ns, "");
+  header(out, time_ns, kBaseFrame);
   out.number(std::uint32_t{kNumJoints});
   for (const char* name : kJointNames) out.text(name);
   out.sequence(joints.position_rad).sequence(joints.velocity_radps).sequence(joints.torque_nm);
@@ -98,7 +98,7 @@ CdrWriter imu_message(const TickRecord& tick, std::int64_t time_ns) {
   const ImuSample& imu = tick.input.sensors.imu;
   constexpr std::array<double, 9> kUnknown{};
   CdrWriter out;
-  header(out, time_ns, "imu");
+  header(out, time_ns, kBaseFrame);
   quaternion(out, imu.orientation_wxyz);
   out.numbers(kUnknown).numbers(imu.angular_velocity_radps).numbers(kUnknown);
   out.numbers(imu.linear_acceleration_mps2).numbers(kUnknown);
@@ -106,25 +106,22 @@ CdrWriter imu_message(const TickRecord& tick, std::int64_t time_ns) {
 }
 
 CdrWriter odometry_message(const Odometry& odometry, std::int64_t time_ns) {
-  std::array<double, 36> pose{}, twist{};
-  pose[0] = pose[7] = odometry.horizontal_variance_m2();
-  pose[35] = odometry.yaw_variance_rad2();
-  twist[0] = twist[7] = twist[14] = kVelocityError_mps * kVelocityError_mps;
   CdrWriter out;
-  header(out, time_ns, "odom");
-  out.text("base");
+  header(out, time_ns, kOdomFrame);
+  out.text(kBaseFrame);
   out.numbers(odometry.position_m());
   quaternion(out, odometry.orientation_wxyz());
-  out.numbers(pose);
-  out.numbers(odometry.velocity_mps()).numbers(odometry.angular_velocity_radps()).numbers(twist);
+  out.numbers(odometry.pose_covariance());
+  out.numbers(odometry.velocity_mps()).numbers(odometry.angular_velocity_radps());
+  out.numbers(odometry.twist_covariance());
   return out;
 }
 
 CdrWriter transform_message(const Odometry& odometry, std::int64_t time_ns) {
   CdrWriter out;
   out.number(std::uint32_t{1});
-  header(out, time_ns, "odom");
-  out.text("base");
+  header(out, time_ns, kOdomFrame);
+  out.text(kBaseFrame);
   out.numbers(odometry.position_m());
   quaternion(out, odometry.orientation_wxyz());
   return out;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "rt/telemetry/dds/odometry.h"
+#include "rt/telemetry/odometry.h"
 #include "rt/telemetry/recording/cdr.h"
 #include "rt/tick_record.h"
 

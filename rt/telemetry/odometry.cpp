@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/dds/odometry.h"
+#include "rt/telemetry/odometry.h"
 
 namespace sandrunner {
 namespace {
@@ -25,9 +25,10 @@ void Odometry::add(const TickRecord& tick) noexcept {
   angular_velocity_radps_ = sensors.imu.angular_velocity_radps;
   yaw_variance_rad2_ += kYawWalk_radprts * kYawWalk_radprts * dt_s;
 
+  walking_ = tick.output.mode == Mode::kWalk;
   const PolicyOutput& policy = tick.input.policy;
-  const bool estimated = tick.output.mode == Mode::kWalk && policy.sequence != 0 &&
-                         policy.episode == tick.output.policy_input.episode;
+  const bool estimated =
+      walking_ && policy.sequence != 0 && policy.episode == tick.output.policy_input.episode;
   velocity_mps_ = estimated ? policy.estimate.velocity_mps : Vector3{};
   if (!estimated) return;
   const auto [vx_mps, vy_mps] = horizontal(orientation_wxyz_, velocity_mps_);
@@ -35,6 +36,25 @@ void Odometry::add(const TickRecord& tick) noexcept {
   position_m_[1] += vy_mps * dt_s;
   position_m_[2] = policy.estimate.body_height_m;
   horizontal_variance_m2_ += kVelocityError_mps * kVelocityError_mps * kVelocityErrorTime_s * dt_s;
+}
+
+std::array<double, 36> Odometry::pose_covariance() const noexcept {
+  constexpr double kTilt_rad2 = 1e-4;
+  constexpr double kUnknown = 1e6;  // a variance that says: not known
+  std::array<double, 36> covariance{};
+  covariance[0] = covariance[7] = horizontal_variance_m2_;
+  covariance[14] = walking_ ? kVelocityError_mps * kVelocityError_mps : kUnknown;
+  covariance[21] = covariance[28] = kTilt_rad2;
+  covariance[35] = yaw_variance_rad2_;
+  return covariance;
+}
+
+std::array<double, 36> Odometry::twist_covariance() const noexcept {
+  constexpr double kTurn_radps2 = 1e-3;
+  std::array<double, 36> covariance{};
+  for (int i : {0, 7, 14}) covariance[i] = kVelocityError_mps * kVelocityError_mps;
+  for (int i : {21, 28, 35}) covariance[i] = kTurn_radps2;
+  return covariance;
 }
 
 }  // namespace sandrunner

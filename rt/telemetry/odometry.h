@@ -24,8 +24,12 @@ class Odometry {
   double horizontal_variance_m2() const noexcept { return horizontal_variance_m2_; }
   double yaw_variance_rad2() const noexcept { return yaw_variance_rad2_; }
 
+  /// 6 x 6 by rows, as in nav_msgs/Odometry: x, y, z, then about these axes.
+  std::array<double, 36> pose_covariance() const noexcept;
+  std::array<double, 36> twist_covariance() const noexcept;
+
  private:
-  bool has_last_ = false;
+  bool has_last_ = false, walking_ = false;
   std::uint64_t last_tick_ = 0;
   Vector3 position_m_{};
   std::array<double, 4> orientation_wxyz_{1.0, 0.0, 0.0, 0.0};
@@ -33,6 +37,10 @@ class Odometry {
   Vector3 angular_velocity_radps_{};
   double horizontal_variance_m2_ = 0.0, yaw_variance_rad2_ = 0.0;
 };
+
+/// Frames of the pose and of the twist.
+inline constexpr const char* kOdomFrame = "odom";
+inline constexpr const char* kBaseFrame = "base";
 
 /// Assumed errors: those of the estimated velocity (standard deviation, correlated over a second),
 /// and the drift of the IMU's yaw (random walk).
