@@ -70,7 +70,7 @@ class Training {
         pool_(arguments.threads),
         task_(config, arguments.seed),
         learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
-                 arguments.seed, pool_),
+                 arguments.seed, pool_, Task::symmetry()),
         checkpoint_path_(arguments.out + "/checkpoint.bin"),
         config_hash_(config_hash(config.effective, arguments.seed)) {}
 

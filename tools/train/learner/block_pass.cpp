@@ -15,6 +15,7 @@ void LossSums::add(const LossSums& other) {
   }
   kl += other.kl;
   clipped += other.clipped;
+  asymmetry += other.asymmetry;
   samples += other.samples;
 }
 
@@ -72,6 +73,23 @@ void BlockPass<Scalar>::act(const Scalar* parameters, BasicRollout<Scalar>& roll
   for (int env = 0; env < envs_; ++env) {
     rollout.value(t, first_env + env) = critic_.output(envs_)(0, env);
   }
+}
+
+template <typename Scalar>
+void BlockPass<Scalar>::answer(const Scalar* parameters, const ConstMatrixRef<Scalar>& observation,
+                               const std::uint8_t* reset, MatrixRef<Scalar> h, MatrixRef<Scalar> c,
+                               MatrixRef<Scalar> mean) {
+  encoder_.input(0) = observation.bottomRows(kProprioceptionSize);
+  encoder_.forward(parameters + layout_.encoder(), h, c, reset, 0);
+  h = encoder_.output();
+  c = encoder_.last_cell();
+  estimator_.forward(parameters, encoder_.output());
+  actor_input_.block(0, 0, kCommandSize, envs_) = observation.topRows(kCommandSize);
+  actor_input_.block(kCommandSize, 0, layout_.hidden(), envs_) = encoder_.output();
+  actor_input_.block(kCommandSize + layout_.hidden(), 0, kEstimateSize, envs_) =
+      estimator_.output(envs_);
+  actor_.forward(parameters, actor_input_.leftCols(envs_));
+  mean = actor_.output(envs_);
 }
 
 template <typename Scalar>
@@ -141,10 +159,13 @@ void BlockPass<Scalar>::differentiate_loss(const Scalar* parameters,
   std::array<Scalar, kActionSize> inverse_std{};
   std::array<Scalar, kActionSize> log_std_gradient{};
   std::array<Scalar, kActionSize> kl_variance{};  // old variance / new variance
+  std::array<Scalar, kActionSize> inverse_old_std{};
+  const auto symmetry_factor = static_cast<Scalar>(config.symmetry_weight) * inverse_samples;
   Scalar log_norm = static_cast<Scalar>(-0.5 * kActionSize * std::log(2.0 * std::numbers::pi));
   Scalar kl_constant = 0;
   for (std::size_t k = 0; k < kActionSize; ++k) {
     inverse_std[k] = std::exp(-log_std[k]);
+    inverse_old_std[k] = std::exp(-rollout.log_std(static_cast<Eigen::Index>(k)));
     log_norm -= log_std[k];
     const Scalar log_ratio = rollout.log_std(static_cast<Eigen::Index>(k)) - log_std[k];
     kl_variance[k] = std::exp(2 * log_ratio);
@@ -183,12 +204,18 @@ void BlockPass<Scalar>::differentiate_loss(const Scalar* parameters,
     sums.policy -= static_cast<double>((is_clipped ? bounded : ratio) * advantage);
     sums.clipped += is_clipped ? 1.0 : 0.0;
     sums.kl += static_cast<double>(kl_constant + static_cast<Scalar>(0.5) * shift_square);
+    Scalar asymmetry = 0;
     const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * inverse_samples;
     for (int k = 0; k < kActionSize; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      mean_gradient(k, column) = log_prob_gradient * z[i] * inverse_std[i];
+      const Scalar lopsided = (mean(k) - rollout.mirror_mean(step)(k, env)) * inverse_old_std[i];
+      asymmetry += lopsided * lopsided;
+      mean_gradient(k, column) = log_prob_gradient * z[i] * inverse_std[i] +
+                                 symmetry_factor * lopsided * inverse_old_std[i];
       log_std_gradient[i] += log_prob_gradient * (z[i] * z[i] - 1);
     }
+
+    sums.asymmetry += 0.5 * static_cast<double>(asymmetry);
 
     const Scalar value_error = values(0, column) - rollout.value_target(step, env);
     sums.value += 0.5 * static_cast<double>(value_error * value_error);

@@ -16,11 +16,13 @@ namespace sandrunner::learner {
 /// loss = mean over samples of
 ///   -min(ratio A, clip(ratio, 1 - clip, 1 + clip) A) + value_weight (V - R)^2 / 2
 ///   + estimate_weight mean_8((estimate - target)^2) - entropy_weight entropy
+///   + symmetry_weight |(mean - mirror mean of the policy that acted) / its std|^2 / 2
 struct LossConfig {
   double clip = 0.2;
   double value_weight = 1.0;
   double estimate_weight = 1.0;
   double entropy_weight = 0.0;
+  double symmetry_weight = 0.0;  ///< only with a symmetry
 };
 
 /// A = (advantage - mean) inverse_std.
@@ -36,6 +38,7 @@ struct LossSums {
   std::array<double, kEstimateSize> estimate_square{};
   double kl = 0.0;  ///< of the new policy from the one that acted, exact
   double clipped = 0.0;
+  double asymmetry = 0.0;  ///< |(mean - mirror mean) / std|^2 / 2
   double samples = 0.0;
 
   void add(const LossSums& other);
@@ -56,6 +59,12 @@ class BlockPass {
   /// h, c (hidden x envs) on. The block has one step (constructor).
   void act(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t, int first_env,
            MatrixRef<Scalar> h, MatrixRef<Scalar> c);
+
+  /// What the policy, with a memory h, c of its own, answers to other observations (33 x envs) of
+  /// step t; -> mean (12 x envs).
+  void answer(const Scalar* parameters, const ConstMatrixRef<Scalar>& observation,
+              const std::uint8_t* reset, MatrixRef<Scalar> h, MatrixRef<Scalar> c,
+              MatrixRef<Scalar> mean);
 
   /// Value of rollout step `steps`, the state after the window.
   void last_value(const Scalar* parameters, BasicRollout<Scalar>& rollout, int first_env);

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -49,6 +51,8 @@ const LearnerConfig& checked(const LearnerConfig& config, const RolloutShape& sh
   require(config.loss.value_weight >= 0.0, "value_weight", config.loss.value_weight, "at least 0");
   require(config.loss.estimate_weight >= 0.0, "estimate_weight", config.loss.estimate_weight,
           "at least 0");
+  require(config.loss.symmetry_weight >= 0.0, "symmetry_weight", config.loss.symmetry_weight,
+          "at least 0");
   require(std::isfinite(config.loss.entropy_weight), "entropy_weight", config.loss.entropy_weight,
           "a number");
   require(config.gamma >= 0.0 && config.gamma < 1.0, "gamma", config.gamma, "in [0, 1)");
@@ -84,17 +88,22 @@ double adapted_learning_rate(double learning_rate, double kl, const LearnerConfi
 }
 
 Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
-                 WorkerPool& pool)
+                 WorkerPool& pool, std::optional<Symmetry> symmetry)
     : config_(checked(config, shape)),
       layout_(config.network, shape.privileged),
       pool_(pool),
+      symmetry_(std::move(symmetry)),
       rollout_(shape, config.network.hidden),
       parameters_(initial_parameters(layout_, seed, config.action_std_start)),
       averaged_(parameters_),
       adam_(parameters_.size()),
       h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
       c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
-      pending_reset_(static_cast<std::size_t>(shape.envs), 0) {
+      mirror_h_(h_),
+      mirror_c_(c_),
+      pending_reset_(static_cast<std::size_t>(shape.envs), 0),
+      in_mirror_(static_cast<std::size_t>(shape.envs / config.block_envs), 0) {
+  if (!symmetry_) config_.loss.symmetry_weight = 0.0;
   counters_.seed = seed;
   counters_.learning_rate = config.learning_rate_start;
   const int chunk_steps = std::clamp(kChunkColumns / config.block_envs, 1, shape.steps);
@@ -117,6 +126,7 @@ void Learner::act_block(int block, int t, int worker) {
   acting_[static_cast<std::size_t>(worker)].act(parameters_.data(), rollout_, t, first,
                                                 h_.middleCols(first, config_.block_envs),
                                                 c_.middleCols(first, config_.block_envs));
+  if (symmetry_) act_in_mirror(block, t, worker);
 
   const std::uint64_t step = counters_.steps + static_cast<std::uint64_t>(t);
   const Eigen::Array<float, kActionSize, 1> std_dev = rollout_.log_std.array().exp();
@@ -136,6 +146,56 @@ void Learner::act_block(int block, int t, int worker) {
     }
     rollout_.log_prob(t, env) = log_norm - 0.5f * square;
   }
+}
+
+void Learner::act_in_mirror(int block, int t, int worker) {
+  const int first = block * config_.block_envs;
+  Matrix<float> observation = rollout_.observation(t).middleCols(first, config_.block_envs);
+  std::array<float, kObservationSize> scratch;
+  for (int i = 0; i < config_.block_envs; ++i) {
+    symmetry_->observation.apply(observation.col(i), scratch.data());
+  }
+  Matrix<float> mean(kActionSize, config_.block_envs);
+  acting_[static_cast<std::size_t>(worker)].answer(
+      parameters_.data(), observation, &rollout_.reset(t, first),
+      mirror_h_.middleCols(first, config_.block_envs),
+      mirror_c_.middleCols(first, config_.block_envs), mean);
+  for (int i = 0; i < config_.block_envs; ++i) {
+    symmetry_->action.apply(mean.col(i), scratch.data());
+  }
+  rollout_.mirror_mean(t).middleCols(first, config_.block_envs) = mean;
+}
+
+// Turns the block's part of the rollout into its mirror image, or back.
+void Learner::mirror_block(int block) {
+  const int first = block * config_.block_envs;
+  const int steps = rollout_.shape.steps;
+  std::vector<float> scratch(static_cast<std::size_t>(
+      std::max({kObservationSize, rollout_.shape.privileged, kEstimateSize, kActionSize})));
+  const Eigen::Array<float, kActionSize, 1> inverse_std = (-rollout_.log_std.array()).exp();
+  const float log_norm =
+      -0.5f * kActionSize * std::log(2.0f * std::numbers::pi_v<float>) - rollout_.log_std.sum();
+  for (int t = 0; t <= steps; ++t) {
+    for (int env = first; env < first + config_.block_envs; ++env) {
+      symmetry_->observation.apply(rollout_.observation(t).col(env), scratch.data());
+      symmetry_->privileged.apply(rollout_.privileged(t).col(env), scratch.data());
+      symmetry_->estimate.apply(rollout_.estimate_target(t).col(env), scratch.data());
+      if (t == steps) continue;
+      auto action = rollout_.action(t).col(env);
+      auto mean = rollout_.mean(t).col(env), mirror_mean = rollout_.mirror_mean(t).col(env);
+      mean.swap(mirror_mean);
+      symmetry_->action.apply(action, scratch.data());
+      symmetry_->action.apply(mean, scratch.data());
+      symmetry_->action.apply(mirror_mean, scratch.data());
+      rollout_.log_prob(t, env) =
+          log_norm - 0.5f * ((action - mean).array() * inverse_std).square().sum();
+    }
+  }
+  const auto swap = [&](auto a, auto b) {
+    a.middleCols(first, config_.block_envs).swap(b.middleCols(first, config_.block_envs));
+  };
+  swap(rollout_.initial_h(0), rollout_.mirror_h(0));
+  swap(rollout_.initial_c(0), rollout_.mirror_c(0));
 }
 
 float Learner::value(const float* privileged, int worker) {
@@ -216,11 +276,16 @@ double Learner::reduce_gradients(int count) {
   return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0));
 }
 
-bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) {
+bool Learner::learn_minibatch(const int* blocks, const std::uint8_t* mirrored, int count,
+                              UpdateStats& stats) {
   const int samples = count * config_.block_envs * rollout_.shape.steps;
   std::vector<LossSums> sums(static_cast<std::size_t>(count));
   pool_.run(count, [&](int i, int worker) {
     const auto slot = static_cast<std::size_t>(i);
+    if (symmetry_ && in_mirror_[static_cast<std::size_t>(blocks[i])] != mirrored[i]) {
+      mirror_block(blocks[i]);
+      in_mirror_[static_cast<std::size_t>(blocks[i])] = mirrored[i];
+    }
     std::fill(gradients_[slot].begin(), gradients_[slot].end(), 0.0f);
     sums[slot] = learning_[static_cast<std::size_t>(worker)].loss_and_gradient(
         parameters_.data(), rollout_, blocks[i] * config_.block_envs, config_.loss,
@@ -245,6 +310,7 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   stats.last_kl = kl;
   stats.clip_fraction += total.clipped / total.samples;
   stats.gradient_norm += norm;
+  if (symmetry_) stats.asymmetry += 2.0 * total.asymmetry / total.samples / kActionSize;
 
   counters_.learning_rate = adapted_learning_rate(counters_.learning_rate, kl, config_);
   const double scale = norm > config_.max_gradient_norm ? config_.max_gradient_norm / norm : 1.0;
@@ -258,6 +324,13 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   const auto floor = static_cast<float>(std::log(config_.action_std_min));
   float* log_std = parameters_.data() + layout_.log_std();
   for (int k = 0; k < kActionSize; ++k) log_std[k] = std::max(log_std[k], floor);
+  if (symmetry_) {  // as much noise on the left as on the right
+    std::array<float, kActionSize> both;
+    for (std::size_t k = 0; k < kActionSize; ++k) {
+      both[k] = 0.5f * (log_std[k] + log_std[symmetry_->action.index[k]]);
+    }
+    std::copy(both.begin(), both.end(), log_std);
+  }
   return true;
 }
 
@@ -270,10 +343,14 @@ UpdateStats Learner::update() {
   int done = 0;
   for (int epoch = 0; epoch < config_.epochs && stats.finite; ++epoch) {
     const std::vector<int> order = shuffled_blocks(epoch);
+    // Every other block of the shuffled order: half of each minibatch.
+    std::vector<std::uint8_t> mirrored(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) mirrored[i] = (i + epoch) % 2;
     for (int i = 0; i < config_.minibatches && stats.finite; ++i) {
       const int begin = blocks() * i / config_.minibatches;
       const int end = blocks() * (i + 1) / config_.minibatches;
-      stats.finite = learn_minibatch(order.data() + begin, end - begin, stats);
+      stats.finite =
+          learn_minibatch(order.data() + begin, mirrored.data() + begin, end - begin, stats);
       ++done;
     }
   }
@@ -282,6 +359,9 @@ UpdateStats Learner::update() {
     adam_ = adam_before;
     counters_.learning_rate = learning_rate_before;
   }
+  pool_.run(blocks(), [&](int block, int) {
+    if (std::exchange(in_mirror_[static_cast<std::size_t>(block)], 0)) mirror_block(block);
+  });
   stats.policy_loss /= done;
   stats.value_loss /= done;
   stats.estimate_loss /= done;
@@ -289,6 +369,7 @@ UpdateStats Learner::update() {
   stats.kl /= done;
   stats.clip_fraction /= done;
   stats.gradient_norm /= done;
+  stats.asymmetry = std::sqrt(stats.asymmetry / done);
   stats.learning_rate = counters_.learning_rate;
 
   const int last = rollout_.shape.steps;
@@ -311,6 +392,8 @@ UpdateStats Learner::update() {
 void Learner::begin_window() {
   rollout_.initial_h(0) = h_;
   rollout_.initial_c(0) = c_;
+  rollout_.mirror_h(0) = mirror_h_;
+  rollout_.mirror_c(0) = mirror_c_;
   rollout_.log_std =
       Eigen::Map<const Vector<float>>(parameters_.data() + layout_.log_std(), kActionSize);
 }
@@ -334,6 +417,8 @@ void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.put("learner.adam_v", adam_.v.data(), adam_.v.size());
   checkpoint.put("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
   checkpoint.put("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
+  checkpoint.put("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
+  checkpoint.put("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
   checkpoint.put("learner.pending_reset", pending_reset_.data(), pending_reset_.size());
   const auto put_first_step = [&](const std::string& name, const auto& field) {
     const auto columns = field(0);
@@ -357,6 +442,8 @@ void Learner::load(const Checkpoint& checkpoint) {
   checkpoint.get("learner.adam_v", adam_.v.data(), adam_.v.size());
   checkpoint.get("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
   checkpoint.get("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
+  checkpoint.get("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
+  checkpoint.get("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
   checkpoint.get("learner.pending_reset", pending_reset_.data(), pending_reset_.size());
   const auto get_first_step = [&](const std::string& name, auto& field) {
     auto columns = field(0);

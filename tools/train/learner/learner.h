@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/parameters.h"
 #include "tools/train/learner/rollout.h"
+#include "tools/train/learner/symmetry.h"
 #include "tools/train/learner/worker_pool.h"
 
 namespace sandrunner::learner {
@@ -56,6 +58,7 @@ struct UpdateStats {
   double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
   double learning_rate = 0.0;       ///< after the update
   double action_std = 0.0;          ///< geometric mean, after the update
+  double asymmetry = 0.0;  ///< rms of mean less mirror mean, in standard deviations of the action
 };
 
 /// Recurrent PPO with a supervised estimator. A window of training:
@@ -78,8 +81,11 @@ struct UpdateStats {
 class Learner {
  public:
   /// `pool` must outlive the learner. Throws InputError for sizes and constants that cannot work.
+  /// With a symmetry, each update sees about half of the window in the mirror (data augmentation;
+  /// the probabilities are those of the policy's own answers to the mirror image), and
+  /// loss.symmetry_weight pulls the policy's answers to both together.
   Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
-          WorkerPool& pool);
+          WorkerPool& pool, std::optional<Symmetry> symmetry = std::nullopt);
 
   Rollout& rollout() { return rollout_; }
   const LearnerConfig& config() const { return config_; }
@@ -129,15 +135,19 @@ class Learner {
   };
 
   std::string architecture() const;
+  void act_in_mirror(int block, int t, int worker);
+  void mirror_block(int block);
   void compute_advantages(UpdateStats& stats);
   std::vector<int> shuffled_blocks(int epoch) const;
-  bool learn_minibatch(const int* blocks, int count, UpdateStats& stats);
+  bool learn_minibatch(const int* blocks, const std::uint8_t* mirrored, int count,
+                       UpdateStats& stats);
   double reduce_gradients(int count);
   void begin_window();
 
   LearnerConfig config_;
   ParameterLayout layout_;
   WorkerPool& pool_;
+  std::optional<Symmetry> symmetry_;
   Rollout rollout_;
   Counters counters_;
   std::vector<float> parameters_;
@@ -145,7 +155,10 @@ class Learner {
   Adam adam_;
   Matrix<float> h_;  // memory of each environment
   Matrix<float> c_;
+  Matrix<float> mirror_h_;  // of the policy that sees the mirror
+  Matrix<float> mirror_c_;
   std::vector<std::uint8_t> pending_reset_;
+  std::vector<std::uint8_t> in_mirror_;  // a block: its part of the rollout is its mirror image
   AdvantageScale advantage_scale_;
   std::vector<BlockPass<float>> acting_;       // one a worker, one step
   std::vector<BlockPass<float>> learning_;     // one a worker, a window

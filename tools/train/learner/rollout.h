@@ -68,11 +68,14 @@ struct BasicRollout {
         timeout_value(shape.envs, shape.steps),
         action(kActionSize, shape.envs, shape.steps),
         mean(kActionSize, shape.envs, shape.steps),
+        mirror_mean(kActionSize, shape.envs, shape.steps),
         log_prob(shape.envs, shape.steps),
         value(shape.envs, shape.steps + 1),
         reset(shape.envs, shape.steps),
         initial_h(hidden, shape.envs, 1),
         initial_c(hidden, shape.envs, 1),
+        mirror_h(hidden, shape.envs, 1),
+        mirror_c(hidden, shape.envs, 1),
         log_std(Vector<Scalar>::Zero(kActionSize)),
         advantage(shape.envs, shape.steps),
         value_target(shape.envs, shape.steps) {}
@@ -95,6 +98,9 @@ struct BasicRollout {
   // Written by Learner::act_block.
   VectorField<Scalar, kActionSize> action;  ///< sampled, in network units
   VectorField<Scalar, kActionSize> mean;
+  /// Mirror image of the policy's answer to the mirror image of the observations: `mean`, if the
+  /// policy is symmetric. Zero without a symmetry.
+  VectorField<Scalar, kActionSize> mirror_mean;
   ValueField<Scalar> log_prob;
   ValueField<Scalar> value;
   ValueField<std::uint8_t> reset;  ///< memory was cleared before step t
@@ -102,6 +108,8 @@ struct BasicRollout {
   // Of the window as a whole: the policy's memory before step 0, and its log standard deviations.
   VectorField<Scalar, Eigen::Dynamic> initial_h;
   VectorField<Scalar, Eigen::Dynamic> initial_c;
+  VectorField<Scalar, Eigen::Dynamic> mirror_h;  ///< likewise, of the policy that sees the mirror
+  VectorField<Scalar, Eigen::Dynamic> mirror_c;
   Vector<Scalar> log_std;
 
   // Written by compute_gae.

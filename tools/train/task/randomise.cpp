@@ -50,15 +50,16 @@ void Task::new_command(int env, Env& e) const {
       static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
 }
 
-void Task::new_ground(int env, Env& e) {
+sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
+                                      std::array<float, kGroundFeatures>& features) const {
   const GroundSettings& g = config_.ground;
   sim::GroundParameters p;
   p.friction = uniform(env, e, g.friction_low, g.friction_high);
   double inertial = 1.0;
-  if (is_rigid(env)) {
+  if (rigid) {
     p.kind = sim::GroundKind::kRigid;
     // Half of the rigid robots walk on uneven ground, rougher as the curriculum opens.
-    const bool uneven = env % block_envs_ >= g.rigid_envs / 2;
+    const bool uneven = is_rigid(env) && env % block_envs_ >= g.rigid_envs / 2;
     p.roughness_m = uneven ? curriculum_.ground * uniform(env, e, 0.0, g.roughness_m) : 0.0;
     p.roughness_wavelength_m = g.roughness_wavelength_m;
     p.roughness_seed = static_cast<std::uint64_t>(env) * 131 + e.draws;
@@ -78,22 +79,35 @@ void Task::new_ground(int env, Env& e) {
     p.stroke_stiffness_npm = uniform(env, e, 50.0, std::fmax(50.0, g.stroke_stiffness_high));
     p.stroke_damping_nspm = uniform(env, e, 0.0, g.stroke_damping_high);
   }
+  features = {rigid ? 1.0f : 0.0f,
+              rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),
+              rigid ? 2.0f : static_cast<float>(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
+              static_cast<float>(3.0 * (p.friction - 0.75)),
+              static_cast<float>(2.0 * (inertial - 0.65)),
+              static_cast<float>(100.0 * p.roughness_m)};
+  return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
+}
+
+// Ground around a robot at x: all of a kind, or patches along x as far as a robot gets.
+void Task::new_ground(int env, Env& e, float x_m) {
+  const GroundSettings& g = config_.ground;
   sim::Terrain<double> terrain;
-  terrain.ground[0] = sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
+  const int count = is_patchy(env) ? sim::kMaxRegions : 1;
+  terrain.count = count;
+  for (int i = 0; i < count; ++i) {
+    const bool rigid = count > 1 ? uniform(env, e) < g.patch_rigid_share : is_rigid(env);
+    terrain.ground[i] = draw_ground(env, e, rigid, e.ground_features[i]);
+    if (i < 2) continue;
+    terrain.start_x[i] =
+        terrain.start_x[i - 1] +
+        log_between(g.patch_length_low_m, g.patch_length_high_m, uniform(env, e), 1.0);
+  }
+  // The robot stands anywhere in between.
+  const double shift = x_m - terrain.start_x[count - 1] * uniform(env, e);
+  for (int i = 1; i < count; ++i) terrain.start_x[i] += shift;
   terrain.highest = terrain.ground[0].roughness * 3.4641016151377544;
-  const sim::Terrain<float> lanes = sim::convert_terrain<float>(terrain);
-  batch_.set_terrain(env, lanes);
-  e.ground = lanes.ground[0];
-  const bool rigid = is_rigid(env);
-  e.ground_features = {
-      rigid ? 1.0f : 0.0f,
-      rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),
-      rigid ? 2.0f : static_cast<float>(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
-      static_cast<float>(3.0 * (p.friction - 0.75)),
-      static_cast<float>(2.0 * (inertial - 0.65)),
-      static_cast<float>(100.0 * p.roughness_m),
-      e.ground_features[6],
-      e.ground_features[7]};
+  e.terrain = sim::convert_terrain<float>(terrain);
+  batch_.set_terrain(env, e.terrain);
 }
 
 void Task::new_robot(int env, Env& e) {
@@ -130,14 +144,14 @@ void Task::new_robot(int env, Env& e) {
       static_cast<float>(r.latency_ticks[static_cast<std::size_t>(3.0 * uniform(env, e))]);
   const double offset = config_.noise.joint_offset_rad;
   for (float& o : e.joint_offset) o = static_cast<float>(uniform(env, e, -offset, offset));
-  e.ground_features[6] = static_cast<float>(5.0 * (base_factor - 1.0));
-  e.ground_features[7] = drive.switch_tick / 20.0f - 1.0f;
+  e.noise_level = static_cast<float>(uniform(env, e, 0.0, config_.noise.level_high));
+  e.robot_features = {static_cast<float>(5.0 * (base_factor - 1.0)),
+                      drive.switch_tick / 20.0f - 1.0f};
 }
 
 void Task::hard_reset(int env, Env& e) {
   const EpisodeSettings& s = config_.episode;
   new_robot(env, e);
-  new_ground(env, e);
   new_command(env, e);
   e.step = 0;
   e.action_1 = e.action_2 = {};
@@ -155,10 +169,12 @@ void Task::hard_reset(int env, Env& e) {
     return static_cast<float>(uniform(env, e, -width, width));
   };
   x.position = {draw(5.0), draw(5.0), 0.0f};
+  new_ground(env, e, x.position.x);
+  const sim::Ground<float>& ground = e.terrain.ground[0];
   float height, slope_x, slope_y;
-  sim::rough_surface(e.ground, x.position.x, x.position.y, height, slope_x, slope_y);
+  sim::rough_surface(ground, x.position.x, x.position.y, height, slope_x, slope_y);
   x.position.z =
-      static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * e.ground.roughness;
+      static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
   const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
   x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
   // Any heading: half a turn by two quarter turns at most keeps the series of `integrate` accurate.
@@ -171,6 +187,47 @@ void Task::hard_reset(int env, Env& e) {
                         draw(s.reset_rate_radps)};
   batch_.set_state(env, state);
   batch_.set_drive(env, e.drive);
+}
+
+learner::Symmetry Task::symmetry() {
+  learner::Symmetry s;
+  const auto add = [](learner::Reflection& to, std::initializer_list<float> signs) {
+    for (const float sign : signs) {
+      to.index.push_back(static_cast<int>(to.index.size()));
+      to.sign.push_back(sign);
+    }
+  };
+  // A group of values of each leg: those of the leg on the other side.
+  const auto add_legs = [](learner::Reflection& to, std::initializer_list<float> signs) {
+    const auto first = static_cast<int>(to.index.size()), width = static_cast<int>(signs.size());
+    for (const int other : {1, 0, 3, 2}) {
+      int i = 0;
+      for (const float sign : signs) {
+        to.index.push_back(first + other * width + i++);
+        to.sign.push_back(sign);
+      }
+    }
+  };
+  const auto observation = [&](learner::Reflection& to) {
+    add(to, {1, -1, -1});      // command vx, vy, wz
+    add(to, {1, -1, 1});       // gravity
+    add(to, {-1, 1, -1});      // angular velocity
+    add_legs(to, {-1, 1, 1});  // joint positions less nominal, and velocities
+    add_legs(to, {-1, 1, 1});
+  };
+  const auto estimate = [&](learner::Reflection& to) {
+    add(to, {1, 1, -1, 1});  // body height, velocity
+    add_legs(to, {1});       // foot heights
+  };
+  observation(s.observation);
+  estimate(s.estimate);
+  add_legs(s.action, {-1, 1, 1});
+  observation(s.privileged);
+  estimate(s.privileged);
+  add_legs(s.privileged, {1, 1, 1, 1});  // loaded, air, stance, penetration
+  add_legs(s.privileged, {-1, 1, 1});    // last action
+  for (int i = 0; i < kGroundFeatures + 2; ++i) add(s.privileged, {1});
+  return s;
 }
 
 void Task::push(int env, Env& e, sim::RobotState<float>& state) const {

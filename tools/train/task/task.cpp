@@ -59,11 +59,16 @@ std::array<float, kEstimateSize> Task::truth(const Env& e, const sim::RobotState
   const sim::Vec3<float> v = sim::transposed_times(r, x.velocity);
   std::array<float, kEstimateSize> out;
   float surface = 0.0f, deepest = 0.0f, unused_x, unused_y;
-  if (e.ground.roughness > 0.0f) {
-    sim::rough_surface(e.ground, x.position.x, x.position.y, surface, unused_x, unused_y);
+  const sim::Ground<float>& ground = e.terrain.ground[0];
+  if (ground.roughness > 0.0f) {
+    sim::rough_surface(ground, x.position.x, x.position.y, surface, unused_x, unused_y);
   }
   for (int l = 0; l < kNumLegs; ++l) {
-    if (state.feet[l].active > 0.0f) deepest = std::max(deepest, state.feet[l].memory_depth);
+    const sim::FootContact<float>& contact = state.feet[l];
+    if (contact.active > 0.0f &&
+        e.terrain.ground[static_cast<std::size_t>(contact.region)].is_granular > 0.0f) {
+      deepest = std::max(deepest, contact.memory_depth);
+    }
     const sim::LegModel<double>& leg = robot_.model.legs[l];
     const sim::LegPose<double> p =
         sim::leg_pose(leg, double(x.q[3 * l]), double(x.q[3 * l + 1]), double(x.q[3 * l + 2]));
@@ -71,7 +76,7 @@ std::array<float, kEstimateSize> Task::truth(const Env& e, const sim::RobotState
     out[4 + l] = x.position.z - surface +
                  static_cast<float>(r.r2.x * foot.x + r.r2.y * foot.y + r.r2.z * foot.z);
   }
-  out[0] = x.position.z - surface + (e.ground.is_granular > 0.0f ? deepest : 0.0f);
+  out[0] = x.position.z - surface + deepest;
   out[1] = v.x;
   out[2] = v.y;
   out[3] = v.z;
@@ -98,7 +103,9 @@ void Task::privileged(int, const Env& e, const sim::RobotState<float>& state,
     *out++ = std::clamp(20.0f * report.penetration[l], -3.0f, 3.0f);
   }
   for (int j = 0; j < kNumJoints; ++j) *out++ = 0.5f * e.action_1[j];
-  for (float f : e.ground_features) *out++ = f;
+  const auto patch = static_cast<std::size_t>(e.terrain.region_at(x.position.x));
+  for (float f : e.ground_features[patch]) *out++ = f;
+  for (float f : e.robot_features) *out++ = f;
 }
 
 void Task::observe_env(int env, int t, learner::Rollout& rollout) {
@@ -108,7 +115,7 @@ void Task::observe_env(int env, int t, learner::Rollout& rollout) {
   const sim::RigidState<float>& x = state.rigid;
   const NoiseSettings& n = config_.noise;
   const auto noisy = [&](float value, double sigma) {
-    return value + static_cast<float>(sigma * normal(env, e));
+    return value + e.noise_level * static_cast<float>(sigma * normal(env, e));
   };
   const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
   std::array<float, 3> up{noisy(r.r2.x, n.gravity), noisy(r.r2.y, n.gravity),
@@ -267,8 +274,8 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
         // Soft reset: the robot goes on as it is, perhaps on other ground.
         e.step = 0;
         new_command(env, e);
-        if (e.ground.roughness == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground)
-          new_ground(env, e);
+        if (e.terrain.highest == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground)
+          new_ground(env, e, x.position.x);
       } else {
         hard_reset(env, e);
         learner.reset_memory(env);

@@ -41,8 +41,10 @@ class Task {
  public:
   Task(const TrainConfig& config, std::uint64_t seed);
 
-  int privileged_size() const { return kPrivileged; }
+  static constexpr int privileged_size() { return kPrivileged; }
   const InputScales& scales() const { return scales_; }
+  /// Left for right: the robot and its task are the same in the mirror.
+  static learner::Symmetry symmetry();
   const JointArray<double>& nominal_rad() const { return robot_.nominal_rad; }
 
   /// Writes observation(t), privileged(t) and estimate_target(t) of a block.
@@ -63,6 +65,8 @@ class Task {
   static constexpr int kPrivileged =
       kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
 
+  static constexpr int kGroundFeatures = 6;
+
   // One environment beside its robot in the batch. Trivially copyable: a checkpoint.
   struct Env {
     std::uint64_t draws = 0;
@@ -72,10 +76,13 @@ class Task {
     JointArray<float> joint_offset{};
     std::array<float, kNumLegs> air_s{}, stance_s{};
     std::array<std::int32_t, kNumLegs> unloaded_steps{};
-    std::array<float, 3> drift{};            // vx, vy, yaw rate, low-passed
-    std::array<float, 8> ground_features{};  // for the critic
+    std::array<float, 3> drift{};  // vx, vy, yaw rate, low-passed
+    float noise_level = 1.0f;
+    // For the critic: of each patch of ground, and of the robot.
+    std::array<std::array<float, kGroundFeatures>, sim::kMaxRegions> ground_features{};
+    std::array<float, 2> robot_features{};
     sim::BatchDrive<float> drive;
-    sim::Ground<float> ground;
+    sim::Terrain<float> terrain;
   };
   struct Sums {  // of one block and window
     double steps = 0, reward = 0, torque_squared = 0, power = 0, height = 0, height_steps = 0,
@@ -88,8 +95,13 @@ class Task {
   double uniform(int env, Env& e, double low, double high) const;
   double normal(int env, Env& e) const;
   bool is_rigid(int env) const { return env % block_envs_ < config_.ground.rigid_envs; }
+  bool is_patchy(int env) const {
+    return env % block_envs_ >= block_envs_ - config_.ground.patchy_envs;
+  }
   void new_command(int env, Env& e) const;
-  void new_ground(int env, Env& e);
+  sim::Ground<double> draw_ground(int env, Env& e, bool rigid,
+                                  std::array<float, kGroundFeatures>& features) const;
+  void new_ground(int env, Env& e, float x_m);
   void new_robot(int env, Env& e);
   void hard_reset(int env, Env& e);
   void push(int env, Env& e, sim::RobotState<float>& state) const;

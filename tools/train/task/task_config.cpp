@@ -59,6 +59,7 @@ TrainConfig read_train_config(ConfigTree& config) {
     l.network.critic.push_back(static_cast<int>(n));
   }
   number("learner.estimate_weight", l.loss.estimate_weight, 0.0, 1e3);
+  number("learner.symmetry_weight", l.loss.symmetry_weight, 0.0, 1e3);
 
   number("policy.action_scale_rad", c.policy.action_scale_rad, 1e-3, 10.0);
   number("policy.action_clip", c.policy.action_clip, 0.1, 1e3);
@@ -93,6 +94,10 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("command.gate_falls", c.command.gate_falls, 0.0, 1e9);
 
   integer("ground.rigid_envs", c.ground.rigid_envs, 0, 1 << 16);
+  integer("ground.patchy_envs", c.ground.patchy_envs, 0, 1 << 16);
+  number("ground.patch_length_low_m", c.ground.patch_length_low_m, 0.01, 1e3);
+  number("ground.patch_length_high_m", c.ground.patch_length_high_m, 0.01, 1e3);
+  number("ground.patch_rigid_share", c.ground.patch_rigid_share, 0.0, 1.0);
   number("ground.roughness_m", c.ground.roughness_m, 0.0, 0.2);
   number("ground.roughness_wavelength_m", c.ground.roughness_wavelength_m, 0.05, 100.0);
   number("ground.sigma_flat_low_start", c.ground.sigma_flat_low_start, 1.0, 1e10);
@@ -130,6 +135,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("noise.joint_position_rad", c.noise.joint_position_rad, 0.0, 1e9);
   number("noise.joint_velocity_radps", c.noise.joint_velocity_radps, 0.0, 1e9);
   number("noise.joint_offset_rad", c.noise.joint_offset_rad, 0.0, 1e9);
+  number("noise.level_high", c.noise.level_high, 0.0, 10.0);
 
   number("reward.scale", c.reward.scale, 1e-9, 1e3);
   number("reward.cost_weight", c.reward.cost_weight, 0.0, 1e9);
@@ -181,6 +187,8 @@ TrainConfig read_train_config(ConfigTree& config) {
           c.ground.sigma_flat_high);
   ordered("ground.sigma_cone_low", c.ground.sigma_cone_low, "ground.sigma_cone_high",
           c.ground.sigma_cone_high);
+  ordered("ground.patch_length_low_m", c.ground.patch_length_low_m, "ground.patch_length_high_m",
+          c.ground.patch_length_high_m);
   ordered("ground.friction_low", c.ground.friction_low, "ground.friction_high",
           c.ground.friction_high);
   ordered("ground.inertial_low", c.ground.inertial_low, "ground.inertial_high",
@@ -192,10 +200,11 @@ TrainConfig read_train_config(ConfigTree& config) {
         "training config: run.envs = {}, expected a multiple of learner.block_envs = {}",
         c.run.envs, l.block_envs));
   }
-  if (c.ground.rigid_envs > l.block_envs) {
+  if (c.ground.rigid_envs + c.ground.patchy_envs > l.block_envs) {
     throw InputError(fmt::format(
-        "training config: ground.rigid_envs = {}, expected at most learner.block_envs = {}",
-        c.ground.rigid_envs, l.block_envs));
+        "training config: ground.rigid_envs + ground.patchy_envs = {}, expected at most "
+        "learner.block_envs = {}",
+        c.ground.rigid_envs + c.ground.patchy_envs, l.block_envs));
   }
   config.reject_unknown();
   c.effective = config.effective();

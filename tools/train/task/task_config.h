@@ -36,7 +36,8 @@ struct CommandSettings {
 };
 
 struct GroundSettings {
-  int rigid_envs = 0;
+  int rigid_envs = 0, patchy_envs = 0;
+  double patch_length_low_m = 0, patch_length_high_m = 0, patch_rigid_share = 0;
   double roughness_m = 0, roughness_wavelength_m = 0, sigma_flat_low_start = 0, sigma_flat_low = 0,
          sigma_flat_high = 0, sigma_cone_low_start = 0, sigma_cone_low = 0, sigma_cone_high = 0,
          softness_exponent = 0, open_step = 0, gate_kernel = 0, gate_falls = 0, friction_low = 0,
@@ -54,7 +55,7 @@ struct RobotSettings {
 
 struct NoiseSettings {
   double gravity = 0, angular_velocity_radps = 0, joint_position_rad = 0, joint_velocity_radps = 0,
-         joint_offset_rad = 0;
+         joint_offset_rad = 0, level_high = 0;
 };
 
 struct RewardSettings {
