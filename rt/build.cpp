@@ -3,6 +3,8 @@
 
 namespace sandrunner {
 
+std::string build_commit() { return SANDRUNNER_COMMIT; }
+
 std::string build_name() {
 #ifdef __clang__
   const std::string compiler = "clang";

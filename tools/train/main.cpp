@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "policy/policy_file.h"
+#include "rt/build.h"
 #include "rt/core/errors.h"
 #include "tools/train/embedded.h"
 #include "tools/train/progress.h"
@@ -235,7 +236,7 @@ class Training {
         {"transitions", std::to_string(learner_.transitions())},
         {"core_hours", fmt::format("{:.3f}", (cpu_before_ + cpu_seconds()) / 3600.0)},
         {"processor", processor_name()},
-        {"commit", SANDRUNNER_COMMIT},
+        {"commit", build_commit()},
         {"origin", "sandrunner-train, from random weights"}};
     NetworkParameters& p = file.parameters;
     p.observation_clip = scales.clip;
