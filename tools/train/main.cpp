@@ -209,6 +209,7 @@ class Training {
     r.learning_rate = u.learning_rate;
     r.kl = u.kl;
     r.action_std = u.action_std;
+    r.asymmetry = u.asymmetry;
     r.explained_variance = u.explained_variance;
     return r;
   }

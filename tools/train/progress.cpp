@@ -38,6 +38,7 @@ constexpr Column kColumns[] = {
     {"learning_rate", &ProgressRow::learning_rate},
     {"kl", &ProgressRow::kl},
     {"action_std", &ProgressRow::action_std},
+    {"asymmetry", &ProgressRow::asymmetry},
     {"explained_variance", &ProgressRow::explained_variance},
 };
 

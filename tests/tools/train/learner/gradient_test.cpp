@@ -19,7 +19,7 @@ constexpr int kFirstEnv = 2;
 constexpr int kChunkSteps = 2;
 const RolloutShape kShape{5, 5, 9};
 constexpr int kSamples = kEnvs * 5;
-const LossConfig kLoss{0.2, 0.7, 1.3, 0.01};
+const LossConfig kLoss{0.2, 0.7, 1.3, 0.01, 0.3};
 const AdvantageScale kScale{0.1, 1.4};
 
 NetworkSizes sizes() { return {5, {7, 6}, {8, 7}, {6, 5}}; }
@@ -39,7 +39,8 @@ class GradientTest : public testing::Test {
     if (sums_out != nullptr) *sums_out = sums;
     double estimate = 0.0;
     for (const double square : sums.estimate_square) estimate += square / kEstimateSize;
-    return (sums.policy + config.value_weight * sums.value + config.estimate_weight * estimate) /
+    return (sums.policy + config.value_weight * sums.value + config.estimate_weight * estimate +
+            config.symmetry_weight * sums.asymmetry) /
                kSamples -
            config.entropy_weight * entropy(parameters_.data() + layout_.log_std());
   }

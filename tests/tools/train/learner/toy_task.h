@@ -13,6 +13,24 @@ namespace sandrunner::learner {
 
 inline constexpr int kToyPrivileged = 3;
 
+/// The toy task for -x is that for x, with the actions the other way round.
+inline Symmetry toy_symmetry() {
+  Symmetry s;
+  const auto fill = [](Reflection& reflection, int size, float sign) {
+    for (int i = 0; i < size; ++i) {
+      reflection.index.push_back(i);
+      reflection.sign.push_back(sign);
+    }
+  };
+  fill(s.observation, kObservationSize, -1.0f);
+  s.observation.sign[kCommandSize + 1] = 1.0f;  // gain
+  fill(s.privileged, kToyPrivileged, -1.0f);
+  s.privileged.sign[1] = 1.0f;  // gain
+  fill(s.estimate, kEstimateSize, 1.0f);
+  fill(s.action, kActionSize, -1.0f);
+  return s;
+}
+
 /// A task that only a memory solves, embedded in the robot's interface: x' = x + 0.25 gain u with
 /// |u| <= 2, to be kept at 0. The gain, of random sign and size, is drawn anew in each episode and
 /// not observed: which way an action pushes shows only in what happened to x. Observed: x, and the
