@@ -101,8 +101,7 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
       mirror_h_(h_),
       mirror_c_(c_),
-      pending_reset_(static_cast<std::size_t>(shape.envs), 0),
-      in_mirror_(static_cast<std::size_t>(shape.envs / config.block_envs), 0) {
+      pending_reset_(static_cast<std::size_t>(shape.envs), 0) {
   if (!symmetry_) config_.loss.symmetry_weight = 0.0;
   counters_.seed = seed;
   counters_.learning_rate = config.learning_rate_start;
@@ -164,38 +163,6 @@ void Learner::act_in_mirror(int block, int t, int worker) {
     symmetry_->action.apply(mean.col(i), scratch.data());
   }
   rollout_.mirror_mean(t).middleCols(first, config_.block_envs) = mean;
-}
-
-// Turns the block's part of the rollout into its mirror image, or back.
-void Learner::mirror_block(int block) {
-  const int first = block * config_.block_envs;
-  const int steps = rollout_.shape.steps;
-  std::vector<float> scratch(static_cast<std::size_t>(
-      std::max({kObservationSize, rollout_.shape.privileged, kEstimateSize, kActionSize})));
-  const Eigen::Array<float, kActionSize, 1> inverse_std = (-rollout_.log_std.array()).exp();
-  const float log_norm =
-      -0.5f * kActionSize * std::log(2.0f * std::numbers::pi_v<float>) - rollout_.log_std.sum();
-  for (int t = 0; t <= steps; ++t) {
-    for (int env = first; env < first + config_.block_envs; ++env) {
-      symmetry_->observation.apply(rollout_.observation(t).col(env), scratch.data());
-      symmetry_->privileged.apply(rollout_.privileged(t).col(env), scratch.data());
-      symmetry_->estimate.apply(rollout_.estimate_target(t).col(env), scratch.data());
-      if (t == steps) continue;
-      auto action = rollout_.action(t).col(env);
-      auto mean = rollout_.mean(t).col(env), mirror_mean = rollout_.mirror_mean(t).col(env);
-      mean.swap(mirror_mean);
-      symmetry_->action.apply(action, scratch.data());
-      symmetry_->action.apply(mean, scratch.data());
-      symmetry_->action.apply(mirror_mean, scratch.data());
-      rollout_.log_prob(t, env) =
-          log_norm - 0.5f * ((action - mean).array() * inverse_std).square().sum();
-    }
-  }
-  const auto swap = [&](auto a, auto b) {
-    a.middleCols(first, config_.block_envs).swap(b.middleCols(first, config_.block_envs));
-  };
-  swap(rollout_.initial_h(0), rollout_.mirror_h(0));
-  swap(rollout_.initial_c(0), rollout_.mirror_c(0));
 }
 
 float Learner::value(const float* privileged, int worker) {
@@ -276,16 +243,11 @@ double Learner::reduce_gradients(int count) {
   return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0));
 }
 
-bool Learner::learn_minibatch(const int* blocks, const std::uint8_t* mirrored, int count,
-                              UpdateStats& stats) {
+bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) {
   const int samples = count * config_.block_envs * rollout_.shape.steps;
   std::vector<LossSums> sums(static_cast<std::size_t>(count));
   pool_.run(count, [&](int i, int worker) {
     const auto slot = static_cast<std::size_t>(i);
-    if (symmetry_ && in_mirror_[static_cast<std::size_t>(blocks[i])] != mirrored[i]) {
-      mirror_block(blocks[i]);
-      in_mirror_[static_cast<std::size_t>(blocks[i])] = mirrored[i];
-    }
     std::fill(gradients_[slot].begin(), gradients_[slot].end(), 0.0f);
     sums[slot] = learning_[static_cast<std::size_t>(worker)].loss_and_gradient(
         parameters_.data(), rollout_, blocks[i] * config_.block_envs, config_.loss,
@@ -343,14 +305,10 @@ UpdateStats Learner::update() {
   int done = 0;
   for (int epoch = 0; epoch < config_.epochs && stats.finite; ++epoch) {
     const std::vector<int> order = shuffled_blocks(epoch);
-    // Every other block of the shuffled order: half of each minibatch.
-    std::vector<std::uint8_t> mirrored(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) mirrored[i] = (i + epoch) % 2;
     for (int i = 0; i < config_.minibatches && stats.finite; ++i) {
       const int begin = blocks() * i / config_.minibatches;
       const int end = blocks() * (i + 1) / config_.minibatches;
-      stats.finite =
-          learn_minibatch(order.data() + begin, mirrored.data() + begin, end - begin, stats);
+      stats.finite = learn_minibatch(order.data() + begin, end - begin, stats);
       ++done;
     }
   }
@@ -359,9 +317,6 @@ UpdateStats Learner::update() {
     adam_ = adam_before;
     counters_.learning_rate = learning_rate_before;
   }
-  pool_.run(blocks(), [&](int block, int) {
-    if (std::exchange(in_mirror_[static_cast<std::size_t>(block)], 0)) mirror_block(block);
-  });
   stats.policy_loss /= done;
   stats.value_loss /= done;
   stats.estimate_loss /= done;
@@ -392,8 +347,6 @@ UpdateStats Learner::update() {
 void Learner::begin_window() {
   rollout_.initial_h(0) = h_;
   rollout_.initial_c(0) = c_;
-  rollout_.mirror_h(0) = mirror_h_;
-  rollout_.mirror_c(0) = mirror_c_;
   rollout_.log_std =
       Eigen::Map<const Vector<float>>(parameters_.data() + layout_.log_std(), kActionSize);
 }

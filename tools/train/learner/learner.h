@@ -81,9 +81,8 @@ struct UpdateStats {
 class Learner {
  public:
   /// `pool` must outlive the learner. Throws InputError for sizes and constants that cannot work.
-  /// With a symmetry, each update sees about half of the window in the mirror (data augmentation;
-  /// the probabilities are those of the policy's own answers to the mirror image), and
-  /// loss.symmetry_weight pulls the policy's answers to both together.
+  /// With a symmetry, loss.symmetry_weight pulls the policy's answers to what it sees and to the
+  /// mirror image of that together (Yu, Turk, Liu 2018).
   Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
           WorkerPool& pool, std::optional<Symmetry> symmetry = std::nullopt);
 
@@ -136,11 +135,9 @@ class Learner {
 
   std::string architecture() const;
   void act_in_mirror(int block, int t, int worker);
-  void mirror_block(int block);
   void compute_advantages(UpdateStats& stats);
   std::vector<int> shuffled_blocks(int epoch) const;
-  bool learn_minibatch(const int* blocks, const std::uint8_t* mirrored, int count,
-                       UpdateStats& stats);
+  bool learn_minibatch(const int* blocks, int count, UpdateStats& stats);
   double reduce_gradients(int count);
   void begin_window();
 
@@ -158,7 +155,6 @@ class Learner {
   Matrix<float> mirror_h_;  // of the policy that sees the mirror
   Matrix<float> mirror_c_;
   std::vector<std::uint8_t> pending_reset_;
-  std::vector<std::uint8_t> in_mirror_;  // a block: its part of the rollout is its mirror image
   AdvantageScale advantage_scale_;
   std::vector<BlockPass<float>> acting_;       // one a worker, one step
   std::vector<BlockPass<float>> learning_;     // one a worker, a window

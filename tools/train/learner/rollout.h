@@ -74,8 +74,6 @@ struct BasicRollout {
         reset(shape.envs, shape.steps),
         initial_h(hidden, shape.envs, 1),
         initial_c(hidden, shape.envs, 1),
-        mirror_h(hidden, shape.envs, 1),
-        mirror_c(hidden, shape.envs, 1),
         log_std(Vector<Scalar>::Zero(kActionSize)),
         advantage(shape.envs, shape.steps),
         value_target(shape.envs, shape.steps) {}
@@ -108,8 +106,6 @@ struct BasicRollout {
   // Of the window as a whole: the policy's memory before step 0, and its log standard deviations.
   VectorField<Scalar, Eigen::Dynamic> initial_h;
   VectorField<Scalar, Eigen::Dynamic> initial_c;
-  VectorField<Scalar, Eigen::Dynamic> mirror_h;  ///< likewise, of the policy that sees the mirror
-  VectorField<Scalar, Eigen::Dynamic> mirror_c;
   Vector<Scalar> log_std;
 
   // Written by compute_gae.

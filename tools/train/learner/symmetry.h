@@ -23,7 +23,7 @@ struct Reflection {
 /// How the data of a task look in a mirror in which the task itself looks the same. Each is its own
 /// inverse.
 struct Symmetry {
-  Reflection observation, privileged, estimate, action;
+  Reflection observation, action;
 };
 
 }  // namespace sandrunner::learner

@@ -208,25 +208,12 @@ learner::Symmetry Task::symmetry() {
       }
     }
   };
-  const auto observation = [&](learner::Reflection& to) {
-    add(to, {1, -1, -1});      // command vx, vy, wz
-    add(to, {1, -1, 1});       // gravity
-    add(to, {-1, 1, -1});      // angular velocity
-    add_legs(to, {-1, 1, 1});  // joint positions less nominal, and velocities
-    add_legs(to, {-1, 1, 1});
-  };
-  const auto estimate = [&](learner::Reflection& to) {
-    add(to, {1, 1, -1, 1});  // body height, velocity
-    add_legs(to, {1});       // foot heights
-  };
-  observation(s.observation);
-  estimate(s.estimate);
+  add(s.observation, {1, -1, -1});      // command vx, vy, wz
+  add(s.observation, {1, -1, 1});       // gravity
+  add(s.observation, {-1, 1, -1});      // angular velocity
+  add_legs(s.observation, {-1, 1, 1});  // joint positions less nominal, and velocities
+  add_legs(s.observation, {-1, 1, 1});
   add_legs(s.action, {-1, 1, 1});
-  observation(s.privileged);
-  estimate(s.privileged);
-  add_legs(s.privileged, {1, 1, 1, 1});  // loaded, air, stance, penetration
-  add_legs(s.privileged, {-1, 1, 1});    // last action
-  for (int i = 0; i < kGroundFeatures + 2; ++i) add(s.privileged, {1});
   return s;
 }
 

@@ -92,14 +92,20 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
   return sum + r.air_weight * air;
 }
 
+/// Factors of the costs, which grow during training.
+struct CostRamp {
+  double all = 1.0;     ///< of every cost
+  double energy = 1.0;  ///< of that of energy, besides
+};
+
 /// Sum of what is charged, before its weight.
-inline double cost(const StepOutcome& s, const RewardSettings& r) {
+inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_factor) {
   const double commanded =
       std::hypot(static_cast<double>(s.command[0]), static_cast<double>(s.command[1]));
   // Energy for the way, not for the time: cost of transport counts at every speed.
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
-  double sum = energy * r.energy_speed_mps / (0.5 + commanded) + r.joint_speed * s.speed_squared +
-               r.speed_excess * s.speed_excess + r.slip * s.slip;
+  double sum = energy * energy_factor * r.energy_speed_mps / (0.5 + commanded) +
+               r.joint_speed * s.speed_squared + r.speed_excess * s.speed_excess + r.slip * s.slip;
   double first = 0.0, second = 0.0, pose = 0.0, overrun = 0.0;
   const bool still =
       std::fabs(s.command[0]) + std::fabs(s.command[1]) + std::fabs(s.command[2]) < 1e-3f;
@@ -128,10 +134,11 @@ inline double cost(const StepOutcome& s, const RewardSettings& r) {
   return sum;
 }
 
-/// Reward of a step; `ramp`: factor of the costs, which grows during training.
-inline float reward(const StepOutcome& s, const RewardSettings& r, double ramp) {
+/// Reward of a step.
+inline float reward(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   return static_cast<float>(
-      r.scale * std::max(positive_reward(s, r) - r.cost_weight * ramp * cost(s, r), 0.0));
+      r.scale *
+      std::max(positive_reward(s, r) - r.cost_weight * ramp.all * cost(s, r, ramp.energy), 0.0));
 }
 
 }  // namespace sandrunner::train

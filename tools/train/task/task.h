@@ -121,7 +121,7 @@ class Task {
   std::vector<Env> envs_;
   std::vector<Sums> sums_;  // one a block
   Curriculum curriculum_;
-  double cost_ramp_;
+  CostRamp cost_ramp_;
   double tilt_end_cos_;
 };
 

@@ -143,6 +143,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.cost_ramp_transitions", c.reward.cost_ramp_transitions, 1.0, 1e12);
   number("reward.cost_end", c.reward.cost_end, 0.0, 1e9);
   number("reward.cost_end_transitions", c.reward.cost_end_transitions, 0.0, 1e9);
+  number("reward.energy_end", c.reward.energy_end, 0.0, 1e9);
   number("reward.velocity_weight", c.reward.velocity_weight, 0.0, 1e9);
   number("reward.velocity_width", c.reward.velocity_width, 1e-6, 1e3);
   number("reward.velocity_width_per_speed2", c.reward.velocity_width_per_speed2, 0.0, 1e9);

@@ -60,7 +60,7 @@ struct NoiseSettings {
 
 struct RewardSettings {
   double scale = 0, cost_weight = 0, cost_ramp_start = 0, cost_ramp_transitions = 0, cost_end = 0,
-         cost_end_transitions = 0;
+         cost_end_transitions = 0, energy_end = 0;
   double velocity_weight = 0, velocity_width = 0, velocity_width_per_speed2 = 0,
          progress_weight = 0;
   double yaw_weight = 0, yaw_width = 0, yaw_progress_weight = 0;

@@ -24,7 +24,7 @@ LearnerConfig small_config() {
 }
 const RolloutShape kSmallShape{64, 8, kToyPrivileged};
 
-/// A training on the toy task and its mirror image.
+/// A training on the toy task, whose symmetry it is told.
 struct Training {
   Training(int threads, std::uint64_t seed, const LearnerConfig& config = small_config())
       : pool(threads),
@@ -89,18 +89,6 @@ TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
   std::filesystem::remove(path);
 }
 
-TEST(LearnerTest, WindowGoesOnAsItWasAndNotAsItsMirrorImage) {
-  Training training(1, 4);
-  training.run(1);
-  training.task.run_window();
-  const Rollout& rollout = training.learner.rollout();
-  const Matrix<float> observation = rollout.observation(rollout.shape.steps);
-  const Matrix<float> privileged = rollout.privileged(rollout.shape.steps);
-  training.learner.update();
-  EXPECT_EQ(rollout.observation(0), observation);
-  EXPECT_EQ(rollout.privileged(0), privileged);
-}
-
 TEST(LearnerTest, SymmetryWeightPullsTheAnswersToBothImagesTogether) {
   const auto asymmetry = [](double weight) {
     LearnerConfig config = small_config();
@@ -109,7 +97,7 @@ TEST(LearnerTest, SymmetryWeightPullsTheAnswersToBothImagesTogether) {
     training.run(30);
     return training.last.asymmetry;
   };
-  // 0.03 and 1.06 standard deviations of the action.
+  // 0.04 and 0.85 standard deviations of the action.
   EXPECT_LT(asymmetry(1.0), 0.5 * asymmetry(0.0));
 }
 

@@ -24,9 +24,6 @@ inline Symmetry toy_symmetry() {
   };
   fill(s.observation, kObservationSize, -1.0f);
   s.observation.sign[kCommandSize + 1] = 1.0f;  // gain
-  fill(s.privileged, kToyPrivileged, -1.0f);
-  s.privileged.sign[1] = 1.0f;  // gain
-  fill(s.estimate, kEstimateSize, 1.0f);
   fill(s.action, kActionSize, -1.0f);
   return s;
 }

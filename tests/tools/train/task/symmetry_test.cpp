@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The robot in the mirror is the robot: what the training's data augmentation rests on.
+// The robot in the mirror is the robot: what the pull towards a symmetric policy rests on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -114,10 +114,8 @@ INSTANTIATE_TEST_SUITE_P(Grounds, SymmetryTest,
 TEST(SymmetryShapeTest, ReflectionsAreTheirOwnInverse) {
   const learner::Symmetry s = Task::symmetry();
   EXPECT_EQ(s.observation.index.size(), std::size_t{kObservationSize});
-  EXPECT_EQ(s.estimate.index.size(), std::size_t{kEstimateSize});
   EXPECT_EQ(s.action.index.size(), std::size_t{learner::kActionSize});
-  EXPECT_EQ(s.privileged.index.size(), static_cast<std::size_t>(Task::privileged_size()));
-  for (const Reflection& r : {s.observation, s.estimate, s.action, s.privileged}) {
+  for (const Reflection& r : {s.observation, s.action}) {
     for (std::size_t i = 0; i < r.index.size(); ++i) {
       EXPECT_EQ(r.index[r.index[i]], static_cast<int>(i));
       EXPECT_EQ(r.sign[i] * r.sign[r.index[i]], 1.0f);
