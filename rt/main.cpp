@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "rt/command_source.h"
 #include "rt/core/errors.h"
 #include "rt/core/floating_point.h"
+#include "rt/core/program.h"
 #include "rt/dds_bridge.h"
 #include "rt/options.h"
 #include "rt/output_files.h"
@@ -116,16 +116,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const int code = run(argc, argv);
-    if (std::fflush(stdout) == 0) return code;
-    fmt::print(stderr, "sandrunner: standard output cannot be written\n");
-    return kExitInternal;
-  } catch (const InputError& error) {
-    fmt::print(stderr, "sandrunner: {}\n", one_line(error.what()));
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sandrunner: internal error: {}\n", error.what());
-    return kExitInternal;
-  }
+  return sandrunner::run_program("sandrunner", [&] { return run(argc, argv); });
 }

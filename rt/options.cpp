@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
 #include "sim/terrain.h"
 
 namespace sandrunner {
@@ -62,14 +63,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
   app.set_version_flag("--version", std::string("sandrunner ") + SANDRUNNER_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // --help, --version
-    app.exit(done);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
-  }
+  if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = start == "walk";
   o.realtime = clock == "realtime";
   o.rt_report = report->parsed();

@@ -21,17 +21,15 @@ void prepare_folder(const std::string& folder, const std::string& option) {
 
 void write_text(const std::string& text, const std::string& path) {
   const std::string temporary = path + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw InputError(fmt::format("{}: cannot be written", path));
-    }
+  std::ofstream out(temporary, std::ios::binary);
+  out << text;
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(temporary, path, error);
+  if (!out || error) {
+    std::filesystem::remove(temporary, error);
+    throw InputError(fmt::format("{}: cannot be written, expected a folder with room", path));
   }
-  std::filesystem::rename(temporary, path);
 }
 
 }  // namespace sandrunner

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <optional>
 #include <string>
 
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
 #include "tools/bench/batch_bench.h"
 #include "tools/bench/contact_bench.h"
 #include "tools/bench/policy_bench.h"
@@ -39,13 +38,7 @@ int run(int argc, char** argv) {
         ->capture_default_str();
   }
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {
-    return app.exit(done);
-  } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
-  }
+  if (!parse_command_line(app, argc, argv)) return kExitOk;
   std::optional<bench::ReportFile> file;
   if (!json_path.empty()) file.emplace(json_path);
   bench::Report report;
@@ -65,16 +58,5 @@ int run(int argc, char** argv) {
 }  // namespace sandrunner
 
 int main(int argc, char** argv) {
-  try {
-    const int code = sandrunner::run(argc, argv);
-    if (std::fflush(stdout) == 0) return code;
-    fmt::print(stderr, "sandrunner-bench: standard output cannot be written\n");
-    return sandrunner::kExitInternal;
-  } catch (const sandrunner::InputError& error) {
-    fmt::print(stderr, "sandrunner-bench: {}\n", sandrunner::one_line(error.what()));
-    return sandrunner::kExitBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sandrunner-bench: internal error: {}\n", error.what());
-    return sandrunner::kExitInternal;
-  }
+  return sandrunner::run_program("sandrunner-bench", [&] { return sandrunner::run(argc, argv); });
 }

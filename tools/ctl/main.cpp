@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <exception>
 
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
 #include "tools/ctl/commands.h"
 #include "tools/ctl/errors.h"
 
@@ -29,19 +29,12 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto say = [](const std::string& line) {
-    fmt::print(stderr, "sandrunner-ctl: {}\n", one_line(line));
-  };
-  try {
-    return run(argc, argv);
-  } catch (const RefusedError& error) {
-    say(error.what());
-    return kExitRefused;
-  } catch (const InputError& error) {
-    say(error.what());
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    say(std::string("internal error: ") + error.what());
-    return kExitInternal;
-  }
+  return run_program("sandrunner-ctl", [&] {
+    try {
+      return run(argc, argv);
+    } catch (const RefusedError& error) {
+      fmt::print(stderr, "sandrunner-ctl: {}\n", one_line(error.what()));
+      return kExitRefused;
+    }
+  });
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
 #include "rt/telemetry/dds/command_gate.h"
 #include "rt/telemetry/dds/mode_requests.h"
 #include "tools/ctl/topics.h"
@@ -90,14 +91,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   watch->add_option("TOPIC", o.topic, topic_names())->required()->always_capture_default(false);
   watch->add_option("--count", o.count, "end after so many; 0: Ctrl-C ends it")->type_name("N");
   app.add_subcommand("drive", "drive with the keyboard, and with a gamepad if there is one");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // --help, --version
-    app.exit(done);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
-  }
+  if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (cmd_vel != "twist" && cmd_vel != "twist_stamped") {
     throw InputError(
         fmt::format("--cmd-vel: found '{}', expected twist or twist_stamped", cmd_vel));

@@ -5,12 +5,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "rt/core/errors.h"
 
 namespace sandrunner::evaluate {
 
@@ -80,19 +76,6 @@ std::string part_csv(const PartResults& results, const std::vector<std::string>&
     }
   }
   return text;
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(part, path, error);
-  if (!file || error) {
-    std::remove(part.c_str());
-    throw InputError(fmt::format("{}: cannot be written, expected a folder with room", path));
-  }
 }
 
 }  // namespace sandrunner::evaluate

@@ -15,7 +15,4 @@ std::string results_json(const Results& results, const Options& options);
 /// One row a group and policy, columns `key`, `key_low`, `key_high`; empty where there is none.
 std::string part_csv(const PartResults& results, const std::vector<std::string>& policies);
 
-/// Writes beside `path` and renames, so that no half file is left. Throws InputError.
-void write_text(const std::string& path, const std::string& text);
-
 }  // namespace sandrunner::evaluate

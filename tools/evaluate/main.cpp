@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
-#include <filesystem>
 
 #include "policy/policy_file.h"
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
+#include "rt/output_files.h"
 #include "tools/evaluate/files.h"
 #include "tools/evaluate/options.h"
 #include "tools/evaluate/pictures.h"
@@ -20,15 +20,6 @@ namespace {
 
 using namespace sandrunner;
 using namespace sandrunner::evaluate;
-
-// Fails now rather than after the runs.
-void prepare_folder(const std::string& dir) {
-  std::error_code error;
-  std::filesystem::create_directories(dir, error);
-  if (error || !std::filesystem::is_directory(dir) || access(dir.c_str(), W_OK | X_OK) != 0) {
-    throw InputError(fmt::format("--out: folder '{}' cannot be written", dir));
-  }
-}
 
 Part make_part(Study& study, const std::string& name) {
   if (name == "straight") return study.straight();
@@ -70,7 +61,7 @@ int run(int argc, char** argv) {
   if (!options->against_path.empty()) policies.push_back(load_policy(options->against_path));
   const std::string dir = options->out_dir + "/";
   const bool out = !options->out_dir.empty();
-  if (out) prepare_folder(options->out_dir);
+  if (out) prepare_folder(options->out_dir, "--out");
 
   Results results;
   for (const Policy& policy : policies) {
@@ -89,13 +80,13 @@ int run(int argc, char** argv) {
     fmt::print("{}\n", tables(part, results.policies));
     std::fflush(stdout);
     if (out) {
-      write_text(dir + name + ".csv", part_csv(part, results.policies));
+      write_text(part_csv(part, results.policies), dir + name + ".csv");
       draw_part(part, results.policies, options->out_dir);
     }
     results.parts.push_back(std::move(part));
   }
   if (out) {
-    write_text(dir + "evaluation.json", results_json(results, *options));
+    write_text(results_json(results, *options), dir + "evaluation.json");
     fmt::print("wrote {0}/evaluation.json, {0}/*.csv, {0}/*.png\n", options->out_dir);
   }
   return kExitOk;
@@ -104,13 +95,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "sandrunner-evaluate: {}\n", sandrunner::one_line(error.what()));
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sandrunner-evaluate: internal error: {}\n", error.what());
-    return kExitInternal;
-  }
+  return sandrunner::run_program("sandrunner-evaluate", [&] { return run(argc, argv); });
 }

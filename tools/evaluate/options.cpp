@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
 
 namespace sandrunner::evaluate {
 namespace {
@@ -48,14 +49,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--torque-speed-line", line, "drives lose torque towards their no-load speed")
       ->type_name("on|off");
   app.set_version_flag("--version", std::string("sandrunner-evaluate ") + SANDRUNNER_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // --help, --version
-    app.exit(done);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
-  }
+  if (!parse_command_line(app, argc, argv)) return std::nullopt;
   check("--threads", o.threads, 1, 1024);
   check("--runs", o.study.runs, 1, 100000);
   check("--grid-runs", o.study.grid_runs, 1, 100000);

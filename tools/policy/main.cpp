@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 
 #include "policy/policy_file.h"
 #include "policy/text.h"
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
 
 namespace sandrunner {
 namespace {
@@ -114,12 +114,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("info", "check a policy file and print what it holds");
   info_command->add_option("FILE", path, "policy file")->required();
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    throw InputError(error.what());
-  }
+  if (!parse_command_line(app, argc, argv)) return kExitOk;
   if (*import_command) {
     if (name.empty()) name = std::filesystem::path(input).stem().string();
     import_policy(input, output, name);
@@ -133,16 +128,5 @@ int run(int argc, char** argv) {
 }  // namespace sandrunner
 
 int main(int argc, char** argv) {
-  try {
-    const int code = sandrunner::run(argc, argv);
-    if (std::fflush(stdout) == 0) return code;
-    std::fputs("sandrunner-policy: standard output cannot be written\n", stderr);
-    return sandrunner::kExitInternal;
-  } catch (const sandrunner::InputError& error) {
-    fmt::print(stderr, "sandrunner-policy: {}\n", sandrunner::printable(error.what(), 1000));
-    return sandrunner::kExitBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sandrunner-policy: internal error: {}\n", error.what());
-    return sandrunner::kExitInternal;
-  }
+  return sandrunner::run_program("sandrunner-policy", [&] { return sandrunner::run(argc, argv); });
 }

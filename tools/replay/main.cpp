@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "rt/build.h"
 #include "rt/core/errors.h"
 #include "rt/core/floating_point.h"
+#include "rt/core/program.h"
 #include "rt/output_files.h"
 #include "rt/replay.h"
 #include "rt/run_csv.h"
@@ -48,14 +48,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
   app.add_option("--set", a.assignments, "what if: one setting otherwise; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {
-    app.exit(done);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
-  }
+  if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (!(a.from_s >= 0.0) || !(a.to_s > a.from_s)) {
     throw InputError(fmt::format("--from {} --to {}: expected 0 <= from < to", a.from_s, a.to_s));
   }
@@ -134,16 +127,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const int code = run(argc, argv);
-    if (std::fflush(stdout) == 0) return code;
-    fmt::print(stderr, "sandrunner-replay: standard output cannot be written\n");
-    return sandrunner::kExitInternal;
-  } catch (const sandrunner::InputError& error) {
-    fmt::print(stderr, "sandrunner-replay: {}\n", sandrunner::one_line(error.what()));
-    return sandrunner::kExitBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sandrunner-replay: internal error: {}\n", error.what());
-    return sandrunner::kExitInternal;
-  }
+  return sandrunner::run_program("sandrunner-replay", [&] { return run(argc, argv); });
 }

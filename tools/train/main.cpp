@@ -9,7 +9,6 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -17,6 +16,7 @@
 #include "policy/policy_file.h"
 #include "rt/build.h"
 #include "rt/core/errors.h"
+#include "rt/core/program.h"
 #include "tools/train/embedded.h"
 #include "tools/train/progress.h"
 #include "tools/train/task/task.h"
@@ -287,13 +287,7 @@ int run(int argc, char** argv) {
   app.add_option("--seed", a.seed, "of weights and environments")->capture_default_str();
   app.add_flag("--resume", a.resume, "continue from the checkpoint in --out");
   app.set_version_flag("--version", std::string("sandrunner-train ") + SANDRUNNER_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {
-    return app.exit(done);
-  } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
-  }
+  if (!parse_command_line(app, argc, argv)) return kExitOk;
   ConfigTree tree;
   tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
   if (!a.config_file.empty()) tree.add_file(a.config_file);
@@ -321,13 +315,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "sandrunner-train: {}\n", one_line(error.what()));
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "sandrunner-train: internal error: {}\n", error.what());
-    return kExitInternal;
-  }
+  return sandrunner::run_program("sandrunner-train", [&] { return run(argc, argv); });
 }
