@@ -14,6 +14,7 @@
 
 #include "rt/core/floating_point.h"
 #include "rt/lockstep.h"
+#include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/recording/recording_program.h"
 
@@ -309,6 +310,33 @@ TEST_F(BlackBoxTest, StateThatIsNoneIsBadInput) {
   refused([](std::string& state) { state[16] = 77; }, "mode 77");
 }
 
+// Two threads: the answers come late, some inputs of the policy are under way at any tick.
+TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
+  box_.emplace(dir(), info_, config_.controller, &policy_, 0.3);
+  LiveOperator op;
+  op.want(VelocityCommand{.vx_mps = 1.0});
+  RealtimeHooks hooks;
+  hooks.op = &op;
+  hooks.meanwhile = [&](PolicyThread&) {
+    if (op.time_s() > 3.0 && op.faults() == 0) {
+      op.want(VelocityCommand{.vx_mps = std::numeric_limits<double>::quiet_NaN()});
+    }
+    if (op.time_s() > 3.2) op.end();
+  };
+  Policy policy = policy_;
+  const CommandSource nobody("0,0,0");
+  const std::atomic<bool> never{false};
+  const auto tap = [&](const TickRecord& tick) { box_->add(tick); };
+  run_realtime(config_, &policy, nobody, {.start_walking = true}, false, never, {}, tap, hooks);
+  const BlackBoxResult result = box_->close();
+  EXPECT_FALSE(result.difference) << result.difference->what;
+  ASSERT_EQ(result.files.size(), 1u);
+  EXPECT_GT(
+      read_recording(result.files[0].path, {}, [](const auto&) { return true; }).info.first_tick,
+      0u);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, result.files[0].path), 0) << output();
+}
+
 class BlackBoxOfTheProgram : public BlackBoxTest {
  protected:
   // The body of a walking robot tilts by more than that soon.
@@ -329,7 +357,7 @@ class BlackBoxOfTheProgram : public BlackBoxTest {
 TEST_F(BlackBoxOfTheProgram, RealtimeRunWithAFaultLeavesARecordingThatReplays) {
   EXPECT_EQ(run(SANDRUNNER_PROGRAM, kRun + ("--record '" + dir() + "'")), 1);
   ASSERT_NE(found(), "") << output();
-  EXPECT_NE(output().find("s before the fault 'tilt' at "), std::string::npos) << output();
+  EXPECT_NE(output().find("s before the fault '"), std::string::npos) << output();
   EXPECT_NE(output().find(", in " + dir() + "/black-box-"), std::string::npos) << output();
   EXPECT_EQ(run(SANDRUNNER_REPLAY, found()), 0) << output();
   EXPECT_NE(output().find("every bit agrees"), std::string::npos) << output();
