@@ -73,12 +73,14 @@ int run(int argc, char** argv) {
   flush_denormals_to_zero();
   const SignalWatch signals;
   const std::unique_ptr<Recorder> recorder = make_recorder(*options, config, policy_text);
+  const std::unique_ptr<BlackBox> black_box = make_black_box(*options, config, policy_text, policy);
   std::optional<DdsBridge> dds;
   if (config.dds.enabled) dds.emplace(config, options->live);
   TickTap tap;
-  if (recorder || dds) {
+  if (recorder || black_box || dds) {
     tap = [&](const TickRecord& tick) {
       if (recorder) recorder->add(tick);
+      if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
     };
   }
@@ -109,6 +111,7 @@ int run(int argc, char** argv) {
         "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
   }
   if (recorder) written += recording_line(recorded, options->record_dir);
+  if (black_box) written += black_box_lines(black_box->close());
   fmt::print("{}{}", summary_table(result, command), written);
   return result.survived ? kExitOk : kExitRobotFailed;
 }

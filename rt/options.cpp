@@ -58,7 +58,10 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->always_capture_default(false);
   app.add_option("--out", o.out_dir, "folder for summary.json, run.csv, run.png, strip.png")
       ->type_name("DIR");
-  app.add_option("--record", o.record_dir, "folder for run.mcap: every tick, to look at and replay")
+  app.add_option(
+         "--record", o.record_dir,
+         "folder for run.mcap: every tick, to look at and replay; and for black-box-TICK.mcap "
+         "of a realtime run with a fault (else that of --out, or the working folder)")
       ->type_name("DIR");
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");

@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "rt/options.h"
 #include "rt/process_config.h"
+#include "rt/telemetry/recording/black_box.h"
 #include "rt/telemetry/recording/recorder.h"
 
 namespace sandrunner {
@@ -14,5 +16,13 @@ namespace sandrunner {
 /// InputError if the file cannot be made.
 std::unique_ptr<Recorder> make_recorder(const Options& options, const ProcessConfig& config,
                                         std::string_view policy);
+
+/// The black box of a real-time run; null in lockstep, where the run can be had again. Its files go
+/// to the folder of `--record`, else of `--out`, else to the working folder.
+std::unique_ptr<BlackBox> make_black_box(const Options& options, const ProcessConfig& config,
+                                         std::string_view policy_file, const Policy& policy);
+
+/// What it did, a line for each file and for all that went wrong; empty: there was no fault.
+std::string black_box_lines(const BlackBoxResult& result);
 
 }  // namespace sandrunner

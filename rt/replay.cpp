@@ -6,12 +6,17 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <cstring>
 
+#include "rt/core/errors.h"
 #include "rt/lockstep.h"
 #include "rt/tick_fields.h"
 
 namespace sandrunner {
 namespace {
+
+constexpr std::string_view kStateMagic = "SRSTATE1";
+constexpr std::size_t kStateHead_bytes = 16;
 
 std::string value_of(std::size_t word, std::uint64_t bits) {
   for (const TickField& field : kTickFields) {
@@ -41,6 +46,38 @@ std::optional<ReplayDifference> first_difference(const TickRecord& recorded,
 
 }  // namespace
 
+std::string replay_state_bytes(const ReplayState& state) {
+  const std::uint64_t size = sizeof state;
+  std::string bytes(kStateMagic);
+  bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
+  bytes.append(reinterpret_cast<const char*>(&state), sizeof state);
+  return bytes;
+}
+
+ReplayState read_replay_state(std::string_view bytes, const std::string& name) {
+  if (!bytes.starts_with(kStateMagic)) {
+    throw InputError(
+        fmt::format("{}: does not begin with {}: found no state of a replay", name, kStateMagic));
+  }
+  ReplayState state;
+  std::uint64_t size = 0;
+  if (bytes.size() >= kStateHead_bytes) std::memcpy(&size, &bytes[kStateMagic.size()], sizeof size);
+  if (size != sizeof state || bytes.size() != kStateHead_bytes + sizeof state) {
+    throw InputError(
+        fmt::format("{}: {} bytes that announce {}, expected {} and {}: damaged, or "
+                    "of a build that lays the state out otherwise",
+                    name, bytes.size(), size, kStateHead_bytes + sizeof state, sizeof state));
+  }
+  std::memcpy(&state, &bytes[kStateHead_bytes], sizeof state);
+  if (state.released > ReplayState::kMostReleased || state.controller.mode > Mode::kFault) {
+    throw InputError(
+        fmt::format("{}: mode {} and {} inputs of the policy, expected up to {} and {}", name,
+                    static_cast<std::uint64_t>(state.controller.mode), state.released,
+                    static_cast<std::uint64_t>(Mode::kFault), ReplayState::kMostReleased));
+  }
+  return state;
+}
+
 Replay::Replay(const ControllerConfig& config, Mode start, Policy* policy)
     : controller_(config, start), policy_(policy) {
   if (policy_) policy_->reset();
@@ -63,6 +100,27 @@ std::optional<ReplayDifference> Replay::check(const TickRecord& recorded) {
   computed.output = output_;
   return first_difference(recorded, computed, offsetof(TickRecord, output),
                           sizeof(ControllerOutput));
+}
+
+ReplayState Replay::state() const noexcept {
+  ReplayState s;
+  s.controller = controller_.state();
+  if (policy_) s.network = policy_->state();
+  s.newest = newest_;
+  s.next_tick = next_tick_;
+  s.released = std::min(released_.size(), ReplayState::kMostReleased);
+  std::copy(released_.end() - static_cast<std::ptrdiff_t>(s.released), released_.end(),
+            s.inputs.begin());
+  return s;
+}
+
+void Replay::restore(const ReplayState& state) {
+  controller_.restore(state.controller);
+  if (policy_) policy_->set_state(state.network);
+  newest_ = state.newest;
+  next_tick_ = state.next_tick;
+  released_.assign(state.inputs.begin(),
+                   state.inputs.begin() + static_cast<std::ptrdiff_t>(state.released));
 }
 
 std::optional<ReplayDifference> Replay::check_policy(const TickRecord& recorded) {

@@ -100,6 +100,25 @@ TEST_F(ReplayTest, AnotherGainIsFoundInTheFirstTickThatUsesIt) {
   EXPECT_EQ(difference->what.substr(0, 20), "command_kp_nmprad[0]") << difference->what;
 }
 
+// Between the tick that releases the policy and the one that brings its answer, too.
+TEST_F(ReplayTest, ContinuesFromTheStateOfAnotherReplay) {
+  const auto released = std::find_if(ticks().begin() + 12000, ticks().end(), [](const auto& tick) {
+    return tick.output.release_policy != 0;
+  });
+  for (auto from = released - 1; from < released + 3; ++from) {
+    Policy policy = load_shipped_policy(), other_policy = load_shipped_policy();
+    Replay first(noisy_config().controller, Mode::kPassive, &policy);
+    for (auto tick = ticks().begin(); tick < from; ++tick) ASSERT_FALSE(first.check(*tick));
+    Replay second(noisy_config().controller, Mode::kPassive, &other_policy);
+    second.restore(read_replay_state(replay_state_bytes(first.state()), "state"));
+    for (auto tick = from; tick < ticks().end(); ++tick) {
+      const auto difference = second.check(*tick);
+      ASSERT_FALSE(difference) << difference->tick << ": " << difference->what;
+    }
+    EXPECT_GT(second.policy_steps(), 20u);
+  }
+}
+
 TEST_F(ReplayTest, MissingTickIsNamed) {
   std::vector<TickRecord> cut(ticks().begin(), ticks().begin() + 1000);
   cut.erase(cut.begin() + 500);

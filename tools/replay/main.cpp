@@ -41,7 +41,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
       "printed.",
       "sandrunner-replay");
   app.set_version_flag("--version", "sandrunner-replay " SANDRUNNER_VERSION);
-  app.add_option("FILE", a.file, "recording (run.mcap)")->required();
+  app.add_option("FILE", a.file, "recording (run.mcap, black-box-TICK.mcap)")->required();
   app.add_option("--from", a.from_s, "first second that is compared and drawn")->type_name("S");
   app.add_option("--to", a.to_s, "last second")->type_name("S");
   app.add_option("--plot", a.plot_dir, "folder for run.csv, run.png, strip.png")->type_name("DIR");
@@ -63,8 +63,13 @@ struct Player {
     for (const std::string& assignment : arguments.assignments) tree.set(assignment);
     if (!info.policy.empty()) policy.emplace(load_policy_text(info.policy, "the recorded policy"));
     config = read_process_config(tree, policy ? &policy->spec() : nullptr);
-    replay.emplace(config.controller, info.start_mode == "walk" ? Mode::kWalk : Mode::kPassive,
-                   policy ? &*policy : nullptr);
+    if (info.first_tick == 0 || !info.state.empty()) {
+      replay.emplace(config.controller, start_mode_of(info), policy ? &*policy : nullptr);
+      if (info.first_tick > 0) {
+        replay->restore(read_replay_state(
+            info.state, fmt::format("{}: attachment '{}'", arguments.file, kStateAttachment)));
+      }
+    }
     if (arguments.plot_dir.empty()) return;
     const sim::Simulator simulator(config.robot, config.simulator);
     observer = std::make_unique<RunObserver>(config, simulator, policy ? policy->spec().name : "",
@@ -73,7 +78,7 @@ struct Player {
 
   ProcessConfig config;
   std::optional<Policy> policy;
-  std::optional<Replay> replay;
+  std::optional<Replay> replay;  ///< nothing: the recording has no state to start from
   std::unique_ptr<RunObserver> observer;
 };
 
@@ -94,13 +99,14 @@ int run(int argc, char** argv) {
   const auto tick = [&](const TickRecord& recorded) {
     const double t_s = static_cast<double>(recorded.input.sensors.tick) * kControlPeriod_s;
     if (t_s > arguments->to_s) return false;
-    std::optional<ReplayDifference> found = player->replay->check(recorded);
+    std::optional<ReplayDifference> found;
+    if (player->replay) found = player->replay->check(recorded);
     if (t_s < arguments->from_s) return true;
     ++compared;
     if (player->observer) player->observer->add(recorded);
     if (found && !difference) difference = std::move(found);
     // A picture wants the rest too.
-    return !difference || player->observer != nullptr;
+    return (!difference && player->replay) || player->observer;
   };
   const RecordingContents contents = read_recording(arguments->file, begin, tick);
 
@@ -114,6 +120,12 @@ int run(int argc, char** argv) {
     fmt::print("wrote {0}run.csv, {0}run.png, {0}strip.png\n", dir);
   }
   if (!contents.complete) fmt::print("the recording was cut: it is read up to its last chunk\n");
+  if (player && !player->replay) {
+    throw InputError(fmt::format(
+        "{}: begins at tick {} without the state of controller and network there, because ticks "
+        "before it were lost: it cannot be replayed",
+        arguments->file, contents.info.first_tick));
+  }
   if (difference) {
     fmt::print("DIFFERS at tick {} ({:.5f} s): {}\n", difference->tick,
                static_cast<double>(difference->tick) * kControlPeriod_s, difference->what);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <cstring>
 
 #include "rt/core/errors.h"
@@ -32,10 +33,15 @@ RecordingInfo info_of(const std::string& path, const McapReader& reader) {
   info.start_mode = value("start_mode");
   info.clock = value("clock");
   info.start_time_ns = std::strtoll(value("start_time_ns").c_str(), nullptr, 10);
+  // Recordings that were made before there were black boxes all begin at the start.
+  if (const auto first = run->values.find("first_tick"); first != run->values.end()) {
+    info.first_tick = std::strtoull(first->second.c_str(), nullptr, 10);
+  }
   for (const McapAttachment& attachment : reader.attachments()) {
     if (attachment.name == kConfigAttachment) info.config = attachment.data;
     if (attachment.name == kPolicyAttachment) info.policy = attachment.data;
     if (attachment.name == kRobotAttachment) info.robot = attachment.data;
+    if (attachment.name == kStateAttachment) info.state = attachment.data;
   }
   return info;
 }

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "rt/telemetry/recording/recorder.h"
+#include "rt/telemetry/recording/recording_writer.h"
 
 namespace sandrunner {
 

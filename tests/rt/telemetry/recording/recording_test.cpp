@@ -3,33 +3,22 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include <bit>
 #include <csignal>
-#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "rt/replay.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
-#include "rt/telemetry/mcap/mcap_writer.h"
 #include "rt/telemetry/recording/cdr.h"
 #include "rt/telemetry/recording/recording_file.h"
-#include "rt/tick_fields.h"
-#include "tests/policy/temporary_folder.h"
 #include "tests/rt/support.h"
+#include "tests/rt/telemetry/recording/recording_program.h"
 
 namespace sandrunner {
 namespace {
 
-class RecordingTest : public testing::Test {
+class RecordingTest : public RecordingProgramTest {
  protected:
-  /// Runs `sandrunner` or `sandrunner-replay`; returns the exit code.
-  int run(const char* program, const std::string& arguments) {
-    const int status = std::system(fmt_command(program, arguments).c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string output() const { return read_file(folder_.path("out")); }
   std::string path() const { return folder_.path("run.mcap"); }
 
   /// Records a short lockstep walk.
@@ -41,38 +30,7 @@ class RecordingTest : public testing::Test {
               0)
         << output();
   }
-
-  /// The recording again, with one of its ticks changed and all checksums right.
-  void rewrite(const std::string& to, std::uint64_t tick, std::size_t word, std::uint64_t mask) {
-    RecordingInfo info;
-    std::unique_ptr<Recorder> recorder;
-    read_recording(
-        path(),
-        [&](const RecordingInfo& found) {
-          recorder = std::make_unique<Recorder>(to, found, RecordingLimits{}, true);
-        },
-        [&](const TickRecord& record) {
-          auto words = std::bit_cast<TickWords>(record);
-          if (record.input.sensors.tick == tick) words[word] ^= mask;
-          recorder->add(std::bit_cast<TickRecord>(words));
-          return true;
-        });
-    recorder->close();
-  }
-
-  const TemporaryFolder folder_;
-
- private:
-  std::string fmt_command(const char* program, const std::string& arguments) const {
-    return std::string("'") + program + "' " + arguments + " >'" + folder_.path("out") + "' 2>&1";
-  }
 };
-
-std::size_t word_named(const std::string& name) {
-  std::size_t word = 0;
-  while (tick_word_name(word) != name) ++word;
-  return word;
-}
 
 TEST_F(RecordingTest, HoldsEveryTickAndReplaysBitForBit) {
   record();
@@ -112,7 +70,7 @@ TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
 TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
   record();
   const std::size_t word = word_named("command_position_rad[4]");
-  rewrite(folder_.path("flipped.mcap"), 777, word, 1);
+  flip(path(), folder_.path("flipped.mcap"), 777, word, 1);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
   EXPECT_NE(output().find("DIFFERS at tick 777 (0.19425 s): command_position_rad[4]: recorded"),
             std::string::npos)
@@ -122,7 +80,7 @@ TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
 TEST_F(RecordingTest, FlippedBitOfAnInputIsFoundByWhatItChanges) {
   record();
   // The lowest bit of an encoder in the tick that releases the policy.
-  rewrite(folder_.path("flipped.mcap"), 800, word_named("joint_position_rad[7]"), 1);
+  flip(path(), folder_.path("flipped.mcap"), 800, word_named("joint_position_rad[7]"), 1);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
   EXPECT_NE(output().find("DIFFERS at tick 800 (0.20000 s): released_joint_position_rad[7]"),
             std::string::npos)

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/recording/black_box.h"
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <span>
+#include <utility>
+
+#include "rt/core/errors.h"
+#include "rt/core/floating_point.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr std::size_t kBlockTicks = 400;   // 0.1 s, 1 MB; longer ones do not shrink further
+constexpr std::size_t kQueuedBlocks = 20;  // two seconds
+constexpr int kCompressionLevel = 1;       // as the files'
+
+constexpr std::uint64_t to_ticks(double time_s) {
+  return static_cast<std::uint64_t>(time_s * kControlHz);
+}
+
+std::vector<std::byte> compressed(std::span<const TickRecord> ticks) {
+  std::vector<std::byte> room(ZSTD_compressBound(ticks.size_bytes()));
+  const std::size_t size =
+      ZSTD_compress(room.data(), room.size(), ticks.data(), ticks.size_bytes(), kCompressionLevel);
+  if (ZSTD_isError(size)) throw std::bad_alloc();  // there is room: nothing else can go wrong
+  return {room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
+}
+
+TickQueue::Batch uncompressed(std::span<const std::byte> bytes, std::size_t ticks) {
+  TickQueue::Batch batch(ticks);
+  const std::size_t size =
+      ZSTD_decompress(batch.data(), ticks * sizeof(TickRecord), bytes.data(), bytes.size());
+  if (size != ticks * sizeof(TickRecord)) throw std::bad_alloc();
+  return batch;
+}
+
+}  // namespace
+
+BlackBox::BlackBox(std::string folder, RecordingInfo info, const ControllerConfig& config,
+                   const Policy* policy, double window_s, bool wait)
+    : folder_(std::move(folder)),
+      info_(std::move(info)),
+      kept_ticks_(to_ticks(window_s + kBlackBoxAfter_s)),
+      queue_(kBlockTicks, kQueuedBlocks, wait),
+      policy_(policy ? std::optional<Policy>(*policy) : std::nullopt),
+      replay_(config, start_mode_of(info_), policy_ ? &*policy_ : nullptr) {
+  thread_ = std::thread([this] { work(); });
+}
+
+BlackBox::~BlackBox() { close(); }
+
+BlackBoxResult BlackBox::close() {
+  if (thread_.joinable()) {
+    queue_.finish();
+    thread_.join();
+    result_.dropped = queue_.dropped();
+  }
+  return result_;
+}
+
+void BlackBox::work() {
+  flush_denormals_to_zero();
+  try {
+    while (const std::optional<TickQueue::Batch> batch = queue_.take()) {
+      keep(*batch);
+      write_marked(to_ticks(kBlackBoxAfter_s));
+    }
+    write_marked(0);
+  } catch (const std::bad_alloc&) {  // locked memory has a limit, and the run itself needs it more
+    result_.stopped_because = "out of memory";
+    window_.clear();
+    while (queue_.take()) {
+    }
+  }
+}
+
+void BlackBox::keep(const TickQueue::Batch& batch) {
+  note_faults(batch);
+  newest_tick_ = batch.back().input.sensors.tick;
+  window_.push_back(std::make_shared<const Block>(
+      Block{batch.front().input.sensors.tick, newest_tick_, batch.size(), compressed(batch)}));
+  bytes_ += window_.back()->bytes.size();
+  result_.peak_bytes = std::max(result_.peak_bytes, bytes_);
+  while (window_.front()->last_tick + kept_ticks_ < newest_tick_) {
+    let_go(*window_.front());
+    bytes_ -= window_.front()->bytes.size();
+    window_.pop_front();
+  }
+}
+
+void BlackBox::note_faults(const TickQueue::Batch& batch) {
+  for (const TickRecord& tick : batch) {
+    const std::uint64_t faults = tick.output.faults;
+    // What is latched beside the first belongs to the same fall. The lowest bit is the first.
+    if (faults != 0 && last_faults_ == 0) {
+      marks_.push_back({static_cast<Fault>(faults & (~faults + 1)), tick.input.sensors.tick});
+    }
+    last_faults_ = faults;
+  }
+}
+
+void BlackBox::let_go(const Block& block) {
+  if (result_.difference) return;  // nothing leads over it
+  for (const TickRecord& tick : uncompressed(block.bytes, block.ticks)) {
+    result_.difference = replay_.check(tick);
+    if (result_.difference) return;
+  }
+}
+
+void BlackBox::write_marked(std::uint64_t ticks_after) {
+  while (!marks_.empty() && newest_tick_ >= marks_.front().tick + ticks_after) {
+    const Mark mark = marks_.front();
+    marks_.pop_front();
+    if (result_.files.size() < kBlackBoxFiles) {
+      write(mark);
+    } else {
+      ++result_.left_out;
+    }
+  }
+}
+
+void BlackBox::write(const Mark& mark) {
+  const ReplayState state = replay_.state();
+  BlackBoxFile file;
+  file.fault = mark.fault;
+  file.fault_tick = mark.tick;
+  file.path = fmt::format("{}/black-box-{}.mcap", folder_, mark.tick);
+  file.has_start = !result_.difference.has_value();
+  RecordingInfo info = info_;
+  info.first_tick = file.has_start ? state.next_tick : window_.front()->first_tick;
+  if (file.has_start && info.first_tick > 0) info.state = replay_state_bytes(state);
+  file.before_s =
+      (static_cast<double>(mark.tick) - static_cast<double>(info.first_tick)) * kControlPeriod_s;
+  const std::string part = file.path + ".part";
+  try {
+    write_file(part, info);
+    if (std::rename(part.c_str(), file.path.c_str()) != 0) {
+      throw InputError(fmt::format("{}: cannot be written ({})", file.path, std::strerror(errno)));
+    }
+  } catch (const InputError& error) {
+    file.problem = error.what();
+  } catch (const std::bad_alloc&) {
+    file.problem = "out of memory";
+  }
+  if (!file.problem.empty()) std::remove(part.c_str());
+  result_.files.push_back(std::move(file));
+}
+
+void BlackBox::write_file(const std::string& path, const RecordingInfo& info) {
+  RecordingWriter writer(path, info);
+  // The run goes on, and the disk may be slow: the window moves on under these.
+  const std::vector<std::shared_ptr<const Block>> blocks(window_.begin(), window_.end());
+  for (const std::shared_ptr<const Block>& block : blocks) {
+    writer.write(uncompressed(block->bytes, block->ticks));
+    while (const std::optional<TickQueue::Batch> batch = queue_.take_at_once()) keep(*batch);
+  }
+  writer.close();
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/recording/recording_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "rt/core/mode_machine.h"
+#include "rt/telemetry/recording/ros_messages.h"
+#include "rt/tick_fields.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr std::size_t kBatchTicks = 40;  // of a message
+constexpr const char* kEventIdl =
+    "module sandrunner {\n  struct Event {\n    unsigned long long tick;\n    string kind;\n"
+    "    string text;\n  };\n};\n";
+
+const char* request_name(ModeRequest request) {
+  switch (request) {
+    case ModeRequest::kNone:
+      break;
+    case ModeRequest::kPassive:
+      return "passive";
+    case ModeRequest::kDamp:
+      return "damp";
+    case ModeRequest::kStand:
+      return "stand";
+    case ModeRequest::kWalk:
+      return "walk";
+    case ModeRequest::kResetFault:
+      return "reset_fault";
+  }
+  return "none";
+}
+
+McapMap qos() { return {{"offered_qos_profiles", ""}}; }
+
+}  // namespace
+
+RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& info)
+    : start_time_ns_(info.start_time_ns), file_(path), in_the_middle_(info.first_tick > 0) {
+  file_.write_metadata({kRunMetadata,
+                        {{"build", info.build},
+                         {"start_mode", info.start_mode},
+                         {"clock", info.clock},
+                         {"start_time_ns", fmt::format("{}", info.start_time_ns)},
+                         {"first_tick", fmt::format("{}", info.first_tick)}}});
+  const auto attach = [&](const char* name, const char* type, const std::string& data) {
+    if (data.empty()) return;
+    file_.write_attachment({.log_time_ns = time_ns(info.first_tick),
+                            .create_time_ns = 0,
+                            .name = name,
+                            .media_type = type,
+                            .data = data});
+  };
+  attach(kConfigAttachment, "application/toml", info.config);
+  attach(kPolicyAttachment, "application/octet-stream", info.policy);
+  attach(kRobotAttachment, "application/xml", info.robot);
+  attach(kStateAttachment, "application/octet-stream", info.state);
+  const auto own = [&](const char* topic, const char* name, const std::string& idl) {
+    return file_.add_channel(file_.add_schema(name, "omgidl", idl), topic, "cdr", qos());
+  };
+  channels_.ticks = own(kTicksTopic, "sandrunner::TickBatch", tick_idl());
+  channels_.events = own(kEventsTopic, "sandrunner::Event", kEventIdl);
+  const auto ros = [&](const RosTopic& topic) {
+    return file_.add_channel(file_.add_schema(topic.schema, "ros2msg", topic.text), topic.topic,
+                             "cdr", qos());
+  };
+  channels_.joint_states = ros(joint_state_topic());
+  channels_.imu = ros(imu_topic());
+  channels_.odometry = ros(odometry_topic());
+  channels_.transforms = ros(transform_topic());
+}
+
+void RecordingWriter::write(std::span<const TickRecord> ticks) {
+  while (!ticks.empty()) {
+    const std::size_t count = std::min(ticks.size(), kBatchTicks);
+    write_batch(ticks.first(count));
+    ticks = ticks.subspan(count);
+  }
+}
+
+void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
+  const std::uint64_t first = batch.front().input.sensors.tick;
+  const auto message = [&](std::uint16_t channel, std::uint64_t sequence, std::uint64_t tick,
+                           const CdrWriter& cdr) {
+    file_.write_message({.channel_id = channel,
+                         .sequence = static_cast<std::uint32_t>(sequence),
+                         .log_time_ns = time_ns(tick),
+                         .publish_time_ns = time_ns(tick),
+                         .data = cdr.bytes()});
+  };
+  CdrWriter ticks;
+  ticks.number(++batches_).number(static_cast<std::uint32_t>(batch.size()));
+  ticks.block(std::as_bytes(batch), 8);
+  message(channels_.ticks, batches_, first, ticks);
+
+  for (const TickRecord& tick : batch) {
+    odometry_.add(tick);
+    write_events(tick);
+    const std::uint64_t number = tick.input.sensors.tick;
+    if (number % kTicksPerPolicyStep != 0) continue;
+    const auto now = static_cast<std::int64_t>(time_ns(number));
+    const std::uint64_t sequence = number / kTicksPerPolicyStep;
+    message(channels_.joint_states, sequence, number, joint_state_message(tick, now));
+    message(channels_.imu, sequence, number, imu_message(tick, now));
+    message(channels_.odometry, sequence, number, odometry_message(odometry_, now));
+    message(channels_.transforms, sequence, number, transform_message(odometry_, now));
+  }
+  if (first - last_flush_tick_ >= kControlHz / 2) {
+    file_.flush();
+    last_flush_tick_ = first;
+  }
+}
+
+void RecordingWriter::write_events(const TickRecord& tick) {
+  const auto event = [&](const char* kind, const std::string& text) {
+    CdrWriter cdr;
+    cdr.number(tick.input.sensors.tick).text(kind).text(text);
+    file_.write_message({.channel_id = channels_.events,
+                         .sequence = static_cast<std::uint32_t>(++events_),
+                         .log_time_ns = time_ns(tick.input.sensors.tick),
+                         .publish_time_ns = time_ns(tick.input.sensors.tick),
+                         .data = cdr.bytes()});
+  };
+  const auto mode = static_cast<std::uint64_t>(tick.output.mode);
+  const std::uint64_t request = tick.input.command.request_id;
+  if (!has_last_ && in_the_middle_) last_request_ = request;
+  if (!has_last_ || mode != last_mode_) event("mode", mode_name(tick.output.mode));
+  if (request != last_request_) {
+    event("request", request_name(tick.input.command.request));
+  }
+  for (int bit = 0; bit < kNumFaults; ++bit) {
+    const std::uint64_t mask = std::uint64_t{1} << bit;
+    if ((tick.output.faults & mask) != 0 && (last_faults_ & mask) == 0) {
+      event("fault", fault_name(static_cast<Fault>(mask)));
+    }
+  }
+  if (tick.skipped > 0) event("skipped", fmt::format("{} ticks", tick.skipped));
+  has_last_ = true;
+  last_mode_ = mode;
+  last_faults_ = tick.output.faults;
+  last_request_ = request;
+}
+
+std::uint64_t RecordingWriter::time_ns(std::uint64_t tick) const noexcept {
+  return static_cast<std::uint64_t>(start_time_ns_) + tick * (1'000'000'000 / kControlHz);
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "rt/telemetry/mcap/mcap_writer.h"
+#include "rt/telemetry/odometry.h"
+#include "rt/tick_record.h"
+
+namespace sandrunner {
+
+/// What a recording says about the run, besides its ticks: enough to replay it.
+struct RecordingInfo {
+  std::string build;               ///< of the program that made the ticks
+  std::string start_mode;          ///< of the controller: "passive" or "walk"
+  std::string clock;               ///< "lockstep" or "realtime"
+  std::string config;              ///< effective settings, TOML
+  std::string policy;              ///< the policy file, whole; empty: none
+  std::string robot;               ///< robot description, URDF
+  std::int64_t start_time_ns = 0;  ///< of tick 0, since 1970
+  /// Where the recording begins: 0 at the start of the run. Else it replays from `state`, and not
+  /// at all if that is empty.
+  std::uint64_t first_tick = 0;
+  std::string state;  ///< before `first_tick`: replay_state_bytes() (rt/replay.h)
+};
+
+/// Mode that the controller of the run started in.
+inline Mode start_mode_of(const RecordingInfo& info) {
+  return info.start_mode == "walk" ? Mode::kWalk : Mode::kPassive;
+}
+
+/// Turns ticks into an MCAP file: our own records bit for bit, events, and ROS 2 topics at the rate
+/// of the policy for the usual tools. Compresses and writes in the thread that calls it.
+class RecordingWriter {
+ public:
+  /// Throws InputError if the file cannot be written.
+  RecordingWriter(const std::string& path, const RecordingInfo& info);
+
+  /// The next ticks, in order. Throws InputError once if the disk is full; what is there is
+  /// readable. A kill later loses at most the last half second.
+  void write(std::span<const TickRecord> ticks);
+  /// Finishes the file. Throws InputError.
+  void close() { file_.close(); }
+
+  std::uint64_t bytes_written() const noexcept { return file_.bytes_written(); }
+
+ private:
+  void write_batch(std::span<const TickRecord> ticks);
+  void write_events(const TickRecord& tick);
+  std::uint64_t time_ns(std::uint64_t tick) const noexcept;
+
+  const std::int64_t start_time_ns_;
+  McapWriter file_;
+  struct Channels {
+    std::uint16_t ticks = 0, events = 0, joint_states = 0, imu = 0, odometry = 0, transforms = 0;
+  } channels_;
+  Odometry odometry_;
+  std::uint64_t batches_ = 0, events_ = 0, last_flush_tick_ = 0;
+  bool in_the_middle_, has_last_ = false;
+  std::uint64_t last_mode_ = 0, last_faults_ = 0, last_request_ = 0;
+};
+
+inline constexpr const char* kTicksTopic = "/sandrunner/ticks";
+inline constexpr const char* kEventsTopic = "/sandrunner/events";
+/// Attachments and metadata of a recording.
+inline constexpr const char* kConfigAttachment = "config.toml";
+inline constexpr const char* kPolicyAttachment = "policy.safetensors";
+inline constexpr const char* kRobotAttachment = "robot.urdf";
+inline constexpr const char* kStateAttachment = "state.bin";
+inline constexpr const char* kRunMetadata = "run";
+
+}  // namespace sandrunner

@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/recording/black_box.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <thread>
+
+#include "rt/build.h"
+#include "rt/core/floating_point.h"
+#include "rt/lockstep.h"
+#include "tests/rt/realtime/live_operator.h"
+#include "tests/rt/support.h"
+#include "tests/rt/telemetry/recording/recording_program.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr double kWindow_s = 2.0;
+
+/// Walks in lockstep in front of a black box with a short window.
+class BlackBoxTest : public RecordingProgramTest {
+ protected:
+  BlackBoxTest() {
+    flush_denormals_to_zero();  // as the programs
+    info_.build = build_name();
+    info_.start_mode = "walk";
+    info_.clock = "lockstep";
+    info_.config = config_.effective;
+    info_.policy = shipped_policy_text();
+    info_.robot = config_.robot.description;
+    info_.start_time_ns = 1'700'000'000'000'000'000;
+    command_.velocity.vx_mps = 1.0;
+  }
+
+  std::string dir() const { return std::filesystem::path(folder_.path("")).parent_path(); }
+  void open(const std::string& folder) {
+    box_.emplace(folder, info_, config_.controller, &policy_, kWindow_s, true);
+  }
+
+  /// Goes on until that tick. In the ticks `faults` the command is not a number: a fault.
+  void walk_to(std::uint64_t end, const std::set<std::uint64_t>& faults = {}) {
+    while (simulator_.state().tick < end) {
+      const std::uint64_t tick = simulator_.state().tick;
+      OperatorCommand command = command_;
+      command.tick = tick;
+      if (faults.contains(tick))
+        command.velocity.wz_radps = std::numeric_limits<double>::quiet_NaN();
+      TickRecord record;
+      note_before(simulator_, record);
+      loop_.tick(command);
+      record.input = loop_.input();
+      record.output = loop_.output();
+      note_after(simulator_, record);
+      if (tick >= lost_.first && tick < lost_.second) continue;
+      box_->add(record);
+    }
+  }
+  void request(ModeRequest request) {
+    command_.request = request;
+    ++command_.request_id;
+  }
+
+  std::string path(std::uint64_t fault_tick) const {
+    return folder_.path("black-box-" + std::to_string(fault_tick) + ".mcap");
+  }
+  /// The numbers of the ticks in a file follow each other.
+  RecordingContents read(const std::string& file, std::uint64_t& last_tick) const {
+    std::uint64_t next = 0;
+    bool first = true;
+    RecordingContents contents = read_recording(file, {}, [&](const TickRecord& record) {
+      if (first) next = record.input.sensors.tick;
+      first = false;
+      EXPECT_EQ(record.input.sensors.tick, next);
+      ++next;
+      return !HasFailure();
+    });
+    EXPECT_TRUE(contents.complete);
+    EXPECT_EQ(contents.info.first_tick + contents.ticks, next);
+    last_tick = next - 1;
+    return contents;
+  }
+  void expect_one_line(const std::string& part) const {
+    const std::string text = output();
+    std::string last = text.substr(0, text.size() - 1);
+    if (last.rfind("wrote", 0) == 0) last = last.substr(last.find('\n') + 1);
+    EXPECT_EQ(last.find('\n'), std::string::npos) << text;
+    EXPECT_NE(last.find(part), std::string::npos) << text;
+  }
+
+  Policy policy_ = load_shipped_policy();
+  const ProcessConfig config_ = config_of(
+      "dry-sand", {"sim.noise.joint_position_rad=0.005", "controller.damping.fault_s=0.02"},
+      &policy_.spec());
+  RecordingInfo info_;
+  OperatorCommand command_;
+  std::pair<std::uint64_t, std::uint64_t> lost_{};  ///< ticks that the black box is not given
+  std::optional<BlackBox> box_;
+
+ private:
+  sim::Simulator simulator_{config_.robot, config_.simulator};
+  Policy walking_ = policy_;
+  Lockstep loop_{simulator_, config_.controller, Mode::kWalk, &walking_};
+};
+
+TEST_F(BlackBoxTest, HoldsTheWindowBeforeTheFaultAndTheLetDownAndReplaysFromItsState) {
+  open(dir());
+  walk_to(32000, {20000});
+  // Written 2 s after the fault, while the run goes on.
+  for (int i = 0; i < 1000 && !std::filesystem::exists(path(20000)); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_TRUE(std::filesystem::exists(path(20000)));
+  const BlackBoxResult result = box_->close();
+  EXPECT_FALSE(result.difference) << result.difference->what;
+  EXPECT_EQ(result.dropped, 0u);
+  ASSERT_EQ(result.files.size(), 1u);
+  const BlackBoxFile& file = result.files[0];
+  EXPECT_EQ(file.path, path(20000));
+  EXPECT_EQ(file.problem, "");
+  EXPECT_TRUE(file.has_start);
+  EXPECT_EQ(file.fault, Fault::kNonFiniteCommand);
+  EXPECT_EQ(file.fault_tick, 20000u);
+  EXPECT_GE(file.before_s, kWindow_s - 0.001);
+  EXPECT_LE(file.before_s, kWindow_s + 0.2);
+  EXPECT_EQ(folder_.number_of_files(), 1u) << "no part of a file is left";
+
+  std::uint64_t last = 0;
+  const RecordingContents contents = read(path(20000), last);
+  EXPECT_GE(last, 28000u);
+  EXPECT_LE(last, 28400u);
+  EXPECT_FALSE(contents.info.state.empty());
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 0) << output();
+  expect_one_line(std::to_string(contents.ticks) + " ticks and ");
+}
+
+TEST_F(BlackBoxTest, FlippedBitOfAnInputIsFoundAndNamed) {
+  open(dir());
+  walk_to(24000, {20000});
+  box_->close();
+  flip(path(20000), folder_.path("flipped.mcap"), 18000, word_named("joint_position_rad[7]"), 1);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
+  expect_one_line("DIFFERS at tick 18000 (4.50000 s): released_joint_position_rad[7]");
+}
+
+TEST_F(BlackBoxTest, FlippedBitOfTheStateIsFoundAtTheFirstTickThatItChanges) {
+  open(dir());
+  walk_to(24000, {20000});
+  box_->close();
+  const auto spoil = [](RecordingInfo& info) {
+    ReplayState state = read_replay_state(info.state, "state");
+    state.controller.target_rad[4] += 1e-9;
+    info.state = replay_state_bytes(state);
+  };
+  rewrite(path(20000), folder_.path("spoilt.mcap"), spoil, {});
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("spoilt.mcap")), 1);
+  expect_one_line("command_position_rad[4]: recorded");
+}
+
+TEST_F(BlackBoxTest, RangePicturesAndOtherSettingsWorkFromTheMiddle) {
+  open(dir());
+  walk_to(24000, {20000});
+  box_->close();
+  const std::string plots = "--plot '" + folder_.path("plots") + "' ";
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --from 4 --to 4.5 " + plots), 0) << output();
+  EXPECT_NE(output().find("2001 ticks"), std::string::npos) << output();
+  const std::string csv = read_file(folder_.path("plots/run.csv"));
+  EXPECT_EQ(csv.substr(csv.find('\n') + 1, 7), "4,walk,");
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/strip.png")));
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --set controller.walk.kd_nmsprad=0.6"), 1);
+  std::uint64_t last = 0;
+  const std::uint64_t first = read(path(20000), last).info.first_tick;
+  expect_one_line("DIFFERS at tick " + std::to_string(first) + " ");
+}
+
+TEST_F(BlackBoxTest, FaultInTheFirstSecondHasTheWholeRun) {
+  open(dir());
+  walk_to(3990, {1000});
+  EXPECT_EQ(box_->close().files.size(), 1u);
+  std::uint64_t last = 0;
+  const RecordingContents contents = read(path(1000), last);
+  EXPECT_EQ(contents.info.first_tick, 0u);
+  EXPECT_EQ(contents.info.state, "");
+  EXPECT_EQ(last, 3989u);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(1000)), 0) << output();
+}
+
+TEST_F(BlackBoxTest, EachFaultHasItsFile) {
+  open(dir());
+  walk_to(12000, {8000});
+  request(ModeRequest::kResetFault);
+  walk_to(12400);
+  request(ModeRequest::kStand);
+  walk_to(30000, {28000});
+  const BlackBoxResult result = box_->close();
+  ASSERT_EQ(result.files.size(), 2u);
+  EXPECT_FALSE(result.difference);
+  std::uint64_t last = 0;
+  read(path(8000), last);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(8000)), 0) << output();
+  read(path(28000), last);
+  EXPECT_EQ(last, 29999u);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(28000)), 0) << output();
+}
+
+TEST_F(BlackBoxTest, RunHasTenFilesAtMost) {
+  open(dir());
+  for (std::uint64_t fault = 1; fault <= 12; ++fault) {
+    walk_to(fault * 200 + 150, {fault * 200});
+    request(ModeRequest::kResetFault);
+  }
+  walk_to(3000);
+  const BlackBoxResult result = box_->close();
+  EXPECT_EQ(result.files.size(), 10u);
+  EXPECT_EQ(result.left_out, 2u);
+  EXPECT_EQ(folder_.number_of_files(), 10u);
+}
+
+TEST_F(BlackBoxTest, RunWithoutAFaultHasNoFileAndIsVerified) {
+  open(dir());
+  walk_to(28000);
+  const BlackBoxResult result = box_->close();
+  EXPECT_TRUE(result.files.empty());
+  EXPECT_FALSE(result.difference) << result.difference->what;
+  EXPECT_EQ(folder_.number_of_files(), 0u);
+  // The window, what follows a fault, and a block: 4.1 s of 10 MB/s, compressed to 27 %.
+  EXPECT_GT(result.peak_bytes, 4.0 * 1e6);
+  EXPECT_LT(result.peak_bytes, 4.1 * 3e6);
+}
+
+TEST_F(BlackBoxTest, RunThatDoesNotReplayIsReported) {
+  ProcessConfig other = config_of("dry-sand", {"controller.walk.kd_nmsprad=0.6"}, &policy_.spec());
+  box_.emplace(dir(), info_, other.controller, &policy_, kWindow_s, true);
+  walk_to(24000);
+  const BlackBoxResult result = box_->close();
+  ASSERT_TRUE(result.difference);
+  EXPECT_EQ(result.difference->tick, 0u);
+  EXPECT_EQ(result.difference->what.substr(0, 21), "command_kd_nmsprad[0]");
+}
+
+TEST_F(BlackBoxTest, TicksLostBeforeTheWindowLeaveAFileThatCannotBeReplayed) {
+  lost_ = {5000, 5040};
+  open(dir());
+  walk_to(24000, {20000});
+  const BlackBoxResult result = box_->close();
+  ASSERT_TRUE(result.difference);
+  EXPECT_EQ(result.difference->tick, 5040u);
+  ASSERT_EQ(result.files.size(), 1u);
+  EXPECT_FALSE(result.files[0].has_start);
+  std::uint64_t last = 0;
+  const RecordingContents contents = read(path(20000), last);
+  EXPECT_GT(contents.info.first_tick, 5040u);
+  EXPECT_EQ(contents.info.state, "");
+  EXPECT_EQ(last, 23999u);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 2);
+  expect_one_line("it cannot be replayed");
+  // Its pictures can be drawn all the same.
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --plot '" + folder_.path("plots") + "'"), 2);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
+}
+
+TEST_F(BlackBoxTest, TicksLostWithinTheWindowAreNamed) {
+  lost_ = {18000, 18040};
+  open(dir());
+  walk_to(24000, {20000});
+  EXPECT_TRUE(box_->close().files.at(0).has_start);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 1);
+  expect_one_line("recording has a gap: expected tick 18000, found 18040");
+}
+
+TEST_F(BlackBoxTest, FolderThatCannotBeWrittenIsReportedAndTheBlackBoxGoesOn) {
+  open(folder_.path("absent"));
+  walk_to(12000, {2000});  // its file is due
+  std::filesystem::create_directory(folder_.path("absent"));
+  request(ModeRequest::kResetFault);
+  walk_to(24000, {20000});
+  const BlackBoxResult result = box_->close();
+  ASSERT_EQ(result.files.size(), 2u);
+  EXPECT_NE(result.files[0].problem.find("black-box-2000.mcap"), std::string::npos);
+  EXPECT_EQ(result.files[0].problem.find('\n'), std::string::npos);
+  EXPECT_EQ(result.files[1].problem, "");
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("absent/black-box-20000.mcap")), 0) << output();
+}
+
+TEST_F(BlackBoxTest, StateThatIsNoneIsBadInput) {
+  open(dir());
+  walk_to(24000, {20000});
+  box_->close();
+  const std::string spoilt = folder_.path("spoilt.mcap");
+  const auto refused = [&](const std::function<void(std::string&)>& spoil, const char* why) {
+    rewrite(path(20000), spoilt, [&](RecordingInfo& info) { spoil(info.state); }, {});
+    EXPECT_EQ(run(SANDRUNNER_REPLAY, spoilt), 2) << output();
+    expect_one_line(spoilt + ": attachment 'state.bin': ");
+    EXPECT_NE(output().find(why), std::string::npos) << output();
+  };
+  refused([](std::string& state) { state.resize(100); }, "100 bytes");
+  refused([](std::string& state) { state.resize(9); }, "9 bytes");
+  refused([](std::string& state) { state += "more"; }, "expected");
+  refused([](std::string& state) { state[0] = 'X'; }, "SRSTATE1");
+  refused([](std::string& state) { state[8] = static_cast<char>(state[8] ^ 8); }, "announce");
+  refused([](std::string& state) { state[16] = 77; }, "mode 77");
+}
+
+// Two threads: the answers come late, some inputs of the policy are under way at any tick.
+TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
+  box_.emplace(dir(), info_, config_.controller, &policy_, 0.3);
+  LiveOperator op;
+  op.want(VelocityCommand{.vx_mps = 1.0});
+  RealtimeHooks hooks;
+  hooks.op = &op;
+  hooks.meanwhile = [&](PolicyThread&) {
+    if (op.time_s() > 3.0 && op.faults() == 0) {
+      op.want(VelocityCommand{.vx_mps = std::numeric_limits<double>::quiet_NaN()});
+    }
+    if (op.time_s() > 3.2) op.end();
+  };
+  Policy policy = policy_;
+  const CommandSource nobody("0,0,0");
+  const std::atomic<bool> never{false};
+  const auto tap = [&](const TickRecord& tick) { box_->add(tick); };
+  run_realtime(config_, &policy, nobody, {.start_walking = true}, false, never, {}, tap, hooks);
+  const BlackBoxResult result = box_->close();
+  EXPECT_FALSE(result.difference) << result.difference->what;
+  ASSERT_EQ(result.files.size(), 1u);
+  EXPECT_GT(
+      read_recording(result.files[0].path, {}, [](const auto&) { return true; }).info.first_tick,
+      0u);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, result.files[0].path), 0) << output();
+}
+
+class BlackBoxOfTheProgram : public BlackBoxTest {
+ protected:
+  // The body of a walking robot tilts by more than that soon.
+  static constexpr const char* kRun =
+      "--clock realtime --start walk --duration 3 --set controller.gate.tilt_fault_deg=1.5 ";
+
+  /// The only black box in the folder.
+  std::string found() const {
+    std::string path;
+    for (const auto& entry : std::filesystem::directory_iterator(dir())) {
+      const std::string name = entry.path().filename().string();
+      if (name.rfind("black-box-", 0) == 0) path = entry.path().string();
+    }
+    return path;
+  }
+};
+
+TEST_F(BlackBoxOfTheProgram, RealtimeRunWithAFaultLeavesARecordingThatReplays) {
+  EXPECT_EQ(run(SANDRUNNER_PROGRAM, kRun + ("--record '" + dir() + "'")), 1);
+  ASSERT_NE(found(), "") << output();
+  EXPECT_NE(output().find("s before the fault '"), std::string::npos) << output();
+  EXPECT_NE(output().find(", in " + dir() + "/black-box-"), std::string::npos) << output();
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, found()), 0) << output();
+}
+
+TEST_F(BlackBoxOfTheProgram, GoesToTheFolderOfTheOtherFilesElseToTheWorkingFolder) {
+  EXPECT_EQ(run(SANDRUNNER_PROGRAM, kRun + ("--out '" + folder_.path("out") + "'")), 1);
+  EXPECT_NE(output().find(folder_.path("out") + "/black-box-"), std::string::npos) << output();
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(dir());
+  EXPECT_EQ(run(SANDRUNNER_PROGRAM, kRun), 1);
+  std::filesystem::current_path(before);
+  EXPECT_NE(found(), "") << output();
+}
+
+TEST_F(BlackBoxOfTheProgram, LockstepRunHasNone) {
+  EXPECT_EQ(run(SANDRUNNER_PROGRAM,
+                "--start walk --duration 1 --set controller.gate.tilt_fault_deg=1.5 --record '" +
+                    folder_.path("") + "'"),
+            1);
+  EXPECT_EQ(found(), "");
+}
+
+TEST_F(BlackBoxOfTheProgram, FullDiskIsSaidAndChangesNothingElse) {
+  // As if the disk had room for 600 kB a file: the policy's attachment alone takes 430.
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit bytes{600'000, 600'000};
+    setrlimit(RLIMIT_FSIZE, &bytes);
+    std::filesystem::current_path(dir());
+    _exit(run(SANDRUNNER_PROGRAM, kRun));
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_NE(output().find("NOT WRITTEN: ./black-box-"), std::string::npos) << output();
+  EXPECT_EQ(folder_.number_of_files(), 0u) << "no part of a file is left";
+}
+
+}  // namespace
+}  // namespace sandrunner

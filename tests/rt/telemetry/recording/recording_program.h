@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The programs that write and replay recordings, and recordings with something changed.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <bit>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "rt/telemetry/recording/recorder.h"
+#include "rt/telemetry/recording/recording_file.h"
+#include "rt/tick_fields.h"
+#include "tests/policy/temporary_folder.h"
+
+namespace sandrunner {
+
+/// Place of a field in the words of a tick, e.g. of "joint_position_rad[7]".
+inline std::size_t word_named(const std::string& name) {
+  std::size_t word = 0;
+  while (tick_word_name(word) != name) ++word;
+  return word;
+}
+
+/// The recording again, all checksums right, with other facts or ticks.
+inline void rewrite(const std::string& from, const std::string& to,
+                    const std::function<void(RecordingInfo&)>& change_info,
+                    const std::function<void(TickRecord&)>& change_tick) {
+  std::unique_ptr<Recorder> recorder;
+  read_recording(
+      from,
+      [&](const RecordingInfo& found) {
+        RecordingInfo info = found;
+        if (change_info) change_info(info);
+        recorder = std::make_unique<Recorder>(to, info, RecordingLimits{}, true);
+      },
+      [&](const TickRecord& found) {
+        TickRecord record = found;
+        if (change_tick) change_tick(record);
+        recorder->add(record);
+        return true;
+      });
+  recorder->close();
+}
+
+/// The same with bits of one word of one tick flipped.
+inline void flip(const std::string& from, const std::string& to, std::uint64_t tick,
+                 std::size_t word, std::uint64_t mask) {
+  rewrite(from, to, {}, [&](TickRecord& record) {
+    if (record.input.sensors.tick != tick) return;
+    auto words = std::bit_cast<TickWords>(record);
+    words[word] ^= mask;
+    record = std::bit_cast<TickRecord>(words);
+  });
+}
+
+class RecordingProgramTest : public testing::Test {
+ protected:
+  /// Runs `sandrunner` or `sandrunner-replay`; returns the exit code.
+  int run(const char* program, const std::string& arguments) {
+    const std::string command =
+        std::string("'") + program + "' " + arguments + " >'" + captured_.path("out") + "' 2>&1";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string output() const { return read_file(captured_.path("out")); }
+
+  const TemporaryFolder folder_;    ///< of the recordings
+  const TemporaryFolder captured_;  ///< what the program printed
+};
+
+}  // namespace sandrunner
