@@ -154,7 +154,15 @@ const char* CommandInbox::follow(Wish wish) {
   operator_.wish(wish_);
   const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
   while (operator_.considered() != wish_.request_number) {
-    if (std::chrono::steady_clock::now() > deadline) return "the controller does not answer";
+    if (std::chrono::steady_clock::now() > deadline) {
+      // Who was told no is not to see the robot move later; what calms it still holds.
+      if (wish != Wish::kStop && wish != Wish::kDamp) {
+        wish_.request = ModeRequest::kNone;
+        ++wish_.request_number;
+        operator_.wish(wish_);
+      }
+      return "the controller does not answer";
+    }
     std::this_thread::sleep_for(kLookEvery);
   }
   return failure(wish, operator_.mode());

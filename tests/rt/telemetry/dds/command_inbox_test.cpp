@@ -145,13 +145,18 @@ TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
   EXPECT_STREQ(asker.ask("walk").reason, "no policy to walk with");
 }
 
-TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefused) {
+TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLater) {
   const DdsConfig config = test_config();
-  DdsParticipant participant(config);
-  DdsOperator op(config.stale_ticks());
-  CommandInbox inbox(participant, config, true, op);
-  Peer peer(config);
-  EXPECT_STREQ(Asker(peer).ask("stand").reason, "the controller does not answer");
+  for (const auto& [wish, later] :
+       {std::pair("stand", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
+    DdsParticipant participant(config);
+    DdsOperator op(config.stale_ticks());
+    CommandInbox inbox(participant, config, true, op);
+    Peer peer(config);
+    EXPECT_STREQ(Asker(peer).ask(wish).reason, "the controller does not answer");
+    op.command(0);
+    EXPECT_EQ(op.command(1).request, later) << wish;  // what calms the robot still holds
+  }
 }
 
 TEST(CommandInboxTest, TwistStampedIfTheConfigSaysSo) {
