@@ -124,7 +124,7 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
     }
     asker.ask("stop");
     sleep_s(0.8);
-    robot.signal(SIGINT);
+    robot.signal(SIGTERM);
     robot.wait();
     EXPECT_NE(robot.wait().find(" in " + dir), std::string::npos) << robot.wait();
     EXPECT_EQ(robot.wait().find("LOST"), std::string::npos) << robot.wait();
