@@ -31,13 +31,16 @@ Durations time_handovers() {
   Durations durations;
   std::thread writer([&] {
     prepare_this_thread();
-    ControllerInput input;
-    ControllerOutput output;
+    ControllerInput sensed, input;
+    ControllerOutput computed, output;
     SlotGrid grid(monotonic_ns() + kPeriod_ns, kPeriod_ns);
     for (int i = 0; i < kTicks; ++i) {
       sleep_until(grid.due_ns());
       grid.take(monotonic_ns());
-      input.sensors.tick = static_cast<std::uint64_t>(i);
+      // As in the control loop, what is handed over was written a moment ago.
+      sensed.sensors.tick = static_cast<std::uint64_t>(i);
+      input = sensed;
+      output = computed;
       asm volatile("" : : "g"(&input), "g"(&output) : "memory");
       const std::int64_t before = monotonic_ns();
       const std::int64_t begin = monotonic_ns();
