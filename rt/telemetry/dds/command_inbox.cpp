@@ -16,6 +16,9 @@ namespace sandrunner {
 namespace {
 
 constexpr int kRequestDepth = 32;
+// All that publishers send before the thread gets to it: were only the newest kept, one who sends
+// right after the holder of the command would silence him and take it over.
+constexpr int kVelocityDepth = 100;
 // The controller answers within a tick; one that does not in this time is not running.
 constexpr auto kAnswerTime = std::chrono::milliseconds(20);
 constexpr auto kLookEvery = std::chrono::microseconds(250);
@@ -47,7 +50,7 @@ CommandInbox::CommandInbox(const DdsParticipant& participant, const DdsConfig& c
       cmd_vel_(participant.reader(
           "rt/cmd_vel",
           stamped_ ? geometry_msgs_msg_dds__TwistStamped__desc : geometry_msgs_msg_dds__Twist__desc,
-          1, false)),
+          kVelocityDepth, false)),
       requests_(participant.reader("sandrunner/mode_request", sandrunner_ModeRequest_desc,
                                    kRequestDepth, true)),
       replies_(
