@@ -152,11 +152,10 @@ TEST_F(RobotCommandsTest, WhatIsNoSpeedIsCountedAndTheRobotFollowsTheLastOneThat
     if (driver.sent() != before) ++number;
   });
   const CommandCounts counts = inbox_.counts();
-  // About 16 of each; one that this busy machine overtakes with the next is not seen.
-  EXPECT_GE(counts.not_finite, 8u);
+  EXPECT_GE(counts.not_finite, 8u);  // about 16
   EXPECT_GE(counts.absurd, 8u);
   EXPECT_EQ(counts.other_publisher, 0u);
-  EXPECT_LE(counts.accepted + counts.not_finite + counts.absurd, driver.sent());
+  EXPECT_EQ(counts.accepted + counts.not_finite + counts.absurd, driver.sent());
   const double from_s = first_s(0.0, 0.6);
   EXPECT_LT(from_s, 0.2);
   for (const TickRecord& tick : ticks_) {
