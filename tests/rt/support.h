@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/printing.h"
 #include "policy/policy_file.h"
 #include "rt/core/errors.h"
 #include "rt/process_config.h"
@@ -15,10 +16,6 @@
 #include "tests/policy/random_policy.h"
 
 namespace sandrunner {
-
-/// For messages of GoogleTest.
-inline void PrintTo(Mode mode, std::ostream* out) { *out << mode_name(mode); }
-inline void PrintTo(Fault fault, std::ostream* out) { *out << fault_name(fault); }
 
 /// Settings as the program makes them from --terrain and --set.
 inline ProcessConfig config_of(const std::string& terrain,

@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   if (rt->parsed()) {
     report = bench::run_policy_bench(rounds);
     bench::run_exchange_bench(rounds, report);
+    bench::run_handover_bench(rounds, report);
     bench::run_wakeup_bench(rounds, report);
   }
   print(report);

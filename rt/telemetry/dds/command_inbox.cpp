@@ -16,6 +16,9 @@ namespace sandrunner {
 namespace {
 
 constexpr int kRequestDepth = 32;
+// All that publishers send before the thread gets to it: were only the newest kept, one who sends
+// right after the holder of the command would silence him and take it over.
+constexpr int kVelocityDepth = 100;
 // The controller answers within a tick; one that does not in this time is not running.
 constexpr auto kAnswerTime = std::chrono::milliseconds(20);
 constexpr auto kLookEvery = std::chrono::microseconds(250);
@@ -47,7 +50,7 @@ CommandInbox::CommandInbox(const DdsParticipant& participant, const DdsConfig& c
       cmd_vel_(participant.reader(
           "rt/cmd_vel",
           stamped_ ? geometry_msgs_msg_dds__TwistStamped__desc : geometry_msgs_msg_dds__Twist__desc,
-          1, false)),
+          kVelocityDepth, false)),
       requests_(participant.reader("sandrunner/mode_request", sandrunner_ModeRequest_desc,
                                    kRequestDepth, true)),
       replies_(
@@ -154,7 +157,15 @@ const char* CommandInbox::follow(Wish wish) {
   operator_.wish(wish_);
   const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
   while (operator_.considered() != wish_.request_number) {
-    if (std::chrono::steady_clock::now() > deadline) return "the controller does not answer";
+    if (std::chrono::steady_clock::now() > deadline) {
+      // Who was told no is not to see the robot move later; what calms it still holds.
+      if (wish != Wish::kStop && wish != Wish::kDamp) {
+        wish_.request = ModeRequest::kNone;
+        ++wish_.request_number;
+        operator_.wish(wish_);
+      }
+      return "the controller does not answer";
+    }
     std::this_thread::sleep_for(kLookEvery);
   }
   return failure(wish, operator_.mode());

@@ -5,16 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <ostream>
 
 #include "rt/core/controller.h"
 #include "rt/core/joint_pd.h"
+#include "printing.h"
 
 namespace sandrunner {
-
-/// For messages of GoogleTest.
-inline void PrintTo(Mode mode, std::ostream* out) { *out << mode_name(mode); }
-inline void PrintTo(Fault fault, std::ostream* out) { *out << fault_name(fault); }
 
 inline constexpr JointArray<double> kLyingPosture_rad = {0.3, 1.5, -2.3, -0.3, 1.5, -2.3,
                                                          0.3, 1.5, -2.3, -0.3, 1.5, -2.3};

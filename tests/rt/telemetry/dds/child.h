@@ -54,9 +54,17 @@ class Child {
   const std::string& wait() {
     while (read_some()) {
     }
-    if (pid_ > 0) waitpid(pid_, nullptr, 0);
+    int status = 0;
+    if (pid_ > 0 && waitpid(pid_, &status, 0) == pid_ && WIFEXITED(status)) {
+      code_ = WEXITSTATUS(status);
+    }
     pid_ = -1;
     return text_;
+  }
+  /// Its exit code; waits for its end. -1: killed.
+  int code() {
+    wait();
+    return code_;
   }
   /// The number after this word, in all that it printed; -1 without.
   double number(const std::string& word) {
@@ -74,6 +82,7 @@ class Child {
 
   pid_t pid_ = -1;
   int out_ = -1;
+  int code_ = -1;
   std::string text_;
 };
 

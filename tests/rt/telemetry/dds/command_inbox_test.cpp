@@ -88,6 +88,19 @@ TEST(CommandInboxTest, TheFirstOfTwoPublishersDrivesAndTheOtherTakesOverWhenHeIs
   EXPECT_EQ(setup.inbox.counts().accepted, 21u);
 }
 
+TEST(CommandInboxTest, OneWhoSendsRightAfterTheHolderDoesNotSilenceHim) {
+  Walking setup;
+  const auto other = setup.second.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
+  for (int i = 0; i < 25; ++i) {  // longer than the stale time
+    drive(setup.twist, 0.5);
+    drive(other, -0.5);
+    sleep_s(0.02);
+  }
+  EXPECT_EQ(setup.inbox.counts().accepted, 25u);
+  EXPECT_EQ(setup.inbox.counts().other_publisher, 25u);
+  EXPECT_EQ(setup.robot.speed_mps(), 0.5);
+}
+
 TEST(CommandInboxTest, StopAndDampAreTakenFromOneWhoDoesNotHoldTheCommand) {
   Walking setup;
   Asker bystander(setup.second);
@@ -145,13 +158,18 @@ TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
   EXPECT_STREQ(asker.ask("walk").reason, "no policy to walk with");
 }
 
-TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefused) {
+TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLater) {
   const DdsConfig config = test_config();
-  DdsParticipant participant(config);
-  DdsOperator op(config.stale_ticks());
-  CommandInbox inbox(participant, config, true, op);
-  Peer peer(config);
-  EXPECT_STREQ(Asker(peer).ask("stand").reason, "the controller does not answer");
+  for (const auto& [wish, later] :
+       {std::pair("stand", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
+    DdsParticipant participant(config);
+    DdsOperator op(config.stale_ticks());
+    CommandInbox inbox(participant, config, true, op);
+    Peer peer(config);
+    EXPECT_STREQ(Asker(peer).ask(wish).reason, "the controller does not answer");
+    op.command(0);
+    EXPECT_EQ(op.command(1).request, later) << wish;  // what calms the robot still holds
+  }
 }
 
 TEST(CommandInboxTest, TwistStampedIfTheConfigSaysSo) {

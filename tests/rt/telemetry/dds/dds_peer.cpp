@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cyclone DDS in another process, for tests:
 //   dds_peer DOMAIN INTERFACE drive VX_MPS COUNT [SECURITY_DIR IDENTITY]   Twists at 50 Hz
-//   dds_peer DOMAIN INTERFACE watch SECONDS [SECURITY_DIR IDENTITY]        batches of ticks
+//   dds_peer DOMAIN INTERFACE watch SECONDS [SECURITY_DIR IDENTITY]        counts the gaps between
+//       batches of ticks, and the ticks that are neither there nor reported as missed by the robot
 //   dds_peer DOMAIN INTERFACE publish SECONDS                              telemetry of a robot
 // Prints what it did as one line; "matched" is printed as soon as it found the other end.
 #include <chrono>
@@ -54,7 +55,7 @@ int watch(const DdsParticipant& participant, double duration_s) {
   const dds_entity_t reader =
       participant.reader("sandrunner/ticks", sandrunner_TickBatch_desc, 1000, true);
   long batches = 0, gaps = 0, ticks = 0;
-  std::uint64_t last = 0;
+  std::uint64_t last = 0, next_tick = 0, lost = 0;
   const auto end = Clock::now() + std::chrono::duration<double>(duration_s);
   while (Clock::now() < end) {
     void* sample = nullptr;
@@ -65,6 +66,11 @@ int watch(const DdsParticipant& participant, double duration_s) {
         if (batches == 0) say("matched");
         if (batches != 0 && batch.sequence_number != last + 1) ++gaps;
         last = batch.sequence_number;
+        for (std::uint32_t i = 0; i < batch.ticks._length; ++i) {
+          const sandrunner_TickState& tick = batch.ticks._buffer[i];
+          if (batches != 0 || i != 0) lost += tick.tick - tick.skipped - next_tick;
+          next_tick = tick.tick + 1;
+        }
         ++batches;
         ticks += batch.ticks._length;
       }
@@ -73,8 +79,8 @@ int watch(const DdsParticipant& participant, double duration_s) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  std::printf("batches %ld gaps %ld ticks %ld last %llu\n", batches, gaps, ticks,
-              static_cast<unsigned long long>(last));
+  std::printf("batches %ld gaps %ld ticks %ld lost_ticks %lld last %llu\n", batches, gaps, ticks,
+              static_cast<long long>(lost), static_cast<unsigned long long>(last));
   return 0;
 }
 

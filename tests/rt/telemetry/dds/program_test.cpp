@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program itself in real time: operators and subscribers, good and bad, beside it, and a
+// recording that replays bit for bit. Longer by the environment, once before a release:
+//   SANDRUNNER_RECORDINGS=20 SANDRUNNER_WATCHED_S=60 dds_program_test
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+
+#include <cstdlib>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "rt/realtime/setup.h"
+#include "rt/telemetry/recording/recording_file.h"
+#include "tests/policy/temporary_folder.h"
+#include "tests/rt/support.h"
+#include "tests/rt/telemetry/dds/child.h"
+#include "tests/rt/telemetry/dds/support.h"
+
+namespace sandrunner {
+namespace {
+
+int from_environment(const char* name, int otherwise) {
+  const char* const text = std::getenv(name);
+  return text ? std::atoi(text) : otherwise;
+}
+
+/// Words of a command, from one line.
+std::vector<std::string> words_of(const std::string& line) {
+  std::istringstream in(line);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+std::string peer(const DdsConfig& config) {
+  return SANDRUNNER_DDS_PEER " " + std::to_string(config.domain) + " lo ";
+}
+
+std::string program(const DdsConfig& config) {
+  return SANDRUNNER_PROGRAM " --set dds.enabled=true --set dds.domain=" +
+         std::to_string(config.domain) + " ";
+}
+
+void expect_replays_bit_for_bit(const std::string& recording) {
+  Child replay({SANDRUNNER_REPLAY, recording});
+  EXPECT_EQ(replay.code(), 0);
+  EXPECT_NE(replay.wait().find("every bit agrees"), std::string::npos) << replay.wait();
+}
+
+/// Never rests, on the processor that the control thread does not have by default.
+class BusyLoop {
+ public:
+  BusyLoop()
+      : thread_([this] {
+          const std::vector<int> cpus = allowed_cpus();
+          cpu_set_t set;
+          CPU_ZERO(&set);
+          CPU_SET(cpus[cpus.size() > 1 ? cpus.size() - 2 : 0], &set);
+          pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+          while (!end_.load(std::memory_order_relaxed)) {
+          }
+        }) {}
+  ~BusyLoop() {
+    end_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::atomic<bool> end_{false};
+  std::thread thread_;
+};
+
+class DdsProgramTest : public testing::Test {
+ protected:
+  nlohmann::json summary(const std::string& folder) const {
+    return nlohmann::json::parse(read_file(folder_.path(folder + "/summary.json")));
+  }
+  const TemporaryFolder folder_;
+  const DdsConfig config_ = test_config();
+};
+
+TEST_F(DdsProgramTest, StateHashIsTheSameWithAndWithoutTelemetryAndRecording) {
+  const auto hash = [&](const std::string& command, const std::string& more) {
+    Child robot(words_of(command + " --start walk --duration 2 --command 0.8,0,0.2 --out " +
+                         folder_.path("out") + more));
+    EXPECT_EQ(robot.code(), 0);
+    return summary("out").at("state_hash").get<std::string>();
+  };
+  const std::string without = hash(SANDRUNNER_PROGRAM, "");
+  Child watcher(words_of(peer(config_) + "watch 60"));
+  EXPECT_EQ(hash(program(config_), ""), without);
+  EXPECT_EQ(hash(program(config_), " --record " + folder_.path("recording")), without);
+  ASSERT_TRUE(watcher.wait_for("matched"));  // somebody listened
+}
+
+// An operator over DDS has it stand up and walk about, then stand, or a fault ends the walk.
+TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
+  const BusyLoop load;
+  const int recordings = from_environment("SANDRUNNER_RECORDINGS", 3);
+  for (int i = 0; i < recordings; ++i) {
+    SCOPED_TRACE(i);
+    const bool to_fault = i % 3 == 2;
+    const DdsConfig config = test_config();
+    const std::string dir = folder_.path(std::to_string(i));
+    Child robot(words_of(program(config) + "--clock realtime --command dds --record " + dir +
+                         " --seed " + std::to_string(i) +
+                         " --set controller.stand.fold_s=0.4 --set controller.stand.extend_s=0.6" +
+                         (to_fault ? " --set controller.gate.speed_fault_radps=9" : "")));
+    const DdsParticipant participant(config, "operator");
+    Peer operators(config);
+    Asker asker(operators);
+    const dds_entity_t twist = operators.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
+    for (const char* wish : {"stand", "walk"}) {  // the process starts, and the robot stands up
+      ASSERT_TRUE(wait_until([&] {
+        sleep_s(0.05);
+        return asker.ask(wish).accepted;
+      }));
+    }
+    for (int step = 0; step < 75; ++step) {
+      drive(twist, 0.01 * step);
+      sleep_s(0.02);
+    }
+    asker.ask("stop");
+    sleep_s(0.8);
+    robot.signal(SIGTERM);
+    robot.wait();
+    EXPECT_NE(robot.wait().find(" in " + dir), std::string::npos) << robot.wait();
+    EXPECT_EQ(robot.wait().find("LOST"), std::string::npos) << robot.wait();
+
+    std::set<Mode> modes;
+    std::uint64_t commands = 0, last_command = 0, skipped = 0;
+    const RecordingContents contents =
+        read_recording(dir + "/run.mcap", {}, [&](const TickRecord& tick) {
+          modes.insert(tick.output.mode);
+          skipped += tick.skipped;
+          if (tick.input.command.tick != last_command) ++commands;
+          last_command = tick.input.command.tick;
+          return true;
+        });
+    EXPECT_TRUE(contents.complete);
+    EXPECT_TRUE(modes.count(Mode::kStand) == 1 && modes.count(Mode::kWalk) == 1);
+    EXPECT_EQ(modes.count(Mode::kFault), to_fault ? 1u : 0u);
+    EXPECT_GT(commands, 40u);
+    expect_replays_bit_for_bit(dir + "/run.mcap");
+    std::printf("recording %d: %llu ticks, %llu skipped, %llu commands%s\n", i,
+                static_cast<unsigned long long>(contents.ticks),
+                static_cast<unsigned long long>(skipped), static_cast<unsigned long long>(commands),
+                to_fault ? ", a fault" : "");
+  }
+}
+
+// One subscriber listens, one is stopped for a while, one dies.
+TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne) {
+  const int watched_s = from_environment("SANDRUNNER_WATCHED_S", 4);
+  const double stop_s = watched_s >= 20 ? 5.0 : 1.0;
+  const auto walk = [&](const std::string& command, const std::string& out) {
+    return words_of(command + " --clock realtime --start walk --command 0.5,0,0 --duration " +
+                    std::to_string(watched_s) + " --out " + folder_.path(out));
+  };
+  Child alone(walk(SANDRUNNER_PROGRAM, "alone"));
+  EXPECT_EQ(alone.code(), 0);
+
+  const std::string watch = peer(config_) + "watch " + std::to_string(watched_s + 2);
+  Child live(words_of(watch)), stopped(words_of(watch)), killed(words_of(watch));
+  sleep_s(0.3);
+  Child robot(walk(program(config_) + "--record " + folder_.path(""), "watched"));
+  ASSERT_TRUE(live.wait_for("matched"));
+  ASSERT_TRUE(stopped.wait_for("matched"));
+  ASSERT_TRUE(killed.wait_for("matched"));
+  sleep_s(0.5);
+  stopped.signal(SIGSTOP);
+  killed.signal(SIGKILL);
+  sleep_s(stop_s);
+  stopped.signal(SIGCONT);
+  EXPECT_EQ(robot.code(), 0) << robot.wait();
+  EXPECT_EQ(robot.wait().find("LOST"), std::string::npos) << robot.wait();
+  EXPECT_EQ(live.number("gaps"), 0) << live.wait();
+  EXPECT_EQ(live.number("lost_ticks"), 0) << live.wait();
+  EXPECT_GT(live.number("batches"), 100 * watched_s - 100) << live.wait();
+  if (stop_s < 2.0) {  // what kBatchDepth holds
+    EXPECT_EQ(stopped.number("gaps"), 0) << stopped.wait();
+  }
+
+  const nlohmann::json before = summary("alone").at("realtime");
+  const nlohmann::json now = summary("watched").at("realtime");
+  EXPECT_EQ(now.at("records_dropped"), 0);
+  // What a busy machine does to both.
+  const auto us = [](const nlohmann::json& j, const char* name, const char* quantile) {
+    return j.at(name).at(quantile).get<double>();
+  };
+  const auto skipped = [](const nlohmann::json& j) { return j.at("ticks_skipped").get<double>(); };
+  EXPECT_LE(skipped(now), skipped(before) + 0.02 * kControlHz * watched_s);
+  EXPECT_LE(us(now, "late_us", "p50"), 2.0 * us(before, "late_us", "p50") + 20.0);
+  EXPECT_LE(us(now, "control_us", "p50"), 2.0 * us(before, "control_us", "p50") + 5.0);
+  expect_replays_bit_for_bit(folder_.path("run.mcap"));
+  for (const auto& [name, j] : {std::pair("alone", before), {"watched", now}}) {
+    std::printf("%s: %s skipped, late p50 %.1f p99 %.1f, control step p50 %.2f p99 %.2f us\n", name,
+                j.at("ticks_skipped").dump().c_str(), us(j, "late_us", "p50"),
+                us(j, "late_us", "p99"), us(j, "control_us", "p50"), us(j, "control_us", "p99"));
+  }
+  std::printf("live: %sstopped: %s", live.wait().c_str(), stopped.wait().c_str());
+}
+
+TEST_F(DdsProgramTest, ANetworkInterfaceThatGoesAwayIsNoticedByNeitherControlNorRecording) {
+  // Without a map of users it has the rights that real time needs.
+  const std::string unshare = geteuid() == 0 ? "unshare --net" : "unshare --map-root-user --net";
+  const std::string interface =
+      "ip link set lo up && ip link add v0 type veth peer name v1 && "
+      "ip addr add 10.9.8.7/24 dev v0 && ip link set v0 up && ip link set v1 up";
+  if (std::system((unshare + " sh -c '" + interface + "' 2>/dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "no network namespace with an interface of its own is to be had here";
+  }
+  const std::string on_v0 = std::to_string(config_.domain) + " v0 ";
+  write_file(folder_.path("script"),
+             interface + "\n" + SANDRUNNER_DDS_PEER " " + on_v0 + "watch 60 >&2 & watcher=$!\n" +
+                 program(config_) +
+                 "--set dds.interface=v0 --clock realtime --start walk --command 0.5,0,0 "
+                 "--duration 3 --record " +
+                 folder_.path("") + " --out " + folder_.path("out") +
+                 " & robot=$!\nsleep 1.5; ip link del v0\nwait $robot; code=$?\n"
+                 "kill -9 $watcher; exit $code\n");
+  const auto start = std::chrono::steady_clock::now();
+  Child robot(words_of("/usr/bin/env " + unshare + " sh " + folder_.path("script")));
+  EXPECT_EQ(robot.code(), 0) << robot.wait();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+  EXPECT_EQ(robot.wait().find("LOST"), std::string::npos) << robot.wait();
+  EXPECT_EQ(summary("out").at("realtime").at("records_dropped"), 0);
+  expect_replays_bit_for_bit(folder_.path("run.mcap"));
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulated robot walks on sand in real time, and somebody on DDS says where to.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "tests/rt/support.h"
+#include "tests/rt/telemetry/dds/child.h"
+#include "tests/rt/telemetry/dds/support.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Sends Twists at 50 Hz; asked more often it waits.
+class Driver {
+ public:
+  Driver(Peer& peer) : writer_(peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {}
+  void send(double time_s, double vx_mps) {
+    if (time_s < next_s_) return;
+    next_s_ = time_s + 0.02;
+    drive(writer_, vx_mps);
+    ++sent_;
+  }
+  std::uint64_t sent() const { return sent_; }
+
+ private:
+  dds_entity_t writer_;
+  double next_s_ = 0.0;
+  std::uint64_t sent_ = 0;
+};
+
+class RobotCommandsTest : public testing::Test {
+ protected:
+  RobotCommandsTest()
+      : policy_(load_shipped_policy()),
+        config_(config_of(
+            "dry-sand", {"dds.enabled=true", "dds.domain=" + std::to_string(test_config().domain)},
+            &policy_.spec())),
+        participant_(config_.dds),
+        op_(config_.dds.stale_ticks()),
+        inbox_(participant_, config_.dds, true, op_),
+        telemetry_(participant_, config_.dds, config_.robot.description, &inbox_),
+        peer_(config_.dds) {}
+
+  /// In Walk from the first tick on, for this long; `at` is called every few milliseconds.
+  void walk(double duration_s, const std::function<void(double time_s)>& at) {
+    std::atomic<bool> interrupt{false};
+    double time_s = 0.0;
+    const auto tap = [&](const TickRecord& tick) {
+      telemetry_.add(tick);
+      time_s = static_cast<double>(tick.input.sensors.tick) * kControlPeriod_s;
+      if (!interrupt) ticks_.push_back(tick);  // at the end it is damped and lies down
+    };
+    RealtimeHooks hooks;
+    hooks.op = &op_;
+    hooks.meanwhile = [&](PolicyThread&) {
+      at(time_s);
+      if (time_s >= duration_s) interrupt = true;
+    };
+    const RunResult result =
+        run_realtime(config_, &policy_, CommandSource("0,0,0"), {.start_walking = true}, false,
+                     interrupt, {}, tap, hooks);
+    EXPECT_TRUE(result.survived) << result.fall_reason;
+    EXPECT_EQ(result.realtime->records_dropped, 0u);
+    for (const TickRecord& tick : ticks_) {
+      const auto& q = tick.input.sensors.imu.orientation_wxyz;
+      const double up = 1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2]);
+      ASSERT_GT(up, 0.9) << "at " << at_s(tick) << " s";  // 26 degrees
+      ASSERT_EQ(tick.output.mode, Mode::kWalk);
+    }
+  }
+
+  static double at_s(const TickRecord& tick) {
+    return static_cast<double>(tick.input.sensors.tick) * kControlPeriod_s;
+  }
+  template <typename Value>
+  double mean(double from_s, double to_s, const Value& value) const {
+    double sum = 0.0, count = 0.0;
+    for (const TickRecord& tick : ticks_) {
+      if (at_s(tick) < from_s || at_s(tick) >= to_s) continue;
+      sum += value(tick);
+      ++count;
+    }
+    EXPECT_GT(count, 0.0);
+    return sum / count;
+  }
+  /// How fast the robot really went.
+  double speed_mps(double from_s, double to_s) const {
+    return mean(from_s, to_s,
+                [](const TickRecord& tick) { return tick.simulated.truth.velocity_mps[0]; });
+  }
+  /// The first time from `from_s` on at which the controller was given this velocity.
+  double first_s(double from_s, double vx_mps) const {
+    for (const TickRecord& tick : ticks_) {
+      if (at_s(tick) >= from_s && tick.input.command.velocity.vx_mps == vx_mps) return at_s(tick);
+    }
+    return kNan;
+  }
+  /// Nobody speaks since `silent_s`.
+  void expect_slows_to_a_stand_after(double silent_s) const {
+    EXPECT_GT(speed_mps(silent_s - 0.5, silent_s), 0.3);
+    EXPECT_NEAR(first_s(silent_s, 0.0) - silent_s, 0.3, 0.1);
+    EXPECT_LT(std::fabs(speed_mps(silent_s + 2.5, silent_s + 3.0)), 0.05);
+  }
+
+  Policy policy_;
+  const ProcessConfig config_;
+  DdsParticipant participant_;
+  DdsOperator op_;
+  CommandInbox inbox_;
+  Telemetry telemetry_;
+  Peer peer_;
+  std::vector<TickRecord> ticks_;
+};
+
+TEST_F(RobotCommandsTest, AfterTheLastCommandTheRobotSlowsToAStand) {
+  Driver driver(peer_);
+  double last_s = 0.0;
+  walk(4.9, [&](double time_s) {
+    if (time_s > 1.8) return;
+    driver.send(time_s, 0.8);
+    last_s = time_s;
+  });
+  expect_slows_to_a_stand_after(last_s);
+}
+
+TEST_F(RobotCommandsTest, APublisherThatIsKilledLeavesAStandingRobot) {
+  std::unique_ptr<Child> driver = std::make_unique<Child>(std::vector<std::string>{
+      SANDRUNNER_DDS_PEER, std::to_string(config_.dds.domain), "lo", "drive", "0.8", "10000"});
+  double killed_s = 0.0;
+  walk(5.4, [&](double time_s) {
+    if (killed_s > 0.0 || inbox_.counts().accepted < 75) return;
+    driver->signal(SIGKILL);
+    killed_s = time_s;
+  });
+  ASSERT_GT(killed_s, 0.0);
+  ASSERT_LT(killed_s, 2.4);
+  expect_slows_to_a_stand_after(killed_s);
+}
+
+TEST_F(RobotCommandsTest, WhatIsNoSpeedIsCountedAndTheRobotFollowsTheLastOneThatIs) {
+  Driver driver(peer_);
+  int number = 0;
+  walk(2.6, [&](double time_s) {
+    const std::uint64_t before = driver.sent();
+    const bool rubbish = time_s > 1.0 && time_s < 2.0 && number % 3 != 0;
+    driver.send(time_s, !rubbish ? 0.6 : number % 3 == 1 ? kNan : 1e9);
+    if (driver.sent() != before) ++number;
+  });
+  const CommandCounts counts = inbox_.counts();
+  EXPECT_GE(counts.not_finite, 8u);  // about 16
+  EXPECT_GE(counts.absurd, 8u);
+  EXPECT_EQ(counts.other_publisher, 0u);
+  EXPECT_EQ(counts.accepted + counts.not_finite + counts.absurd, driver.sent());
+  const double from_s = first_s(0.0, 0.6);
+  EXPECT_LT(from_s, 0.2);
+  for (const TickRecord& tick : ticks_) {
+    if (at_s(tick) >= from_s) {
+      ASSERT_EQ(tick.input.command.velocity.vx_mps, 0.6) << at_s(tick);
+    }
+  }
+  EXPECT_NEAR(speed_mps(0.8, 1.2), 0.6, 0.15);
+  EXPECT_NEAR(speed_mps(1.2, 2.6), 0.6, 0.15);
+}
+
+TEST_F(RobotCommandsTest, TheSecondPublisherIsRefusedUntilTheFirstIsSilent) {
+  Peer other(config_.dds);
+  Driver first(peer_), second(other);
+  double last_s = 0.0;
+  std::uint64_t first_accepted = 0;
+  walk(4.0, [&](double time_s) {
+    if (time_s < 1.5) {
+      first.send(time_s, 0.6);
+      last_s = time_s;
+      first_accepted = inbox_.counts().accepted;
+    }
+    if (time_s > 0.3) second.send(time_s, -0.4);
+  });
+  const double taken_s = first_s(0.0, -0.4);
+  EXPECT_NEAR(taken_s - last_s, 0.32, 0.1);
+  EXPECT_LE(first_accepted, first.sent());
+  const CommandCounts counts = inbox_.counts();
+  EXPECT_GT(counts.other_publisher, 40u);  // of 75 in 1.5 s
+  EXPECT_GT(counts.accepted, first_accepted + 60);
+  EXPECT_NEAR(speed_mps(0.9, 1.5), 0.6, 0.15);
+  EXPECT_NEAR(speed_mps(3.0, 4.0), -0.4, 0.15);
+}
+
+}  // namespace
+}  // namespace sandrunner
