@@ -127,6 +127,7 @@ class Training {
       });
       const double t1 = wall_seconds();
       learner_.set_kl_target(kl_target());
+      learner_.set_symmetry_weight(config_.learner.loss.symmetry_weight * task_.late());
       const learner::UpdateStats update = learner_.update();
       const double t2 = wall_seconds();
       if (!update.finite) {

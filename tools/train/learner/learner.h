@@ -123,6 +123,10 @@ class Learner {
 
   /// KL target of the updates to come.
   void set_kl_target(double kl_target) { config_.kl_target = kl_target; }
+  /// Weight of the pull towards symmetry from now on; without effect if there is no symmetry.
+  void set_symmetry_weight(double weight) {
+    if (symmetry_) config_.loss.symmetry_weight = weight;
+  }
 
  private:
   struct Counters {

@@ -96,6 +96,7 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
 struct CostRamp {
   double all = 1.0;     ///< of every cost
   double energy = 1.0;  ///< of that of energy, besides
+  double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
 };
 
 /// Sum of what is charged, before its weight.

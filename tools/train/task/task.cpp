@@ -42,7 +42,7 @@ Task::Task(const TrainConfig& config, std::uint64_t seed)
       envs_(static_cast<std::size_t>(config.run.envs)),
       sums_(static_cast<std::size_t>(config.run.envs / config.learner.block_envs)),
       curriculum_{config.command.speed_start_mps, 0.0},
-      cost_ramp_{config.reward.cost_ramp_start, 1.0},
+      cost_ramp_{.all = config.reward.cost_ramp_start},
       tilt_end_cos_(std::cos(config.episode.tilt_end_deg * 3.14159265358979 / 180.0)) {
   for (int env = 0; env < config.run.envs; ++env) {
     Env& e = envs_[static_cast<std::size_t>(env)];
@@ -344,6 +344,7 @@ WindowStats Task::end_window(double transitions) {
                  0.0, 1.0);
   cost_ramp_.all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late;
   cost_ramp_.energy = 1.0 + (r.energy_end - 1.0) * late;
+  cost_ramp_.late = late;
   return w;
 }
 

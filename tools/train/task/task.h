@@ -57,6 +57,8 @@ class Task {
   /// the ramp of the costs.
   WindowStats end_window(double transitions);
   const Curriculum& curriculum() const { return curriculum_; }
+  /// Share, 0 to 1, of what comes late in the training: rises while the costs go to their end.
+  double late() const { return cost_ramp_.late; }
 
   void save(learner::Checkpoint& checkpoint) const;
   void load(const learner::Checkpoint& checkpoint);
