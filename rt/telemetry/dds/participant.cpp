@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <string_view>
 
 #include "rt/core/errors.h"
 
@@ -36,25 +38,57 @@ Qos make_qos(int depth, bool reliable, bool latched) {
   return qos;
 }
 
-// A network that is gone makes an error of every packet: what Cyclone DDS has to say goes to the
-// standard error, but not more than these lines in ten seconds.
+// What Cyclone DDS has to say goes to the standard error; but a network that is gone makes an error
+// of every packet, so not more than these lines in ten seconds. While a participant is made it is
+// kept: if that fails, it belongs into the one line of the error.
 constexpr int kLogLines = 20;
 constexpr auto kLogTime = std::chrono::seconds(10);
 
-void log_sink(void*, const dds_log_data_t* data) {
-  using Clock = std::chrono::steady_clock;
-  static std::mutex mutex;
-  static Clock::time_point since;
-  static int lines = 0;
-  const std::lock_guard lock(mutex);
-  if (Clock::now() - since > kLogTime) {
-    since = Clock::now();
-    lines = 0;
+class Log {
+ public:
+  void keep() {
+    const std::lock_guard lock(mutex_);
+    keeping_ = true;
+    kept_.clear();
   }
-  if (++lines > kLogLines) return;
-  std::fprintf(stderr, "DDS: %s%s", data->message,
-               lines == kLogLines ? "DDS: more is not shown for ten seconds\n" : "");
+  /// What was said since keep(): its first line.
+  std::string stop_keeping() {
+    const std::lock_guard lock(mutex_);
+    keeping_ = false;
+    return kept_;
+  }
+  void say(std::string_view message) {
+    while (message.ends_with('\n')) message.remove_suffix(1);
+    const std::lock_guard lock(mutex_);
+    if (keeping_) {
+      if (kept_.empty()) kept_ = message;
+      return;
+    }
+    const Clock::time_point now = Clock::now();
+    if (now - since_ > kLogTime) {
+      since_ = now;
+      lines_ = 0;
+    }
+    if (++lines_ > kLogLines) return;
+    fmt::print(stderr, "DDS: {}\n{}", message,
+               lines_ == kLogLines ? "DDS: more is not shown for ten seconds\n" : "");
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::mutex mutex_;
+  bool keeping_ = false;
+  std::string kept_;
+  Clock::time_point since_;
+  int lines_ = 0;
+};
+
+Log& dds_log() {
+  static Log log;
+  return log;
 }
+
+void log_sink(void*, const dds_log_data_t* data) { dds_log().say(data->message); }
 
 }  // namespace
 
@@ -70,17 +104,21 @@ DdsParticipant::DdsParticipant(const DdsConfig& config, const std::string& ident
                   config.security_dir.empty() ? "" : ", security files of " + config.security_dir);
   const std::string xml = cyclone_xml(config, identity);
   dds_set_log_sink(log_sink, nullptr);
-  domain_ =
-      check_dds(dds_create_domain(static_cast<dds_domainid_t>(config.domain), xml.c_str()), where);
+  dds_log().keep();
+  domain_ = dds_create_domain(static_cast<dds_domainid_t>(config.domain), xml.c_str());
   // What ROS 2 puts into its participants: they are listed beside its own.
   const std::string enclave = "enclave=/;";
   const Qos qos(dds_create_qos());
   dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
-  participant_ =
-      dds_create_participant(static_cast<dds_domainid_t>(config.domain), qos.get(), nullptr);
-  if (participant_ < 0) {
-    dds_delete(domain_);
-    check_dds(participant_, where);
+  if (domain_ >= 0) {
+    participant_ =
+        dds_create_participant(static_cast<dds_domainid_t>(config.domain), qos.get(), nullptr);
+  }
+  const std::string reason = dds_log().stop_keeping();
+  const dds_entity_t result = domain_ < 0 ? domain_ : participant_;
+  if (result < 0) {
+    if (domain_ >= 0) dds_delete(domain_);
+    check_dds(result, reason.empty() ? where : fmt::format("{} ({})", where, reason));
   }
 }
 
