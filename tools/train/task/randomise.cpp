@@ -71,6 +71,11 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
         log_between(flat_low, g.sigma_flat_high, uniform(env, e), g.softness_exponent);
     p.sigma_cone_npm3 =
         log_between(cone_low, g.sigma_cone_high, uniform(env, e), g.softness_exponent);
+    if (is_patchy(env) && uniform(env, e) < g.patch_loose_share) {
+      const double looser = uniform(env, e, 1.0, g.patch_loose_factor);
+      p.sigma_flat_npm3 /= looser;
+      p.sigma_cone_npm3 /= looser;
+    }
     p.recruitment *= uniform(env, e, 1.0 - g.recruitment_spread, 1.0 + g.recruitment_spread);
     p.cone_angle_rad +=
         uniform(env, e, -1.0, 1.0) * g.cone_angle_spread_deg * (3.14159265358979 / 180.0);

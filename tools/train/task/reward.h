@@ -101,11 +101,13 @@ struct CostRamp {
 
 /// Sum of what is charged, before its weight.
 inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_factor) {
-  const double commanded =
-      std::hypot(static_cast<double>(s.command[0]), static_cast<double>(s.command[1]));
-  // Energy for the way, not for the time: cost of transport counts at every speed.
+  // Energy for the way, not for the time: cost of transport counts at every speed. A way sideways,
+  // backwards or round is dear by nature: were it charged like one ahead, standing would be
+  // cheaper.
+  const double ahead = s.command[0] > 0.0f ? s.command[0] : -2.0 * s.command[0];
+  const double way = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
-  double sum = energy * energy_factor * r.energy_speed_mps / (0.5 + commanded) +
+  double sum = energy * energy_factor * r.energy_speed_mps / (r.energy_offset_mps + way) +
                r.joint_speed * s.speed_squared + r.speed_excess * s.speed_excess + r.slip * s.slip;
   double first = 0.0, second = 0.0, pose = 0.0, overrun = 0.0;
   const bool still =

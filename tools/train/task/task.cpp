@@ -339,8 +339,8 @@ WindowStats Task::end_window(double transitions) {
   const RewardSettings& r = config_.reward;
   const double rise = std::min(transitions / r.cost_ramp_transitions, 1.0);
   const double late =
-      std::clamp((transitions - r.cost_ramp_transitions) /
-                     std::max(r.cost_end_transitions - r.cost_ramp_transitions, 1.0),
+      std::clamp((transitions - r.cost_end_start_transitions) /
+                     std::max(r.cost_end_transitions - r.cost_end_start_transitions, 1.0),
                  0.0, 1.0);
   cost_ramp_.all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late;
   cost_ramp_.energy = 1.0 + (r.energy_end - 1.0) * late;

@@ -98,6 +98,8 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("ground.patch_length_low_m", c.ground.patch_length_low_m, 0.01, 1e3);
   number("ground.patch_length_high_m", c.ground.patch_length_high_m, 0.01, 1e3);
   number("ground.patch_rigid_share", c.ground.patch_rigid_share, 0.0, 1.0);
+  number("ground.patch_loose_share", c.ground.patch_loose_share, 0.0, 1.0);
+  number("ground.patch_loose_factor", c.ground.patch_loose_factor, 1.0, 100.0);
   number("ground.roughness_m", c.ground.roughness_m, 0.0, 0.2);
   number("ground.roughness_wavelength_m", c.ground.roughness_wavelength_m, 0.05, 100.0);
   number("ground.sigma_flat_low_start", c.ground.sigma_flat_low_start, 1.0, 1e10);
@@ -142,6 +144,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.cost_ramp_start", c.reward.cost_ramp_start, 0.0, 1e9);
   number("reward.cost_ramp_transitions", c.reward.cost_ramp_transitions, 1.0, 1e12);
   number("reward.cost_end", c.reward.cost_end, 0.0, 1e9);
+  number("reward.cost_end_start_transitions", c.reward.cost_end_start_transitions, 0.0, 1e12);
   number("reward.cost_end_transitions", c.reward.cost_end_transitions, 0.0, 1e9);
   number("reward.energy_end", c.reward.energy_end, 0.0, 1e9);
   number("reward.velocity_weight", c.reward.velocity_weight, 0.0, 1e9);
@@ -166,6 +169,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.torque", c.reward.torque, 0.0, 1e9);
   number("reward.power", c.reward.power, 0.0, 1e9);
   number("reward.energy_speed_mps", c.reward.energy_speed_mps, 0.0, 1e3);
+  number("reward.energy_offset_mps", c.reward.energy_offset_mps, 1e-3, 1e3);
   number("reward.joint_speed", c.reward.joint_speed, 0.0, 1e9);
   number("reward.speed_excess", c.reward.speed_excess, 0.0, 1e9);
   number("reward.smoothness_1", c.reward.smoothness_1, 0.0, 1e9);

@@ -37,7 +37,8 @@ struct CommandSettings {
 
 struct GroundSettings {
   int rigid_envs = 0, patchy_envs = 0;
-  double patch_length_low_m = 0, patch_length_high_m = 0, patch_rigid_share = 0;
+  double patch_length_low_m = 0, patch_length_high_m = 0, patch_rigid_share = 0,
+         patch_loose_share = 0, patch_loose_factor = 0;
   double roughness_m = 0, roughness_wavelength_m = 0, sigma_flat_low_start = 0, sigma_flat_low = 0,
          sigma_flat_high = 0, sigma_cone_low_start = 0, sigma_cone_low = 0, sigma_cone_high = 0,
          softness_exponent = 0, open_step = 0, gate_kernel = 0, gate_falls = 0, friction_low = 0,
@@ -60,7 +61,7 @@ struct NoiseSettings {
 
 struct RewardSettings {
   double scale = 0, cost_weight = 0, cost_ramp_start = 0, cost_ramp_transitions = 0, cost_end = 0,
-         cost_end_transitions = 0, energy_end = 0;
+         cost_end_start_transitions = 0, cost_end_transitions = 0, energy_end = 0;
   double velocity_weight = 0, velocity_width = 0, velocity_width_per_speed2 = 0,
          progress_weight = 0;
   double yaw_weight = 0, yaw_width = 0, yaw_progress_weight = 0;
@@ -68,8 +69,8 @@ struct RewardSettings {
          precise_forward_width_per_speed = 0, precise_drift_weight = 0, precise_lateral_width = 0,
          precise_yaw_width = 0;
   double air_weight = 0, air_target_s = 0, air_longest_s = 0, stance_longest_s = 0;
-  double torque = 0, power = 0, energy_speed_mps = 0, joint_speed = 0, speed_excess = 0,
-         smoothness_1 = 0, smoothness_2 = 0, orientation = 0, base_vertical = 0,
+  double torque = 0, power = 0, energy_speed_mps = 0, energy_offset_mps = 0, joint_speed = 0,
+         speed_excess = 0, smoothness_1 = 0, smoothness_2 = 0, orientation = 0, base_vertical = 0,
          base_roll_pitch = 0, slip = 0, clearance = 0, clearance_m = 0, pose = 0,
          pose_flexion_share = 0, joint_margin = 0, knee_low_rad = 0, knee_high_rad = 0, height = 0,
          height_m = 0;
