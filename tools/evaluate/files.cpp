@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
-
 namespace sandrunner::evaluate {
 
 std::string results_json(const Results& results, const Options& options) {

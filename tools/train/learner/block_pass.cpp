@@ -63,16 +63,9 @@ void BlockPass<Scalar>::run_heads(const Scalar* parameters, const BasicRollout<S
 template <typename Scalar>
 void BlockPass<Scalar>::act(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t,
                             int first_env, MatrixRef<Scalar> h, MatrixRef<Scalar> c) {
-  encoder_.input(0) =
-      rollout.observation(t).middleCols(first_env, envs_).bottomRows(kProprioceptionSize);
-  encoder_.forward(parameters + layout_.encoder(), h, c, &rollout.reset(t, first_env), 0);
-  h = encoder_.output();
-  c = encoder_.last_cell();
-  run_heads(parameters, rollout, t, 1, first_env, 0);
-  rollout.mean(t).middleCols(first_env, envs_) = actor_.output(envs_);
-  for (int env = 0; env < envs_; ++env) {
-    rollout.value(t, first_env + env) = critic_.output(envs_)(0, env);
-  }
+  answer(parameters, rollout.observation(t).middleCols(first_env, envs_),
+         &rollout.reset(t, first_env), h, c, rollout.mean(t).middleCols(first_env, envs_));
+  evaluate(parameters, rollout, t, first_env);
 }
 
 template <typename Scalar>
@@ -93,9 +86,8 @@ void BlockPass<Scalar>::answer(const Scalar* parameters, const ConstMatrixRef<Sc
 }
 
 template <typename Scalar>
-void BlockPass<Scalar>::last_value(const Scalar* parameters, BasicRollout<Scalar>& rollout,
-                                   int first_env) {
-  const int t = rollout.shape.steps;
+void BlockPass<Scalar>::evaluate(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t,
+                                 int first_env) {
   critic_.forward(parameters, rollout.privileged(t).middleCols(first_env, envs_));
   for (int env = 0; env < envs_; ++env) {
     rollout.value(t, first_env + env) = critic_.output(envs_)(0, env);

@@ -66,8 +66,8 @@ class BlockPass {
               const std::uint8_t* reset, MatrixRef<Scalar> h, MatrixRef<Scalar> c,
               MatrixRef<Scalar> mean);
 
-  /// Value of rollout step `steps`, the state after the window.
-  void last_value(const Scalar* parameters, BasicRollout<Scalar>& rollout, int first_env);
+  /// The critic's values of rollout step t; `steps` is the state after the window.
+  void evaluate(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t, int first_env);
 
   /// Value of one privileged vector.
   Scalar value(const Scalar* parameters, const Scalar* privileged);

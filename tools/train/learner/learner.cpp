@@ -179,7 +179,8 @@ void Learner::compute_advantages(UpdateStats& stats) {
   std::vector<Sums> sums(static_cast<std::size_t>(blocks()));
   pool_.run(blocks(), [&](int block, int worker) {
     const int first = block * config_.block_envs;
-    acting_[static_cast<std::size_t>(worker)].last_value(parameters_.data(), rollout_, first);
+    acting_[static_cast<std::size_t>(worker)].evaluate(parameters_.data(), rollout_,
+                                                       rollout_.shape.steps, first);
     compute_gae(rollout_, first, config_.block_envs, config_.gamma, config_.lambda);
     Sums& sum = sums[static_cast<std::size_t>(block)];
     for (int t = 0; t < rollout_.shape.steps; ++t) {
