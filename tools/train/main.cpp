@@ -207,6 +207,8 @@ class Training {
     r.torque_squared = w.torque_squared;
     r.power_w = w.power_w;
     r.stride_hz = w.stride_hz;
+    r.abreast = w.abreast;
+    r.diagonal = w.diagonal;
     r.learning_rate = u.learning_rate;
     r.kl = u.kl;
     r.action_std = u.action_std;

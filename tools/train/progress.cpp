@@ -35,6 +35,8 @@ constexpr Column kColumns[] = {
     {"torque_squared_nm2", &ProgressRow::torque_squared},
     {"power_w", &ProgressRow::power_w},
     {"stride_hz", &ProgressRow::stride_hz},
+    {"abreast", &ProgressRow::abreast},
+    {"diagonal", &ProgressRow::diagonal},
     {"learning_rate", &ProgressRow::learning_rate},
     {"kl", &ProgressRow::kl},
     {"action_std", &ProgressRow::action_std},
@@ -63,12 +65,13 @@ std::string Progress::line(const ProgressRow& r, double eta_s) {
   return fmt::format(
       "{:5.0f}  {:6.2f} M  {:5.1f} k/s ({:2.0f} % sim)  reward {:.4f}  track {:.2f}/{:.2f}  falls "
       "{:.2f}/{:.2f}  "
-      "v/cmd {:.2f}/{:.2f}  est {:.2f} m/s  vmax {:.2f}  soft {:.2f}  h {:.3f}  {:.1f} Hz  std "
+      "v/cmd {:.2f}/{:.2f}  est {:.2f} m/s  vmax {:.2f}  soft {:.2f}  h {:.3f}  {:.1f} Hz  "
+      "gait {:.2f}/{:.2f}  std "
       "{:.2f}  eta {:.0f} min",
       r.iteration, r.transitions / 1e6, r.transitions_per_s / 1e3, 100.0 * r.simulation_share,
       r.reward, r.kernel_rigid, r.kernel_soil, r.falls_rigid, r.falls_soil, r.speed_ratio_rigid,
       r.speed_ratio_soil, r.estimate_vx_rms_mps, r.command_speed_mps, r.ground_open,
-      r.body_height_m, r.stride_hz, r.action_std, eta_s / 60.0);
+      r.body_height_m, r.stride_hz, r.abreast, r.diagonal, r.action_std, eta_s / 60.0);
 }
 
 void Progress::write(const std::string& dir) const {

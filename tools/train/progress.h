@@ -18,6 +18,7 @@ struct ProgressRow {
   double estimate_vx_rms_mps = 0, estimate_height_rms_m = 0;
   double command_speed_mps = 0, ground_open = 0;
   double body_height_m = 0, torque_squared = 0, power_w = 0, stride_hz = 0;
+  double abreast = 0, diagonal = 0;  ///< see WindowStats
   double learning_rate = 0, kl = 0, action_std = 0, asymmetry = 0, explained_variance = 0;
 };
 

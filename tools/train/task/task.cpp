@@ -247,6 +247,10 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
       if (commanded > 0.3) {
         sums.ratio[kind] += (s.vx * s.command[0] + s.vy * s.command[1]) / (commanded * commanded);
         sums.ratio_steps[kind] += 1.0;
+        sums.abreast += 0.5 * (s.contact[0] == s.contact[1]) + 0.5 * (s.contact[2] == s.contact[3]);
+        sums.diagonal +=
+            0.5 * (s.contact[0] == s.contact[3]) + 0.5 * (s.contact[1] == s.contact[2]);
+        sums.gait_steps += 1.0;
       }
       if (kind == 0) {
         sums.height += s.body_height;
@@ -302,6 +306,9 @@ WindowStats Task::end_window(double transitions) {
     all.height += s.height;
     all.height_steps += s.height_steps;
     all.lift_offs += s.lift_offs;
+    all.abreast += s.abreast;
+    all.diagonal += s.diagonal;
+    all.gait_steps += s.gait_steps;
     all.top_kernel += s.top_kernel;
     all.top_steps += s.top_steps;
     for (int k = 0; k < 2; ++k) {
@@ -326,6 +333,8 @@ WindowStats Task::end_window(double transitions) {
   w.body_height_m = mean(all.height, all.height_steps);
   w.torque_squared = mean(all.torque_squared, all.steps);
   w.power_w = mean(all.power, all.steps);
+  w.abreast = mean(all.abreast, all.gait_steps);
+  w.diagonal = mean(all.diagonal, all.gait_steps);
   w.stride_hz = mean(all.lift_offs, all.steps) / kNumLegs * kPolicyHz;
 
   const CommandSettings& c = config_.command;

@@ -32,6 +32,9 @@ struct WindowStats {
   double body_height_m = 0.0;  ///< on rigid ground
   double torque_squared = 0.0, power_w = 0.0;
   double stride_hz = 0.0;  ///< lift-offs of a foot per second
+  /// Share of the steps, told to go, in which two feet are both loaded or both not: feet side by
+  /// side (1 in a bound, 0 in a trot) and diagonal ones (1 in a trot).
+  double abreast = 0.0, diagonal = 0.0;
 };
 
 /// Trotting on randomised ground: the environments of the training. Robots live in a Batch; a block
@@ -88,7 +91,7 @@ class Task {
   };
   struct Sums {  // of one block and window
     double steps = 0, reward = 0, torque_squared = 0, power = 0, height = 0, height_steps = 0,
-           lift_offs = 0;
+           lift_offs = 0, abreast = 0, diagonal = 0, gait_steps = 0;
     std::array<double, 2> kernel{}, kind_steps{}, falls{}, ratio{}, ratio_steps{};
     double top_kernel = 0, top_steps = 0;
   };
