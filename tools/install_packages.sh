@@ -11,7 +11,7 @@ packages=(
   libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libzstd-dev zlib1g-dev
   # libraries of tests and benches
-  libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl
+  libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
 
