@@ -111,7 +111,7 @@ TEST(RewardTest, UnsteadinessIsChargedInFullFromTheStartAndALackOfSupportLessInA
   StepOutcome s = with_contacts(obedient(1.0f, 0.0f, 0.0f), {true, true, false, false});
   EXPECT_NEAR(unsteadiness(s, r), r.unsupported, 1e-12);
   EXPECT_NEAR(unsteadiness(with_contacts(obedient(3.0f, 0.0f, 0.0f), s.contact), r),
-              r.unsupported / 3.0, 1e-12);
+              r.unsupported / 1.5, 1e-12);
   const StepOutcome steady = s;
   s.vz = 0.2f;
   s.pitch_rate = -1.0f;
