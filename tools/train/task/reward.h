@@ -53,12 +53,6 @@ inline double progress(const StepOutcome& s) {
   return std::clamp(share, 0.0, 1.0);
 }
 
-/// Whether the loaded feet can hold the body level: one in front, one behind, one on each side.
-inline bool supported(const StepOutcome& s) {
-  const auto& [lf, rf, lh, rh] = s.contact;
-  return (lf || rf) && (lh || rh) && (lf || lh) && (rf || rh);
-}
-
 /// Sum of what is paid.
 inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
   const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
@@ -84,8 +78,6 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
                         r.precise_drift_weight *
                             std::exp(-ey / r.precise_lateral_width - ew / r.precise_yaw_width));
   const bool still = speed2 < 1e-4 && std::fabs(s.command[2]) < 1e-2f;
-  // Long swings and stances. A swing is paid while the other feet hold the body level.
-  const bool level = supported(s);
   double air = 0.0;
   for (int l = 0; l < kNumLegs; ++l) {
     if (still) {
@@ -93,12 +85,11 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
     } else if (s.contact[l]) {
       if (s.stance_s[l] < r.stance_longest_s)
         air += std::min<double>(s.stance_s[l], r.air_target_s);
-    } else if (level && s.air_s[l] < r.air_longest_s) {
+    } else if (s.air_s[l] < r.air_longest_s) {
       air += std::min<double>(s.air_s[l], r.air_target_s);
     }
   }
-  // None for stamping on the spot while asked to go.
-  return sum + r.air_weight * air * progress(s);
+  return sum + r.air_weight * air;
 }
 
 /// Factors of the costs, which grow during training.
@@ -108,7 +99,7 @@ struct CostRamp {
   double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
 };
 
-/// Sum of what is charged by the ramp, before its weight.
+/// Sum of what is charged, before its weight.
 inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_factor) {
   // Energy for the way, not for the time: cost of transport counts at every speed. A way sideways,
   // backwards or round is dear by nature: were it charged like one ahead, standing would be
@@ -134,7 +125,8 @@ inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_
   sum += r.smoothness_1 * first + r.smoothness_2 * second + (still ? 2.0 : 1.0) * r.pose * pose +
          r.joint_margin * overrun;
   const double tilt = std::acos(std::clamp<double>(s.up_z, -1.0, 1.0));
-  sum += r.orientation * tilt * tilt;
+  sum += r.orientation * tilt * tilt + r.base_vertical * s.vz * s.vz +
+         r.base_roll_pitch * (std::fabs(s.roll_rate) + std::fabs(s.pitch_rate));
   const double low = std::max(r.height_m - s.body_height, 0.0);
   sum += r.height * low * low;
   for (int l = 0; l < kNumLegs; ++l) {
@@ -145,22 +137,11 @@ inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_
   return sum;
 }
 
-/// What is charged in full from the start, before its weight: a body that bobs, rolls and pitches,
-/// and feet that cannot hold it level. The gait of a whole training is found in its first minutes.
-inline double unsteadiness(const StepOutcome& s, const RewardSettings& r) {
-  // A run has its flights.
-  const double speed = std::hypot(s.command[0], s.command[1]);
-  return r.unsupported * !supported(s) / std::max(speed / 2.0, 1.0) + r.base_vertical * s.vz * s.vz +
-         r.base_roll_pitch * (std::fabs(s.roll_rate) + std::fabs(s.pitch_rate));
-}
-
 /// Reward of a step.
 inline float reward(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   return static_cast<float>(
       r.scale *
-      std::max(positive_reward(s, r) -
-                   r.cost_weight * (ramp.all * cost(s, r, ramp.energy) + unsteadiness(s, r)),
-               0.0));
+      std::max(positive_reward(s, r) - r.cost_weight * ramp.all * cost(s, r, ramp.energy), 0.0));
 }
 
 }  // namespace sandrunner::train

@@ -175,7 +175,6 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.smoothness_1", c.reward.smoothness_1, 0.0, 1e9);
   number("reward.smoothness_2", c.reward.smoothness_2, 0.0, 1e9);
   number("reward.orientation", c.reward.orientation, 0.0, 1e9);
-  number("reward.unsupported", c.reward.unsupported, 0.0, 1e9);
   number("reward.base_vertical", c.reward.base_vertical, 0.0, 1e9);
   number("reward.base_roll_pitch", c.reward.base_roll_pitch, 0.0, 1e9);
   number("reward.slip", c.reward.slip, 0.0, 1e9);

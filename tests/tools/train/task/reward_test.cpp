@@ -69,58 +69,6 @@ TEST(RewardTest, DriftCostsThoughTheSwingOfTheGaitDoesNot) {
   EXPECT_LT(positive_reward(drifting, r), positive_reward(swinging, r) - 0.3);
 }
 
-// Feet LF, RF, LH, RH.
-StepOutcome with_contacts(const StepOutcome& s, std::array<bool, kNumLegs> contact) {
-  StepOutcome out = s;
-  out.contact = contact;
-  for (int l = 0; l < kNumLegs; ++l) (contact[l] ? out.stance_s : out.air_s)[l] = 0.1f;
-  return out;
-}
-
-TEST(RewardTest, FeetHoldTheBodyLevelInFrontBehindAndOnBothSides) {
-  const StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
-  EXPECT_TRUE(supported(with_contacts(s, {true, true, true, true})));
-  EXPECT_TRUE(supported(with_contacts(s, {true, false, false, true})));   // diagonal
-  EXPECT_TRUE(supported(with_contacts(s, {false, true, true, false})));   // diagonal
-  EXPECT_TRUE(supported(with_contacts(s, {false, true, true, true})));    // one swings
-  EXPECT_FALSE(supported(with_contacts(s, {true, true, false, false})));  // front
-  EXPECT_FALSE(supported(with_contacts(s, {false, false, true, true})));  // hind
-  EXPECT_FALSE(supported(with_contacts(s, {true, false, true, false})));  // left
-  EXPECT_FALSE(supported(with_contacts(s, {false, true, false, true})));  // right
-  EXPECT_FALSE(supported(with_contacts(s, {false, false, false, false})));
-}
-
-TEST(RewardTest, ASwingIsPaidWhileTheOtherFeetHoldTheBodyLevel) {
-  const RewardSettings r = shipped_settings();
-  const StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
-  const double diagonal = positive_reward(with_contacts(s, {true, false, false, true}), r);
-  const double front = positive_reward(with_contacts(s, {true, true, false, false}), r);
-  EXPECT_NEAR(diagonal - front, r.air_weight * 2 * 0.1, 1e-6);
-}
-
-TEST(RewardTest, StampingOnTheSpotIsNotPaidWhenAskedToGo) {
-  const RewardSettings r = shipped_settings();
-  StepOutcome resting = obedient(0.0f, 0.0f, 0.0f);
-  resting.command = {1.0f, 0.0f, 0.0f};
-  const StepOutcome stamping = with_contacts(resting, {true, false, false, true});
-  EXPECT_EQ(positive_reward(stamping, r), positive_reward(resting, r));
-}
-
-TEST(RewardTest, UnsteadinessIsChargedInFullFromTheStartAndALackOfSupportLessInARun) {
-  const RewardSettings r = shipped_settings();
-  StepOutcome s = with_contacts(obedient(1.0f, 0.0f, 0.0f), {true, true, false, false});
-  EXPECT_NEAR(unsteadiness(s, r), r.unsupported, 1e-12);
-  EXPECT_NEAR(unsteadiness(with_contacts(obedient(3.0f, 0.0f, 0.0f), s.contact), r),
-              r.unsupported / 1.5, 1e-12);
-  const StepOutcome steady = s;
-  s.vz = 0.2f;
-  s.pitch_rate = -1.0f;
-  const double more = unsteadiness(s, r) - unsteadiness(steady, r);
-  EXPECT_NEAR(more, r.base_vertical * 0.04 + r.base_roll_pitch, 1e-6);
-  EXPECT_NEAR(reward(steady, r, {.all = 0.0}) - reward(s, r, {.all = 0.0}),
-              r.scale * r.cost_weight * more, 1e-6);
-}
-
 TEST(RewardTest, CostsGrowWithTheirRampAndARewardIsNeverNegative) {
   const RewardSettings r = shipped_settings();
   StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
