@@ -12,7 +12,7 @@
 
 namespace sandrunner {
 
-/// Settings of one run, from the layers preset < terrain file < --config < --set.
+/// Settings of one run, from the layers terrain preset or file < --config < --set.
 struct ProcessConfig {
   sim::Robot robot;
   sim::SimulatorConfig simulator;

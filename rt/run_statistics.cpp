@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/quantile.h"
+
 namespace sandrunner {
 namespace {
 
 constexpr int kShortestStance_ticks = kControlHz / 100;  // 10 ms
 constexpr double kLift_m = 0.001;
-
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto i = static_cast<std::size_t>(at);
-  if (i + 1 >= sorted.size()) return sorted.back();
-  return sorted[i] + (at - static_cast<double>(i)) * (sorted[i + 1] - sorted[i]);
-}
 
 double square(double v) { return v * v; }
 

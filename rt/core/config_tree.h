@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Strict layered configuration from TOML. Layers are added from the weakest to the strongest
-// (preset < terrain file < --config < --set); a value is the one of the last layer that has its
+// (terrain preset or file < --config < --set); a value is the one of the last layer that has its
 // key.
 //
 //   ConfigTree config;

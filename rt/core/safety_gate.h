@@ -37,8 +37,8 @@ inline constexpr int kNumFaults = 12;
 const char* fault_name(Fault fault) noexcept;
 
 /// Thresholds. The defaults of the faults lie beyond what the published network does in normal
-/// running (46 rad/s, a knee 0.3 rad past its range). Stops, speed and torque are those of the
-/// reference robot.
+/// running (46 rad/s, a knee 0.3 rad past its range). Speed and torque are those of the
+/// reference robot; its stops come from its URDF.
 struct GateConfig {
   JointArray<double> joint_lower_rad{-3.1416, -6.2832, -2.4696, -3.1416, -6.2832, -2.4696,
                                      -3.1416, -6.2832, -2.4696, -3.1416, -6.2832, -2.4696};

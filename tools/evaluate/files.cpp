@@ -53,23 +53,37 @@ std::string results_json(const Results& results, const Options& options) {
     }
     j["policies"].push_back(std::move(policy));
   }
-  return j.dump(1) + "\n";
+  // A path need not be UTF-8.
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// A field of a CSV file (RFC 4180).
+static std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string(2, c) : std::string(1, c);
+  return out + "\"";
 }
 
 std::string part_csv(const PartResults& results, const std::vector<std::string>& policies) {
   std::string text =
-      "policy,ground,scenario,vx_mps,vy_mps,wz_radps,sigma_flat_npm3,sigma_cone_npm3,runs";
-  for (const Metric& m : metrics()) text += fmt::format(",{0},{0}_low,{0}_high", m.key);
+      "policy,ground,scenario,command_vx_mps,command_vy_mps,command_wz_radps,sigma_flat_npm3,"
+      "sigma_cone_npm3,runs";
+  for (const Metric& m : metrics()) text += fmt::format(",{0},{0}_low,{0}_high,{0}_n", m.key);
   text += "\n";
   for (std::size_t g = 0; g < results.part.groups.size(); ++g) {
     const Group& group = results.part.groups[g];
     for (std::size_t p = 0; p < policies.size(); ++p) {
-      text += fmt::format("{},{},{},{},{},{},{},{},{}", policies[p], group.ground, group.scenario,
-                          group.command.vx_mps, group.command.vy_mps, group.command.wz_radps,
-                          group.sigma_flat_npm3, group.sigma_cone_npm3, results.runs[p][g].size());
+      text += fmt::format("{},{},{},{},{},{},{},{},{}", quoted(policies[p]), group.ground,
+                          group.scenario, group.command.vx_mps, group.command.vy_mps,
+                          group.command.wz_radps, group.sigma_flat_npm3, group.sigma_cone_npm3,
+                          results.runs[p][g].size());
       for (const Metric& m : metrics()) {
         const Estimate e = pool(m, results.runs[p][g]);
-        text += e.n == 0 ? ",,," : fmt::format(",{:.6g},{:.6g},{:.6g}", e.value, e.low, e.high);
+        for (const double v : {e.value, e.low, e.high}) {
+          text += std::isnan(v) ? "," : fmt::format(",{:.6g}", v);
+        }
+        text += fmt::format(",{}", e.n);
       }
       text += "\n";
     }

@@ -3,6 +3,7 @@
 // drawn at random.
 #include <cmath>
 
+#include "rt/core/command_shaping.h"
 #include "sim/random.h"
 #include "tools/evaluate/study.h"
 
@@ -40,7 +41,9 @@ Part Study::grid() {
         trial.command.acceleration = INFINITY;
         trial.command.target.vx_mps = draw(kForwardLow_mps, kForwardHigh_mps);
         trial.command.target.vy_mps = draw(-kLateral_mps, kLateral_mps);
-        trial.command.target.wz_radps = draw(-kYaw_radps, kYaw_radps);
+        trial.command.target.wz_radps =
+            shape_yaw_rate(draw(-kYaw_radps, kYaw_radps), trial.command.target.vx_mps,
+                           trial.command.target.vy_mps, kCentripetalLimit_mps2);
         trial.duration_s = 4.0;
         g.trials.push_back(trial);
       }

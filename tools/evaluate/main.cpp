@@ -79,15 +79,16 @@ int run(int argc, char** argv) {
     }
     fmt::print("{}\n", tables(part, results.policies));
     std::fflush(stdout);
-    if (out) {
-      write_text(part_csv(part, results.policies), dir + name + ".csv");
-      draw_part(part, results.policies, options->out_dir);
-    }
     results.parts.push_back(std::move(part));
   }
+  // All at the end, so that no file of this evaluation lies beside one of another.
   if (out) {
+    for (const PartResults& part : results.parts) {
+      write_text(part_csv(part, results.policies), dir + part.part.name + ".csv");
+      draw_part(part, results.policies, options->out_dir);
+    }
     write_text(results_json(results, *options), dir + "evaluation.json");
-    fmt::print("wrote {0}/evaluation.json, {0}/*.csv, {0}/*.png\n", options->out_dir);
+    fmt::print("wrote evaluation.json and the parts' files into {}\n", options->out_dir);
   }
   return kExitOk;
 }

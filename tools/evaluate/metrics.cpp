@@ -16,6 +16,7 @@ const std::vector<Metric>& metrics() {
   constexpr Pooling kRate = Pooling::kRate, kMean = Pooling::kMean, kRms = Pooling::kRms;
   static const std::vector<Metric> all = {
       {"survival", "alive", 100.0, 1, kRate, [](R r) { return rate(!r.fell); }},
+      {"disturbance_met", "met", 100.0, 1, kRate, [](R r) { return r.disturbance_met; }},
       {"track_success", "success", 100.0, 1, kRate, [](R r) { return rate(r.track_done); }},
       {"track_strict_success", "strict", 100.0, 1, kRate,
        [](R r) { return rate(r.track_done && r.track_limits_kept); }},
@@ -67,9 +68,12 @@ Estimate pool(const Metric& metric, const std::vector<TrialFigures>& runs) {
   for (const TrialFigures& run : runs) values.push_back(metric.of_run(run));
   switch (metric.pooling) {
     case Pooling::kRate: {
-      int hits = 0;
-      for (const double v : values) hits += v > 0.5;
-      return rate_interval(hits, static_cast<int>(values.size()));
+      int hits = 0, n = 0;
+      for (const double v : values) {
+        hits += v > 0.5;
+        n += !std::isnan(v);
+      }
+      return rate_interval(hits, n);
     }
     case Pooling::kMean:
       return mean_interval(values);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 
 #include "rt/plot.h"
 
@@ -68,23 +67,14 @@ void draw_cost(const PartResults& results, const std::vector<std::string>& polic
   for (const auto& [ground, groups] : by_ground(results.part)) {
     plot::Panel panel{ground, "CoT", {}, 1e-3};
     for (std::size_t p = 0; p < policies.size(); ++p) {
-      std::map<double, double> points;
+      std::vector<std::pair<double, double>> points;
       for (const std::size_t g : groups) {
         const Estimate speed = pool(metric("vx_mps"), results.runs[p][g]);
         const Estimate cot = pool(metric("cot"), results.runs[p][g]);
-        if (cot.n > 0) points[speed.value] = cot.value;
+        if (cot.n > 0) points.emplace_back(speed.value, cot.value);
       }
       plot::Series line{policies[p], kPolicyColors[p], {}};
-      for (const double x : figure.x) {
-        const auto right = points.lower_bound(x);
-        double y = kNotDefined;
-        if (right != points.end() && right != points.begin()) {
-          const auto left = std::prev(right);
-          y = left->second +
-              (x - left->first) / (right->first - left->first) * (right->second - left->second);
-        }
-        line.y.push_back(y);
-      }
+      for (const double x : figure.x) line.y.push_back(interpolate(points, x));
       panel.series.push_back(line);
     }
     figure.panels.push_back(panel);

@@ -23,14 +23,14 @@ Part Study::robust() {
     return ground;
   };
   sim::TerrainDescription strip = sand, quarter = sand, half = sand, alternating = rigid;
-  constexpr double kLooseFrom_m = 3.0, kLooseTo_m = 3.6;
+  constexpr double kLooseFrom_m = 3.0, kLooseTo_m = 3.6, kHardTo_m = 2.0;
   patch(strip, kLooseFrom_m, softer(4.0));
   patch(strip, kLooseTo_m, sand.patches[0].ground);
   // Nobody gets so far; one foot is moved there.
   patch(quarter, 1e9, softer(4.0));
   patch(half, 1e9, softer(2.0));
   for (int i = 1; i <= 4; ++i) {
-    patch(alternating, 2.0 * i, (i % 2 == 1 ? sand : rigid).patches[0].ground);
+    patch(alternating, kHardTo_m * i, (i % 2 == 1 ? sand : rigid).patches[0].ground);
   }
 
   struct Case {
@@ -63,6 +63,8 @@ Part Study::robust() {
   cases[1].trial.latency_ticks = 40;
   cases[3].trial.noise_scale = 3.0;
   cases[4].trial.push_speed_mps = 0.6;
+  cases[7].trial.ground_changes_at_m = kLooseFrom_m;
+  cases[8].trial.ground_changes_at_m = kHardTo_m;
   cases[5].trial.loose_step.from_m = cases[6].trial.loose_step.from_m = kLooseFrom_m;
   for (const Case& c : cases) {
     for (const double speed : {1.0, 2.0, 3.0}) {

@@ -93,10 +93,12 @@ class PackRun {
         if (lane.done) continue;
         const sim::BatchSums<float> sums = batch_.sums(static_cast<int>(i));
         lane.recorder.end_period(sums);
-        const bool fell = sums.base_contact > 0.0f || sums.thigh_contact > 0.0f ||
-                          !std::isfinite(sums.torque_squared);
+        const sim::RigidState<float> x = batch_.state(static_cast<int>(i)).rigid;
+        const double change_m = trials_[i].ground_changes_at_m;
+        lane.met = lane.met || (change_m > 0.0 && x.position.x >= change_m);
+        const bool fell = sums.base_contact > 0.0f || sums.thigh_contact > 0.0f || diverged(x);
         if (!fell && !finished(trials_[i], lane.recorder)) continue;
-        figures[i] = lane.recorder.figures(trials_[i], fell, facts_);
+        figures[i] = lane.recorder.figures(trials_[i], fell, lane.met, facts_);
         lane.done = true;
         lane.recorder = {};
         park(static_cast<int>(i));
@@ -112,8 +114,17 @@ class PackRun {
     JointArray<double> target_rad{};
     sim::BatchDrive<float> drive;
     TrialRecorder recorder;
-    bool in_air = false, loosened = false;  // for LooseStep
+    bool in_air = false;  // the foot of the LooseStep
+    bool met = false;     // the place where it is disturbed
   };
+
+  // Not a number, or beyond all that a robot does: as in the training.
+  static bool diverged(const sim::RigidState<float>& x) {
+    const float speed = std::fabs(x.velocity.x) + std::fabs(x.velocity.y) +
+                        std::fabs(x.velocity.z) + std::fabs(x.angular_velocity.x) +
+                        std::fabs(x.angular_velocity.y) + std::fabs(x.angular_velocity.z);
+    return !(speed < 100.0f) || !(std::fabs(x.position.z) < 10.0f);
+  }
 
   static bool finished(const Trial& trial, const TrialRecorder& recorder) {
     if (recorder.time_s() < trial.duration_s) return false;
@@ -138,13 +149,15 @@ class PackRun {
     const Trial& trial = trials_[i];
     sim::RobotState<float> state = batch_.state(i);
     if (disturb(trial, step, lane, state)) batch_.set_state(i, state);
-    VelocityCommand command = trial.command.at(static_cast<double>(step) / kPolicyHz);
+    // What is asked for, the same for every policy; and what this one is given of it.
+    const VelocityCommand asked = trial.command.at(static_cast<double>(step) / kPolicyHz);
+    VelocityCommand command = asked;
     command.wz_radps = shape_yaw_rate(command.wz_radps, command.vx_mps, command.vy_mps,
                                       policy_.spec().yaw_command_clip_mps2);
     policy_.set_state(lane.memory);
     const PolicyStep answer = policy_.step(observe(trial, step, command, state));
     lane.memory = policy_.state();
-    lane.recorder.begin_period(state, truth_of(robot_.model, state), answer.estimate, command,
+    lane.recorder.begin_period(state, truth_of(robot_.model, state), answer.estimate, asked,
                                lane.target_rad, answer.target_rad, policy_.spec().kp_nmprad,
                                policy_.spec().kd_nmsprad, facts_);
     for (int j = 0; j < kNumJoints; ++j) {
@@ -210,12 +223,12 @@ class PackRun {
     sim::FootContact<float>& contact = state.feet[trial.loose_step.leg];
     const bool was_in_air = lane.in_air;
     lane.in_air = contact.active == 0.0f;
-    if (lane.loosened || !was_in_air || lane.in_air ||
+    if (lane.met || !was_in_air || lane.in_air ||
         lane.recorder.distance_m() < trial.loose_step.from_m) {
       return false;
     }
     contact.region = 1.0f;
-    lane.loosened = true;
+    lane.met = true;
     return true;
   }
 

@@ -48,7 +48,7 @@ Estimate mean_interval(const std::vector<double>& values) {
   for (const double v : values) {
     if (!std::isnan(v)) squares += (v - mean) * (v - mean);
   }
-  const double half = n > 1 ? student_t_975(n - 1) * std::sqrt(squares / (n - 1.0) / n) : 0.0;
+  const double half = n > 1 ? student_t_975(n - 1) * std::sqrt(squares / (n - 1.0) / n) : kNan;
   return {n, mean, mean - half, mean + half};
 }
 
@@ -59,12 +59,15 @@ Estimate rms_interval(const std::vector<double>& values) {
   return {e.n, std::sqrt(e.value), std::sqrt(std::max(e.low, 0.0)), std::sqrt(e.high)};
 }
 
-double quantile(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return kNan;
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto i = static_cast<std::size_t>(at);
-  if (i + 1 >= sorted.size()) return sorted.back();
-  return sorted[i] + (at - static_cast<double>(i)) * (sorted[i + 1] - sorted[i]);
+double interpolate(std::vector<std::pair<double, double>> points, double x) {
+  std::sort(points.begin(), points.end());
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const auto [x0, y0] = points[i];
+    const auto [x1, y1] = points[i + 1];
+    if (x < x0 || x > x1 || x0 == x1) continue;
+    return y0 + (x - x0) / (x1 - x0) * (y1 - y0);
+  }
+  return kNan;
 }
 
 }  // namespace sandrunner::evaluate

@@ -2,6 +2,7 @@
 // Means, rates and their 95 % confidence intervals.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 namespace sandrunner::evaluate {
@@ -16,7 +17,7 @@ struct Estimate {
 Estimate rate_interval(int hits, int n);
 
 /// Mean with Student's t interval, for independent values that are close to normally distributed.
-/// nan values are left out. One value: the interval is the value itself.
+/// nan values are left out. One value has no interval: its bounds are nan.
 Estimate mean_interval(const std::vector<double>& values);
 
 /// Square root of the mean of the squares; the interval is that of the mean square.
@@ -25,7 +26,7 @@ Estimate rms_interval(const std::vector<double>& values);
 /// 0.975 quantile of Student's t with this many degrees of freedom (>= 1), to 0.2 %.
 double student_t_975(int degrees);
 
-/// Quantile at `share` in [0, 1] of ascending values, linear between them. nan if there are none.
-double quantile(const std::vector<double>& sorted, double share);
+/// Value at x by straight lines between points (x, y) in any order; nan outside of them.
+double interpolate(std::vector<std::pair<double, double>> points, double x);
 
 }  // namespace sandrunner::evaluate

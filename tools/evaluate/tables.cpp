@@ -82,18 +82,6 @@ std::string group_table(const PartResults& results, const std::vector<std::strin
   return table.text();
 }
 
-// Value of y at x by straight lines between points ascending in x; nan outside.
-double interpolate(std::vector<std::pair<double, double>> points, double x) {
-  std::sort(points.begin(), points.end());
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const auto [x0, y0] = points[i];
-    const auto [x1, y1] = points[i + 1];
-    if (x < x0 || x > x1 || x0 == x1) continue;
-    return y0 + (x - x0) / (x1 - x0) * (y1 - y0);
-  }
-  return kNotDefined;
-}
-
 // Cost of transport of the first policy at the steady speeds of the second.
 std::string cot_at_same_speed(const PartResults& results,
                               const std::vector<std::string>& policies) {
@@ -169,9 +157,11 @@ std::string grid_tables(const PartResults& results, const std::vector<std::strin
         where = i;
       }
       below += lead < -0.01;
-      for (std::size_t p = 0; p < 2; ++p) {
-        error[p] += pool(metric("velocity_error_mps"), results.runs[p][i]).value;
-      }
+      const auto error_of = [&](std::size_t p) {
+        return pool(metric("velocity_error_mps"), results.runs[p][i]).value;
+      };
+      if (std::isnan(error_of(0)) || std::isnan(error_of(1))) continue;
+      for (std::size_t p = 0; p < 2; ++p) error[p] += error_of(p);
     }
     text += fmt::format(
         "  {} against {}: survival more than 1 % lower in {} of {} cells, worst {:+.1f} % at {}; "
@@ -215,10 +205,11 @@ std::string tables(const PartResults& results, const std::vector<std::string>& p
                         "turning_cot", "cot", "stride_hz", "past_stop_share"},
                        true);
   }
-  return "Robustness\n" + group_table(results, policies,
-                                      {"survival", "vx_mps", "velocity_error_mps", "cot",
-                                       "drift_vy_mps", "drift_yaw_radps", "tilt_rms_rad"},
-                                      true);
+  return "Robustness\n" +
+         group_table(results, policies,
+                     {"survival", "disturbance_met", "vx_mps", "velocity_error_mps", "cot",
+                      "drift_vy_mps", "drift_yaw_radps", "tilt_rms_rad"},
+                     true);
 }
 
 }  // namespace sandrunner::evaluate

@@ -53,8 +53,11 @@ struct Trial {
   double noise_scale = 0.0;     ///< of the training's observation noise
   double push_speed_mps = 0.0;  ///< kick of this size in a random direction every second
   LooseStep loose_step;
-  std::uint64_t seed = 0;  ///< of noise and pushes
+  double ground_changes_at_m = 0.0;  ///< world x of the terrain's second patch; 0: none to be met
+  std::uint64_t seed = 0;            ///< of noise and pushes
 
+  /// Whether there is a place where the robot is disturbed, which it may never come to.
+  bool has_place() const noexcept { return loose_step.from_m > 0.0 || ground_changes_at_m > 0.0; }
   bool has_track() const noexcept { return track_end_m > track_begin_m; }
 };
 

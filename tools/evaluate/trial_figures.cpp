@@ -5,14 +5,14 @@
 #include <cmath>
 #include <cstddef>
 
-#include "tools/evaluate/statistics.h"
+#include "rt/quantile.h"
 
 namespace sandrunner::evaluate {
 namespace {
 
 constexpr double kStep_s = 1.0 / kPolicyHz;
-// As in the training: a foot is loaded when it carried more than this on average over the last or
-// the second last 10 ms: on sand the normal force comes in pulses.
+// A foot is loaded when it carried more than this on average over 10 ms; a lift-off takes two
+// periods without, as in the training: on sand the normal force comes in pulses.
 constexpr float kLoaded_n = 3.0f;
 constexpr std::size_t kSettled = kPolicyHz;  // periods before the tracking errors count
 constexpr double kUsualGaitCycle_s = 0.5;    // where no stride is seen
@@ -169,18 +169,17 @@ void TrialRecorder::track_figures(const Trial& trial, const RobotFacts& facts,
   }
   const std::size_t cycle =
       std::min(static_cast<std::size_t>(std::lround(cycle_s / kStep_s)), end - begin);
-  f.top_speed_mps = 0.0;
-  for (std::size_t i = begin; i + cycle <= end; ++i) {
-    double sum = 0.0;
-    for (std::size_t k = i; k < i + cycle; ++k) sum += periods_[k].vx;
-    f.top_speed_mps = std::max(f.top_speed_mps, sum / static_cast<double>(cycle));
-  }
+  double sum = 0.0;
+  for (std::size_t i = end - cycle; i < end; ++i) sum += periods_[i].vx;
+  f.top_speed_mps = sum / static_cast<double>(cycle);
 }
 
-TrialFigures TrialRecorder::figures(const Trial& trial, bool fell, const RobotFacts& facts) const {
+TrialFigures TrialRecorder::figures(const Trial& trial, bool fell, bool met,
+                                    const RobotFacts& facts) const {
   TrialFigures f;
   f.fell = fell;
   f.time_s = time_s();
+  if (trial.has_place()) f.disturbance_met = met ? 1.0 : 0.0;
   if (!fell) steady_figures(facts, f);
   if (trial.has_track()) track_figures(trial, facts, f);
   double too_fast = 0.0, past_stop = 0.0, velocity_error = 0.0, yaw_error = 0.0;

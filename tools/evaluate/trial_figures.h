@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What one run of one robot comes to. Definitions as in rt/run_statistics.h where both have a
-// figure: "steady" is the second half of the run.
+// figure, but for the cost of transport: of |v_xy| here, of |vx| there. "Steady" is the second half
+// of the run.
 #pragma once
 
 #include <array>
@@ -19,14 +20,17 @@ inline constexpr double kNotDefined = std::numeric_limits<double>::quiet_NaN();
 /// make no sense.
 struct TrialFigures {
   double time_s = 0.0;  ///< until the end or the fall
-  bool fell = false;    ///< base or thigh touched the ground
+  bool fell = false;    ///< base or thigh touched the ground, or the simulation diverged
+  /// 1 or 0: the robot came to the ground that changes, or to its loose step; nan: there is none.
+  double disturbance_met = kNotDefined;
 
   // Track.
   bool track_done = false;               ///< reached its end without a fall and in time
   bool track_limits_kept = false;        ///< and until there no joint was past a stop at any tick
   double track_speed_mps = kNotDefined;  ///< length over time
   double track_cot = kNotDefined;        ///< (P_mech + P_heat)/(m g v), from start to end line
-  double top_speed_mps = kNotDefined;    ///< best mean vx over one gait cycle on the track
+  double top_speed_mps =
+      kNotDefined;  ///< mean vx of the last gait cycle before the end of the track
 
   // Steady.
   double vx_mps = kNotDefined, vy_mps = kNotDefined, yaw_rate_radps = kNotDefined;
@@ -77,7 +81,8 @@ class TrialRecorder {
   double time_s() const noexcept { return static_cast<double>(periods_.size()) / kPolicyHz; }
   double distance_m() const noexcept { return distance_m_; }
 
-  TrialFigures figures(const Trial& trial, bool fell, const RobotFacts& facts) const;
+  /// `met`: came to the disturbance, if the trial has one at a place.
+  TrialFigures figures(const Trial& trial, bool fell, bool met, const RobotFacts& facts) const;
 
  private:
   struct Period {

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -17,6 +18,7 @@
 #include "rt/build.h"
 #include "rt/core/errors.h"
 #include "rt/core/program.h"
+#include "rt/output_files.h"
 #include "tools/train/embedded.h"
 #include "tools/train/progress.h"
 #include "tools/train/task/task.h"
@@ -73,7 +75,9 @@ class Training {
         learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
                  arguments.seed, pool_, Task::symmetry()),
         checkpoint_path_(arguments.out + "/checkpoint.bin"),
-        config_hash_(config_hash(config.effective, arguments.seed)) {}
+        config_hash_(config_hash(config.effective, arguments.seed)),
+        builds_(build_commit()),
+        processors_(processor_name()) {}
 
   void start() {
     pool_.run(learner_.blocks(),
@@ -88,6 +92,16 @@ class Training {
                       checkpoint_path_));
     }
     restore(checkpoint);
+    checkpoint.get("run.cpu_seconds", &cpu_before_, 1);
+    // Everyone who had a hand in the weights.
+    for (const auto& [section, now] :
+         {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
+      Names names{};
+      checkpoint.get(section, names.data(), names.size());
+      const std::string before = names.data();
+      const bool known = (", " + before + ", ").find(", " + *now + ", ") != std::string::npos;
+      *now = known ? before : before + ", " + *now;
+    }
   }
 
   void save() {
@@ -97,6 +111,12 @@ class Training {
     progress_.save(checkpoint);
     const double cpu = cpu_before_ + cpu_seconds();
     checkpoint.put("run.cpu_seconds", &cpu, 1);
+    for (const auto& [section, text] :
+         {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
+      Names names{};
+      text->copy(names.data(), names.size() - 1);
+      checkpoint.put(section, names.data(), names.size());
+    }
     // The first observation of the next window was made with noise that is not drawn again.
     const learner::Rollout& rollout = learner_.rollout();
     checkpoint.put("run.observation", rollout.observation(0).data(),
@@ -110,6 +130,7 @@ class Training {
     write_policy_file(arguments_.out + "/policy.safetensors", policy_file());
     progress_.write(arguments_.out);
     saved_wall_ = wall_seconds();
+    fallbacks_ = 0;
   }
 
   // Windows until the transitions are done or somebody interrupts.
@@ -145,16 +166,17 @@ class Training {
       }
       if (t2 - saved_wall_ > config_.run.checkpoint_interval_s) save();
     }
-    save();
+    // A training that was complete stays as it is.
+    if (static_cast<double>(learner_.transitions()) > start_transitions) save();
   }
 
  private:
+  using Names = std::array<char, 1024>;
+
   void restore(const learner::Checkpoint& checkpoint) {
     learner_.load(checkpoint);
     task_.load(checkpoint);
     progress_.load(checkpoint);
-    checkpoint.get("run.cpu_seconds", &cpu_before_, 1);
-    cpu_before_ -= cpu_seconds();
     learner::Rollout& rollout = learner_.rollout();
     checkpoint.get("run.observation", rollout.observation(0).data(),
                    static_cast<std::size_t>(rollout.observation(0).size()));
@@ -174,13 +196,19 @@ class Training {
   }
 
   void fall_back() {
-    if (!std::filesystem::exists(checkpoint_path_) || ++fallbacks_ > 3) {
-      throw std::runtime_error(
-          "the update is not finite and there is no good checkpoint to go back to");
+    if (!std::filesystem::exists(checkpoint_path_)) {
+      throw std::runtime_error("an update is not finite, before the first checkpoint");
     }
-    fmt::print(stderr, "update {} is not finite: back to {}\n", learner_.updates(),
+    if (++fallbacks_ > 5) {
+      throw std::runtime_error(
+          fmt::format("no finite update from {} on, with smaller and smaller learning rates",
+                      checkpoint_path_));
+    }
+    fmt::print(stderr, "update {} is not finite: back to {}, slower\n", learner_.updates(),
                checkpoint_path_);
     restore(learner::load_checkpoint(checkpoint_path_));
+    // The same steps would end in the same bits.
+    for (int i = 0; i < fallbacks_; ++i) learner_.halve_learning_rate();
   }
 
   ProgressRow make_row(const WindowStats& w, const learner::UpdateStats& u, double simulation_s,
@@ -239,8 +267,8 @@ class Training {
         {"threads", std::to_string(arguments_.threads)},
         {"transitions", std::to_string(learner_.transitions())},
         {"core_hours", fmt::format("{:.3f}", (cpu_before_ + cpu_seconds()) / 3600.0)},
-        {"processor", processor_name()},
-        {"commit", build_commit()},
+        {"processor", processors_},
+        {"commit", builds_},
         {"origin", "sandrunner-train, from random weights"}};
     NetworkParameters& p = file.parameters;
     p.observation_clip = scales.clip;
@@ -266,7 +294,8 @@ class Training {
   Progress progress_;
   std::string checkpoint_path_;
   std::uint64_t config_hash_;
-  double cpu_before_ = 0.0;
+  std::string builds_, processors_;  // of this process and those it continues, separated by commas
+  double cpu_before_ = 0.0;          // core time of those before
   double saved_wall_ = 0.0;
   int fallbacks_ = 0;
 };
@@ -296,9 +325,6 @@ int run(int argc, char** argv) {
   if (!a.config_file.empty()) tree.add_file(a.config_file);
   for (const std::string& assignment : a.assignments) tree.set(assignment);
   const TrainConfig config = read_train_config(tree);
-  std::error_code error;
-  std::filesystem::create_directories(a.out, error);
-  if (error) throw InputError(fmt::format("--out: folder '{}' cannot be written", a.out));
   if (!a.resume && std::filesystem::exists(a.out + "/checkpoint.bin")) {
     throw InputError(
         fmt::format("--out: '{}' holds a training; give --resume or another folder", a.out));
@@ -306,11 +332,9 @@ int run(int argc, char** argv) {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   Training training(config, a);
-  if (a.resume) {
-    training.resume();
-  } else {
-    training.start();
-  }
+  if (a.resume) training.resume();
+  prepare_folder(a.out, "--out");
+  if (!a.resume) training.start();
   training.run();
   return kExitOk;
 }

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "rt/telemetry/odometry.h"
 #include "rt/telemetry/dds/participant.h"
+#include "rt/telemetry/odometry.h"
 #include "rt/tick_record.h"
 
 namespace sandrunner {

@@ -7,9 +7,9 @@
 
 #include "rt/telemetry/dds/command_inbox.h"
 #include "rt/telemetry/dds/diagnostics.h"
-#include "rt/telemetry/odometry.h"
 #include "rt/telemetry/dds/ros_publisher.h"
 #include "rt/telemetry/dds/tick_batches.h"
+#include "rt/telemetry/odometry.h"
 #include "rt/tick_record.h"
 
 namespace sandrunner {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <functional>
 
+#include "printing.h"
 #include "rt/core/controller.h"
 #include "rt/core/joint_pd.h"
-#include "printing.h"
 
 namespace sandrunner {
 

@@ -43,7 +43,9 @@ class TrialFiguresTest : public testing::Test {
     recorder_.end_period(sums_);
     ++periods_;
   }
-  TrialFigures figures(bool fell = false) { return recorder_.figures(trial_, fell, facts_); }
+  TrialFigures figures(bool fell = false, bool met = false) {
+    return recorder_.figures(trial_, fell, met, facts_);
+  }
 
   RobotFacts facts_;
   Trial trial_;
@@ -80,10 +82,19 @@ TEST_F(TrialFiguresTest, ConstantRun) {
   EXPECT_EQ(f.torque_limit_share, 0.0);
 }
 
-TEST_F(TrialFiguresTest, TopSpeedIsTheBestGaitCycle) {
-  // The gait cycle of 0.5 s lies within the fast half second, which lies on the track.
-  for (int i = 0; i < 800; ++i) period(i >= 300 && i < 350 ? 2.0f : 1.0f);
-  EXPECT_NEAR(figures().top_speed_mps, 2.0, 1e-5);
+TEST_F(TrialFiguresTest, TopSpeedIsOfTheLastGaitCycleOfTheTrack) {
+  // The end of the track is reached in period 550; a gait cycle is 0.5 s.
+  for (int i = 0; i < 800; ++i) period(i >= 500 && i < 550 ? 2.0f : i < 200 ? 0.9f : 1.0667f);
+  EXPECT_NEAR(figures().track_speed_mps, 5.0 / (0.01 * (550 - 111)), 0.02);
+  EXPECT_NEAR(figures().top_speed_mps, 2.0, 0.05);
+}
+
+TEST_F(TrialFiguresTest, DisturbanceIsMetOrNotOrThereIsNone) {
+  period(1.0f);
+  EXPECT_TRUE(std::isnan(figures(false, false).disturbance_met));
+  trial_.ground_changes_at_m = 2.0;
+  EXPECT_EQ(figures(false, false).disturbance_met, 0.0);
+  EXPECT_EQ(figures(false, true).disturbance_met, 1.0);
 }
 
 TEST_F(TrialFiguresTest, FallLeavesNoSteadyFigures) {

@@ -81,6 +81,10 @@ std::string join(const std::vector<int>& widths) {
 
 }  // namespace
 
+void Learner::halve_learning_rate() {
+  counters_.learning_rate = std::max(0.5 * counters_.learning_rate, config_.learning_rate_min);
+}
+
 double adapted_learning_rate(double learning_rate, double kl, const LearnerConfig& config) {
   if (kl < 0.5 * config.kl_target) learning_rate *= kLearningRateUp;
   if (kl > 2.0 * config.kl_target) learning_rate /= kLearningRateDown;

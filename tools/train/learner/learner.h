@@ -121,6 +121,8 @@ class Learner {
   /// swing with the latest minibatches (Polyak, Juditsky 1992).
   const std::vector<float>& averaged() const { return averaged_; }
 
+  /// For who goes back to a checkpoint, so that the next updates differ from those that failed.
+  void halve_learning_rate();
   /// KL target of the updates to come.
   void set_kl_target(double kl_target) { config_.kl_target = kl_target; }
   /// Weight of the pull towards symmetry from now on; without effect if there is no symmetry.

@@ -20,7 +20,7 @@ struct RolloutShape {
 
 /// How a step left the episode. A terminated episode has no future reward; after a timeout the
 /// future is worth `timeout_value`. Both cut the advantage; neither clears the policy's memory
-/// (Learner::reset_state does).
+/// (Learner::reset_memory does).
 enum class End : std::uint8_t { kNone, kTerminated, kTimeout };
 
 /// A vector for every step and environment; (t) is a matrix with one environment a column.

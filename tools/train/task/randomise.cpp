@@ -182,7 +182,7 @@ void Task::hard_reset(int env, Env& e) {
       static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
   const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
   x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
-  // Any heading: half a turn by two quarter turns at most keeps the series of `integrate` accurate.
+  // Any heading: in small steps, which keep the series of `integrate` accurate.
   const float yaw = draw(3.14159265);
   for (int i = 0; i < 8; ++i) {
     x.orientation = sim::integrate(x.orientation, sim::Vec3<float>{0.0f, 0.0f, yaw / 8.0f});

@@ -372,6 +372,7 @@ void Task::load(const learner::Checkpoint& checkpoint) {
   checkpoint.get("task.robots", robots.data(), robots.size());
   for (int env = 0; env < batch_.size(); ++env)
     batch_.set_robot(env, robots[static_cast<std::size_t>(env)]);
+  for (Sums& s : sums_) s = {};  // of a window that was not finished
   checkpoint.get("task.curriculum", &curriculum_, 1);
   checkpoint.get("task.cost_ramp", &cost_ramp_, 1);
 }

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "rt/core/errors.h"
+#include "sim/batch.h"
 
 namespace sandrunner::train {
 
@@ -56,6 +59,9 @@ TrainConfig read_train_config(ConfigTree& config) {
   needed("learner.critic");
   l.network.critic.clear();
   for (const double n : config.numbers("learner.critic", {}, ConfigTree::kAnySize, 1.0, 4096.0)) {
+    if (n != std::floor(n)) {
+      throw InputError(fmt::format("learner.critic: {}, expected whole numbers", n));
+    }
     l.network.critic.push_back(static_cast<int>(n));
   }
   number("learner.estimate_weight", l.loss.estimate_weight, 0.0, 1e3);
@@ -145,7 +151,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.cost_ramp_transitions", c.reward.cost_ramp_transitions, 1.0, 1e12);
   number("reward.cost_end", c.reward.cost_end, 0.0, 1e9);
   number("reward.cost_end_start_transitions", c.reward.cost_end_start_transitions, 0.0, 1e12);
-  number("reward.cost_end_transitions", c.reward.cost_end_transitions, 0.0, 1e9);
+  number("reward.cost_end_transitions", c.reward.cost_end_transitions, 0.0, 1e12);
   number("reward.energy_end", c.reward.energy_end, 0.0, 1e9);
   number("reward.velocity_weight", c.reward.velocity_weight, 0.0, 1e9);
   number("reward.velocity_width", c.reward.velocity_width, 1e-6, 1e3);
@@ -188,9 +194,15 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.height", c.reward.height, 0.0, 1e9);
   number("reward.height_m", c.reward.height_m, 0.0, 1e9);
 
-  ordered("ground.sigma_flat_low", c.ground.sigma_flat_low, "ground.sigma_flat_high",
+  ordered("reward.cost_end_start_transitions", c.reward.cost_end_start_transitions,
+          "reward.cost_end_transitions", c.reward.cost_end_transitions);
+  ordered("ground.sigma_flat_low", c.ground.sigma_flat_low, "ground.sigma_flat_low_start",
+          c.ground.sigma_flat_low_start);
+  ordered("ground.sigma_flat_low_start", c.ground.sigma_flat_low_start, "ground.sigma_flat_high",
           c.ground.sigma_flat_high);
-  ordered("ground.sigma_cone_low", c.ground.sigma_cone_low, "ground.sigma_cone_high",
+  ordered("ground.sigma_cone_low", c.ground.sigma_cone_low, "ground.sigma_cone_low_start",
+          c.ground.sigma_cone_low_start);
+  ordered("ground.sigma_cone_low_start", c.ground.sigma_cone_low_start, "ground.sigma_cone_high",
           c.ground.sigma_cone_high);
   ordered("ground.patch_length_low_m", c.ground.patch_length_low_m, "ground.patch_length_high_m",
           c.ground.patch_length_high_m);
@@ -200,6 +212,11 @@ TrainConfig read_train_config(ConfigTree& config) {
           c.ground.inertial_high);
   ordered("command.speed_start_mps", c.command.speed_start_mps, "command.speed_max_mps",
           c.command.speed_max_mps);
+  if (l.block_envs % static_cast<int>(sim::BatchWidth::kSixteen) != 0) {
+    throw InputError(fmt::format(
+        "training config: learner.block_envs = {}, expected a multiple of 16, the robots of a pack",
+        l.block_envs));
+  }
   if (c.run.envs % l.block_envs != 0) {
     throw InputError(fmt::format(
         "training config: run.envs = {}, expected a multiple of learner.block_envs = {}",

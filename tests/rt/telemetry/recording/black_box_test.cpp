@@ -2,11 +2,8 @@
 #include "rt/telemetry/recording/black_box.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -379,18 +376,10 @@ TEST_F(BlackBoxOfTheProgram, LockstepRunHasNone) {
 }
 
 TEST_F(BlackBoxOfTheProgram, FullDiskIsSaidAndChangesNothingElse) {
-  // As if the disk had room for 600 kB a file: the policy's attachment alone takes 430.
-  const pid_t child = fork();
-  if (child == 0) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit bytes{600'000, 600'000};
-    setrlimit(RLIMIT_FSIZE, &bytes);
-    std::filesystem::current_path(dir());
-    _exit(run(SANDRUNNER_PROGRAM, kRun));
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(dir());
+  EXPECT_EQ(run_on_full_disk(SANDRUNNER_PROGRAM, kRun), 1);
+  std::filesystem::current_path(before);
   EXPECT_NE(output().find("NOT WRITTEN: ./black-box-"), std::string::npos) << output();
   EXPECT_EQ(folder_.number_of_files(), 0u) << "no part of a file is left";
 }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
-#include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -124,17 +121,9 @@ TEST_F(RecordingTest, CutRecordingReadsUpToItsLastWholeChunk) {
 }
 
 TEST_F(RecordingTest, FullDiskEndsTheRecordingAndNotTheRun) {
-  // As if the disk had room for 600 kB a file: the policy's attachment alone takes 430.
-  const pid_t child = fork();
-  if (child == 0) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit bytes{600'000, 600'000};
-    setrlimit(RLIMIT_FSIZE, &bytes);
-    _exit(run(SANDRUNNER_PROGRAM, "--start walk --duration 1 --record '" + folder_.path("") + "'"));
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(run_on_full_disk(SANDRUNNER_PROGRAM,
+                             "--start walk --duration 1 --record '" + folder_.path("") + "'"),
+            0);
   EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
   EXPECT_NE(output().find("STOPPED"), std::string::npos) << output();
   // What is there can be read.

@@ -14,12 +14,15 @@
 namespace sandrunner {
 namespace {
 
-// 64 robots, 25 windows of 8 steps, a checkpoint as often as there can be one.
+// 64 robots, 25 windows of 8 steps, a checkpoint as often as there can be one; what comes late in a
+// training comes at once.
 const std::vector<std::string> kShort = {"--set", "run.envs=64",
                                          "--set", "run.transitions=12800",
                                          "--set", "learner.window=8",
                                          "--set", "learner.minibatches=1",
-                                         "--set", "run.checkpoint_interval_s=0.05"};
+                                         "--set", "run.checkpoint_interval_s=0.05",
+                                         "--set", "reward.cost_end_start_transitions=0",
+                                         "--set", "reward.cost_end_transitions=6400"};
 
 class TrainCommandTest : public testing::Test {
  protected:
@@ -82,7 +85,7 @@ TEST_F(TrainCommandTest, FiveKillsAndResumesEndInTheWeightsOfAnUninterruptedRun)
                               : std::vector<std::string>{"--threads", "1"});
     ::usleep(150'000 + 70'000 * static_cast<unsigned>(kill));
     ::kill(child, SIGKILL);
-    wait_for(child);
+    EXPECT_EQ(wait_for(child), -SIGKILL) << "the run was over before kill " << kill;
   }
   ASSERT_TRUE(std::filesystem::exists(folder_.path("killed") + "/checkpoint.bin"));
   ASSERT_EQ(run("killed", {"--threads", "1", "--resume"}), 0);
@@ -107,9 +110,38 @@ TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
   expect_refused("a", {"--set", "ground.friction_low=2", "--set", "ground.friction_high=1"},
                  "ground.friction_low");
   expect_refused("a", {"--set", "run.envs=100"}, "run.envs");
+  expect_refused("a", {"--set", "learner.block_envs=40", "--set", "run.envs=80"},
+                 "learner.block_envs = 40");
+  expect_refused("a", {"--set", "learner.critic=[128.7]"}, "learner.critic: 128.7");
+  expect_refused("a", {"--set", "learner.gamma=1"}, "gamma");
+  expect_refused("a", {"--set", "ground.sigma_flat_low_start=1e8"}, "sigma_flat_low_start");
   expect_refused("a", {"--config", folder_.path("absent.toml")}, "absent.toml");
   expect_refused("a", {"--resume"}, "checkpoint.bin");
-  EXPECT_FALSE(std::filesystem::exists(folder_.path("a") + "/policy.safetensors"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("a")));
+}
+
+TEST_F(TrainCommandTest, FolderThatCannotBeWrittenIsRefusedBeforeTheTraining) {
+  write_file(folder_.path("file"), "");
+  expect_refused("file", {}, "--out");
+}
+
+TEST_F(TrainCommandTest, InterruptKeepsEverythingAndResumeEndsInTheSameWeights) {
+  ASSERT_EQ(run("whole", {"--threads", "1"}), 0);
+  const pid_t child = start("stopped", {"--threads", "1"});
+  ::usleep(250'000);
+  ::kill(child, SIGINT);
+  ASSERT_EQ(wait_for(child), 0);
+  EXPECT_LE(std::stoi(policy("stopped").spec.provenance.at("transitions")), 12800);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("stopped") + "/curve.csv"));
+  ASSERT_EQ(run("stopped", {"--threads", "1", "--resume"}), 0);
+  expect_same_weights(policy("whole"), policy("stopped"));
+}
+
+TEST_F(TrainCommandTest, ResumeOfACompleteTrainingChangesNothing) {
+  ASSERT_EQ(run("c", {}), 0);
+  const std::string before = read_file(folder_.path("c") + "/policy.safetensors");
+  ASSERT_EQ(run("c", {"--resume"}), 0);
+  EXPECT_EQ(read_file(folder_.path("c") + "/policy.safetensors"), before);
 }
 
 TEST_F(TrainCommandTest, ForeignAndTruncatedCheckpointsAreRefusedAndLeftAlone) {

@@ -60,7 +60,7 @@ TEST(RewardTest, AWaySidewaysOrBackwardsCountsDoubleAndATurnCounts) {
   EXPECT_NEAR(energy_cost(obedient(0.0f, 0.0f, -2.0f)), ahead, 1e-9);
 }
 
-TEST(RewardTest, DriftCostsThoughTheSwingOfTheGaitDoesNot) {
+TEST(RewardTest, DriftCostsMuchMoreThanTheSwingOfTheGait) {
   const RewardSettings r = shipped_settings();
   const StepOutcome straight = obedient(1.0f, 0.0f, 0.0f);
   StepOutcome swinging = straight, drifting = straight;
