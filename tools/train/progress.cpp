@@ -66,7 +66,7 @@ std::string Progress::line(const ProgressRow& r, double eta_s) {
       "{:5.0f}  {:6.2f} M  {:5.1f} k/s ({:2.0f} % sim)  reward {:.4f}  track {:.2f}/{:.2f}  falls "
       "{:.2f}/{:.2f}  "
       "v/cmd {:.2f}/{:.2f}  est {:.2f} m/s  vmax {:.2f}  soft {:.2f}  h {:.3f}  {:.1f} Hz  "
-      "gait {:.2f}/{:.2f}  std "
+      "gait {:+.2f}/{:+.2f}  std "
       "{:.2f}  eta {:.0f} min",
       r.iteration, r.transitions / 1e6, r.transitions_per_s / 1e3, 100.0 * r.simulation_share,
       r.reward, r.kernel_rigid, r.kernel_soil, r.falls_rigid, r.falls_soil, r.speed_ratio_rigid,

@@ -190,8 +190,13 @@ void Task::hard_reset(int env, Env& e) {
   x.velocity = {draw(s.reset_speed_mps), draw(s.reset_speed_mps), draw(s.reset_speed_mps)};
   x.angular_velocity = {draw(s.reset_rate_radps), draw(s.reset_rate_radps),
                         draw(s.reset_rate_radps)};
-  batch_.set_state(env, state);
-  batch_.set_drive(env, e.drive);
+  // With a fresh report: the critic sees nothing of the robot that fell.
+  sim::BatchRobot<float> fresh = batch_.robot(env);
+  fresh.state = state;
+  fresh.drive = e.drive;
+  fresh.sums = {};
+  fresh.report = {};
+  batch_.set_robot(env, fresh);
 }
 
 learner::Symmetry Task::symmetry() {

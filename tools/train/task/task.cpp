@@ -102,6 +102,8 @@ void Task::privileged(int, const Env& e, const sim::RobotState<float>& state,
     *out++ = std::min(4.0f * e.stance_s[l], 3.0f);
     *out++ = std::clamp(20.0f * report.penetration[l], -3.0f, 3.0f);
   }
+  // What the reward goes by and the moment does not show.
+  for (int i = 0; i < 3; ++i) *out++ = std::clamp(e.drift[i] - e.command[i], -3.0f, 3.0f);
   for (int j = 0; j < kNumJoints; ++j) *out++ = 0.5f * e.action_1[j];
   const auto patch = static_cast<std::size_t>(e.terrain.region_at(x.position.x));
   for (float f : e.ground_features[patch]) *out++ = f;
@@ -250,6 +252,7 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
         sums.abreast += 0.5 * (s.contact[0] == s.contact[1]) + 0.5 * (s.contact[2] == s.contact[3]);
         sums.diagonal +=
             0.5 * (s.contact[0] == s.contact[3]) + 0.5 * (s.contact[1] == s.contact[2]);
+        for (const bool loaded : s.contact) sums.loaded += loaded / double(kNumLegs);
         sums.gait_steps += 1.0;
       }
       if (kind == 0) {
@@ -308,6 +311,7 @@ WindowStats Task::end_window(double transitions) {
     all.lift_offs += s.lift_offs;
     all.abreast += s.abreast;
     all.diagonal += s.diagonal;
+    all.loaded += s.loaded;
     all.gait_steps += s.gait_steps;
     all.top_kernel += s.top_kernel;
     all.top_steps += s.top_steps;
@@ -333,8 +337,13 @@ WindowStats Task::end_window(double transitions) {
   w.body_height_m = mean(all.height, all.height_steps);
   w.torque_squared = mean(all.torque_squared, all.steps);
   w.power_w = mean(all.power, all.steps);
-  w.abreast = mean(all.abreast, all.gait_steps);
-  w.diagonal = mean(all.diagonal, all.gait_steps);
+  const double duty = mean(all.loaded, all.gait_steps);
+  const double chance = duty * duty + (1.0 - duty) * (1.0 - duty);
+  const auto together = [&](double sum) {
+    return (mean(sum, all.gait_steps) - chance) / std::max(1.0 - chance, 1e-3);
+  };
+  w.abreast = together(all.abreast);
+  w.diagonal = together(all.diagonal);
   w.stride_hz = mean(all.lift_offs, all.steps) / kNumLegs * kPolicyHz;
 
   const CommandSettings& c = config_.command;

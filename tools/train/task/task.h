@@ -32,8 +32,9 @@ struct WindowStats {
   double body_height_m = 0.0;  ///< on rigid ground
   double torque_squared = 0.0, power_w = 0.0;
   double stride_hz = 0.0;  ///< lift-offs of a foot per second
-  /// Share of the steps, told to go, in which two feet are both loaded or both not: feet side by
-  /// side (1 in a bound, 0 in a trot) and diagonal ones (1 in a trot).
+  /// How feet go together while the robot is told to go, side by side ones and diagonal ones: 1
+  /// together, 0 as chance has it, below 0 in turn. Share of the steps in which both are loaded or
+  /// both not, a, as (a - b)/(1 - b), b that of independent feet.
   double abreast = 0.0, diagonal = 0.0;
 };
 
@@ -68,7 +69,7 @@ class Task {
 
  private:
   static constexpr int kPrivileged =
-      kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
+      kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 3 + 8;
 
   static constexpr int kGroundFeatures = 6;
 
@@ -91,7 +92,7 @@ class Task {
   };
   struct Sums {  // of one block and window
     double steps = 0, reward = 0, torque_squared = 0, power = 0, height = 0, height_steps = 0,
-           lift_offs = 0, abreast = 0, diagonal = 0, gait_steps = 0;
+           lift_offs = 0, abreast = 0, diagonal = 0, loaded = 0, gait_steps = 0;
     std::array<double, 2> kernel{}, kind_steps{}, falls{}, ratio{}, ratio_steps{};
     double top_kernel = 0, top_steps = 0;
   };
