@@ -147,7 +147,7 @@ inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_
 inline double unsteadiness(const StepOutcome& s, const RewardSettings& r) {
   // A run has its flights.
   const double speed = std::hypot(s.command[0], s.command[1]);
-  return r.unsupported * !supported(s) / std::max(speed / 2.0, 1.0) +
+  return r.unsupported * !supported(s) / std::max(speed / 3.0, 1.0) +
          r.base_vertical * s.vz * s.vz + r.base_pitch * std::fabs(s.pitch_rate) +
          r.base_roll * std::fabs(s.roll_rate);
 }

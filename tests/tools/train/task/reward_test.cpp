@@ -96,7 +96,7 @@ TEST(RewardTest, UnsteadinessIsChargedInFullFromTheStartAndALackOfSupportLessInA
   EXPECT_NEAR(unsteadiness(s, r), r.unsupported, 1e-12);
   StepOutcome fast = obedient(4.0f, 0.0f, 0.0f);
   fast.contact = s.contact;
-  EXPECT_NEAR(unsteadiness(fast, r), r.unsupported / 2.0, 1e-12);
+  EXPECT_NEAR(unsteadiness(fast, r), 0.75 * r.unsupported, 1e-12);
   const StepOutcome steady = s;
   s.vz = 0.2f;
   s.pitch_rate = -1.0f;
