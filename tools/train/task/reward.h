@@ -145,11 +145,8 @@ inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_
 /// What is charged in full from the start, before its weight: a body that bobs, pitches and rolls,
 /// and feet that cannot hold it level. The gait of a whole training is found in its first minutes.
 inline double unsteadiness(const StepOutcome& s, const RewardSettings& r) {
-  // A run has its flights.
-  const double speed = std::hypot(s.command[0], s.command[1]);
-  return r.unsupported * !supported(s) / std::max(speed / 3.0, 1.0) +
-         r.base_vertical * s.vz * s.vz + r.base_pitch * std::fabs(s.pitch_rate) +
-         r.base_roll * std::fabs(s.roll_rate);
+  return r.unsupported * !supported(s) + r.base_vertical * s.vz * s.vz +
+         r.base_pitch * std::fabs(s.pitch_rate) + r.base_roll * std::fabs(s.roll_rate);
 }
 
 /// Reward of a step.
