@@ -102,8 +102,6 @@ void Task::privileged(int, const Env& e, const sim::RobotState<float>& state,
     *out++ = std::min(4.0f * e.stance_s[l], 3.0f);
     *out++ = std::clamp(20.0f * report.penetration[l], -3.0f, 3.0f);
   }
-  // What the reward goes by and the moment does not show.
-  for (int i = 0; i < 3; ++i) *out++ = std::clamp(e.drift[i] - e.command[i], -3.0f, 3.0f);
   for (int j = 0; j < kNumJoints; ++j) *out++ = 0.5f * e.action_1[j];
   const auto patch = static_cast<std::size_t>(e.terrain.region_at(x.position.x));
   for (float f : e.ground_features[patch]) *out++ = f;

@@ -69,7 +69,7 @@ class Task {
 
  private:
   static constexpr int kPrivileged =
-      kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 3 + 8;
+      kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
 
   static constexpr int kGroundFeatures = 6;
 

@@ -182,9 +182,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.smoothness_2", c.reward.smoothness_2, 0.0, 1e9);
   number("reward.orientation", c.reward.orientation, 0.0, 1e9);
   number("reward.base_vertical", c.reward.base_vertical, 0.0, 1e9);
-  number("reward.base_pitch", c.reward.base_pitch, 0.0, 1e9);
-  number("reward.base_roll", c.reward.base_roll, 0.0, 1e9);
-  number("reward.unsupported", c.reward.unsupported, 0.0, 1e9);
+  number("reward.base_roll_pitch", c.reward.base_roll_pitch, 0.0, 1e9);
   number("reward.slip", c.reward.slip, 0.0, 1e9);
   number("reward.clearance", c.reward.clearance, 0.0, 1e9);
   number("reward.clearance_m", c.reward.clearance_m, 0.0, 1e9);

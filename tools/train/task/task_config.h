@@ -71,9 +71,9 @@ struct RewardSettings {
   double air_weight = 0, air_target_s = 0, air_longest_s = 0, stance_longest_s = 0;
   double torque = 0, power = 0, energy_speed_mps = 0, energy_offset_mps = 0, joint_speed = 0,
          speed_excess = 0, smoothness_1 = 0, smoothness_2 = 0, orientation = 0, base_vertical = 0,
-         base_pitch = 0, base_roll = 0, unsupported = 0, slip = 0, clearance = 0, clearance_m = 0,
-         pose = 0, pose_flexion_share = 0, joint_margin = 0, knee_low_rad = 0, knee_high_rad = 0,
-         height = 0, height_m = 0;
+         base_roll_pitch = 0, slip = 0, clearance = 0, clearance_m = 0, pose = 0,
+         pose_flexion_share = 0, joint_margin = 0, knee_low_rad = 0, knee_high_rad = 0, height = 0,
+         height_m = 0;
 };
 
 struct TrainConfig {
