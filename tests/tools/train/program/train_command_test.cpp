@@ -83,7 +83,7 @@ TEST_F(TrainCommandTest, FiveKillsAndResumesEndInTheWeightsOfAnUninterruptedRun)
     const pid_t child =
         start("killed", begun ? std::vector<std::string>{"--threads", "1", "--resume"}
                               : std::vector<std::string>{"--threads", "1"});
-    ::usleep(150'000 + 70'000 * static_cast<unsigned>(kill));
+    ::usleep(120'000 + 50'000 * static_cast<unsigned>(kill));
     ::kill(child, SIGKILL);
     EXPECT_EQ(wait_for(child), -SIGKILL) << "the run was over before kill " << kill;
   }
