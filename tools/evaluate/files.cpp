@@ -8,6 +8,17 @@
 #include <nlohmann/json.hpp>
 
 namespace sandrunner::evaluate {
+namespace {
+
+// A field of a CSV file (RFC 4180).
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string(2, c) : std::string(1, c);
+  return out + "\"";
+}
+
+}  // namespace
 
 std::string results_json(const Results& results, const Options& options) {
   using Json = nlohmann::ordered_json;
@@ -55,14 +66,6 @@ std::string results_json(const Results& results, const Options& options) {
   }
   // A path need not be UTF-8.
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-// A field of a CSV file (RFC 4180).
-static std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string(2, c) : std::string(1, c);
-  return out + "\"";
 }
 
 std::string part_csv(const PartResults& results, const std::vector<std::string>& policies) {

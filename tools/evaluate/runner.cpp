@@ -13,6 +13,7 @@
 #include "rt/core/command_shaping.h"
 #include "rt/core/floating_point.h"
 #include "sim/actuator.h"
+#include "sim/divergence.h"
 #include "sim/random.h"
 
 namespace sandrunner::evaluate {
@@ -96,7 +97,7 @@ class PackRun {
         const sim::RigidState<float> x = batch_.state(static_cast<int>(i)).rigid;
         const double change_m = trials_[i].ground_changes_at_m;
         lane.met = lane.met || (change_m > 0.0 && x.position.x >= change_m);
-        const bool fell = sums.base_contact > 0.0f || sums.thigh_contact > 0.0f || diverged(x);
+        const bool fell = sums.base_contact > 0.0f || sums.thigh_contact > 0.0f || sim::diverged(x);
         if (!fell && !finished(trials_[i], lane.recorder)) continue;
         figures[i] = lane.recorder.figures(trials_[i], fell, lane.met, facts_);
         lane.done = true;
@@ -117,14 +118,6 @@ class PackRun {
     bool in_air = false;  // the foot of the LooseStep
     bool met = false;     // the place where it is disturbed
   };
-
-  // Not a number, or beyond all that a robot does: as in the training.
-  static bool diverged(const sim::RigidState<float>& x) {
-    const float speed = std::fabs(x.velocity.x) + std::fabs(x.velocity.y) +
-                        std::fabs(x.velocity.z) + std::fabs(x.angular_velocity.x) +
-                        std::fabs(x.angular_velocity.y) + std::fabs(x.angular_velocity.z);
-    return !(speed < 100.0f) || !(std::fabs(x.position.z) < 10.0f);
-  }
 
   static bool finished(const Trial& trial, const TrialRecorder& recorder) {
     if (recorder.time_s() < trial.duration_s) return false;

@@ -6,6 +6,7 @@
 
 #include "estimator/observation.h"
 #include "rt/core/command_shaping.h"
+#include "sim/divergence.h"
 #include "sim/terrain.h"
 
 namespace sandrunner::train {
@@ -223,10 +224,7 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     s.air_s = e.air_s;
     s.stance_s = e.stance_s;
 
-    const float speed = std::fabs(x.velocity.x) + std::fabs(x.velocity.y) +
-                        std::fabs(x.velocity.z) + std::fabs(x.angular_velocity.x) +
-                        std::fabs(x.angular_velocity.y) + std::fabs(x.angular_velocity.z);
-    const bool absurd = !(speed < 100.0f) || !(std::fabs(x.position.z) < 10.0f);
+    const bool absurd = sim::diverged(x);
     const bool fell = batch_sums.base_contact > 0.0f || batch_sums.thigh_contact > 0.0f ||
                       r.r2.z < tilt_end_cos_ || absurd;
     const float value = absurd ? 0.0f : reward(s, config_.reward, cost_ramp_);
