@@ -96,7 +96,7 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
       air += std::min<double>(s.air_s[l], r.air_target_s);
     }
   }
-  return sum + r.air_weight * air + r.alive;
+  return sum + r.air_weight * air;
 }
 
 /// Factors of the costs, which grow during training.
@@ -115,8 +115,7 @@ inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_
   const double way = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
   double sum = energy * energy_factor * r.energy_speed_mps / (r.energy_offset_mps + way) +
-               r.joint_speed * s.speed_squared + r.speed_excess * s.speed_excess + r.slip * s.slip +
-               r.lift_off * s.lift_offs;
+               r.joint_speed * s.speed_squared + r.speed_excess * s.speed_excess + r.slip * s.slip;
   double first = 0.0, second = 0.0, pose = 0.0, overrun = 0.0;
   const bool still =
       std::fabs(s.command[0]) + std::fabs(s.command[1]) + std::fabs(s.command[2]) < 1e-3f;
@@ -156,7 +155,8 @@ inline float reward(const StepOutcome& s, const RewardSettings& r, const CostRam
   return static_cast<float>(
       r.scale *
       std::max(positive_reward(s, r) -
-                   r.cost_weight * (ramp.all * cost(s, r, ramp.energy) + ramp.unsteadiness * unsteadiness(s, r)),
+                   r.cost_weight * (ramp.all * cost(s, r, ramp.energy) + ramp.unsteadiness * unsteadiness(s, r) +
+                                    r.lift_off * s.lift_offs),
                0.0));
 }
 

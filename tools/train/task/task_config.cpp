@@ -189,7 +189,6 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.unsupported", c.reward.unsupported, 0.0, 1e9);
   number("reward.unsteadiness_end", c.reward.unsteadiness_end, 0.0, 1e9);
   number("reward.lift_off", c.reward.lift_off, 0.0, 1e9);
-  number("reward.alive", c.reward.alive, 0.0, 1e9);
   number("reward.slip", c.reward.slip, 0.0, 1e9);
   number("reward.clearance", c.reward.clearance, 0.0, 1e9);
   number("reward.clearance_m", c.reward.clearance_m, 0.0, 1e9);

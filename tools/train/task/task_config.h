@@ -68,7 +68,7 @@ struct RewardSettings {
   double precise_time_s = 0, precise_forward_weight = 0, precise_forward_width = 0,
          precise_forward_width_per_speed = 0, precise_drift_weight = 0, precise_lateral_width = 0,
          precise_yaw_width = 0;
-  double alive = 0, air_weight = 0, air_target_s = 0, air_longest_s = 0, stance_longest_s = 0;
+  double air_weight = 0, air_target_s = 0, air_longest_s = 0, stance_longest_s = 0;
   double torque = 0, power = 0, energy_speed_mps = 0, energy_offset_mps = 0, joint_speed = 0,
          speed_excess = 0, smoothness_1 = 0, smoothness_2 = 0, orientation = 0, base_vertical = 0,
          base_pitch = 0, base_roll = 0, unsupported = 0, unsteadiness_end = 0, lift_off = 0, slip = 0, clearance = 0, clearance_m = 0,
