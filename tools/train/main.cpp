@@ -148,10 +148,7 @@ class Training {
       });
       const double t1 = wall_seconds();
       learner_.set_kl_target(kl_target());
-      learner_.set_symmetry_weight(
-          config_.learner.loss.symmetry_weight *
-          std::min(static_cast<double>(learner_.transitions()) / config_.reward.cost_end_transitions,
-                   1.0));
+      learner_.set_symmetry_weight(config_.learner.loss.symmetry_weight * task_.late());
       const learner::UpdateStats update = learner_.update();
       const double t2 = wall_seconds();
       if (!update.finite) {

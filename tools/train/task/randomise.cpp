@@ -37,25 +37,17 @@ void Task::new_command(int env, Env& e) const {
   if (uniform(env, e) >= c.lateral_share) vy = 0.0;
   double wz = uniform(env, e, -c.yaw_radps, c.yaw_radps);
   if (uniform(env, e) >= c.yaw_share) wz = 0.0;
-  e.asked = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
-  e.asked[2] = shape_yaw_rate(e.asked[2], e.asked[0], e.asked[1],
+  e.command = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
+  e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1],
                                 static_cast<float>(c.centripetal_mps2));
   const double rest = uniform(env, e);
   if (rest < c.zero_share) {
-    e.asked = {};
+    e.command = {};
   } else if (rest < c.zero_share + c.in_place_share) {
-    e.asked = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -c.yaw_radps, c.yaw_radps))};
+    e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -c.yaw_radps, c.yaw_radps))};
   }
-  e.ramped = uniform(env, e) < c.ramp_share;
-  if (!e.ramped) e.command = e.asked;
   e.command_steps_left =
       static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
-}
-
-void Task::advance_command(Env& e) const {
-  if (!e.ramped) return;
-  const auto step = static_cast<float>(config_.command.ramp_mps2 / kPolicyHz);
-  for (int i = 0; i < 3; ++i) e.command[i] = slew(e.command[i], e.asked[i], step);
 }
 
 sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
@@ -165,7 +157,6 @@ void Task::new_robot(int env, Env& e) {
 void Task::hard_reset(int env, Env& e) {
   const EpisodeSettings& s = config_.episode;
   new_robot(env, e);
-  e.command = {};
   new_command(env, e);
   e.step = 0;
   e.action_1 = e.action_2 = {};

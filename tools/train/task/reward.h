@@ -27,17 +27,16 @@ struct StepOutcome {
   float slip = 0;          ///< mean sum over feet in contact of v_xy^2
   std::array<float, kNumLegs> air_s{},
       stance_s{};  ///< how long each foot has been in the air / loaded
-  int lift_offs = 0;  ///< feet that left the ground in this step
   std::array<bool, kNumLegs> contact{};
   std::array<float, kNumLegs>
       foot_clearance{};                      ///< of the foot's lowest point above the surface, m
   std::array<float, kNumLegs> foot_speed{};  ///< horizontal, m/s
 };
 
-/// How well the commanded velocity is kept: 1 exactly, towards 0 far from it. Sideways over the
-/// last stride: some gaits sway with every step. The curricula look at this too.
+/// How well the commanded velocity is kept: 1 exactly, towards 0 far from it. The curricula look at
+/// this too.
 inline float velocity_kernel(const StepOutcome& s, double width, double width_per_speed2) {
-  const double ex = s.command[0] - s.vx, ey = s.command[1] - s.drift[1];
+  const double ex = s.command[0] - s.vx, ey = s.command[1] - s.vy;
   const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
   return static_cast<float>(std::exp(-(ex * ex + ey * ey) / (width + width_per_speed2 * speed2)));
 }
@@ -54,16 +53,10 @@ inline double progress(const StepOutcome& s) {
   return std::clamp(share, 0.0, 1.0);
 }
 
-/// Whether the loaded feet can hold the body level: one in front, one behind, one on each side.
-inline bool supported(const StepOutcome& s) {
-  const auto& [lf, rf, lh, rh] = s.contact;
-  return (lf || rf) && (lh || rh) && (lf || lh) && (rf || rh);
-}
-
 /// Sum of what is paid.
 inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
   const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
-  const double yaw_error = s.command[2] - s.drift[2];
+  const double yaw_error = s.command[2] - s.yaw_rate;
   double sum =
       r.velocity_weight * velocity_kernel(s, r.velocity_width, r.velocity_width_per_speed2);
   if (speed2 > 0.01) {
@@ -103,10 +96,10 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
 struct CostRamp {
   double all = 1.0;     ///< of every cost
   double energy = 1.0;  ///< of that of energy, besides
-  double unsteadiness = 1.0;  ///< of the price of an unsteady body
+  double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
 };
 
-/// Sum of what is charged by the ramp, before its weight.
+/// Sum of what is charged, before its weight.
 inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_factor) {
   // Energy for the way, not for the time: cost of transport counts at every speed. A way sideways,
   // backwards or round is dear by nature: were it charged like one ahead, standing would be
@@ -132,7 +125,8 @@ inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_
   sum += r.smoothness_1 * first + r.smoothness_2 * second + (still ? 2.0 : 1.0) * r.pose * pose +
          r.joint_margin * overrun;
   const double tilt = std::acos(std::clamp<double>(s.up_z, -1.0, 1.0));
-  sum += r.orientation * tilt * tilt;
+  sum += r.orientation * tilt * tilt + r.base_vertical * s.vz * s.vz +
+         r.base_roll_pitch * (std::fabs(s.roll_rate) + std::fabs(s.pitch_rate));
   const double low = std::max(r.height_m - s.body_height, 0.0);
   sum += r.height * low * low;
   for (int l = 0; l < kNumLegs; ++l) {
@@ -143,21 +137,11 @@ inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_
   return sum;
 }
 
-/// What is charged in full from the start, before its weight: a body that bobs, pitches and rolls,
-/// and feet that cannot hold it level. The gait of a whole training is found in its first minutes.
-inline double unsteadiness(const StepOutcome& s, const RewardSettings& r) {
-  return r.unsupported * !supported(s) + r.base_vertical * s.vz * s.vz +
-         r.base_pitch * std::fabs(s.pitch_rate) + r.base_roll * std::fabs(s.roll_rate);
-}
-
 /// Reward of a step.
 inline float reward(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   return static_cast<float>(
       r.scale *
-      std::max(positive_reward(s, r) -
-                   r.cost_weight * (ramp.all * cost(s, r, ramp.energy) + ramp.unsteadiness * unsteadiness(s, r) +
-                                    r.lift_off * s.lift_offs),
-               0.0));
+      std::max(positive_reward(s, r) - r.cost_weight * ramp.all * cost(s, r, ramp.energy), 0.0));
 }
 
 }  // namespace sandrunner::train

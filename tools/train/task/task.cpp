@@ -103,8 +103,6 @@ void Task::privileged(int, const Env& e, const sim::RobotState<float>& state,
     *out++ = std::min(4.0f * e.stance_s[l], 3.0f);
     *out++ = std::clamp(20.0f * report.penetration[l], -3.0f, 3.0f);
   }
-  // What the reward goes by and the moment does not show.
-  for (int i = 0; i < 3; ++i) *out++ = std::clamp(e.drift[i] - e.command[i], -3.0f, 3.0f);
   for (int j = 0; j < kNumJoints; ++j) *out++ = 0.5f * e.action_1[j];
   const auto patch = static_cast<std::size_t>(e.terrain.region_at(x.position.x));
   for (float f : e.ground_features[patch]) *out++ = f;
@@ -208,6 +206,7 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     s.speed_squared = batch_sums.speed_squared * kPerTick;
     s.speed_excess = batch_sums.speed_excess * kPerTick;
     s.slip = batch_sums.slip * kPerTick;
+    double lift_offs = 0.0;
     for (int l = 0; l < kNumLegs; ++l) {
       const bool was = e.unloaded_steps[l] < kUnloadedSteps;
       e.unloaded_steps[l] = batch_sums.foot_load[l] * kPerTick > kLoaded_n
@@ -216,7 +215,7 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
       const bool loaded = e.unloaded_steps[l] < kUnloadedSteps;
       e.air_s[l] = loaded ? 0.0f : e.air_s[l] + kStep_s;
       e.stance_s[l] = loaded ? e.stance_s[l] + kStep_s : 0.0f;
-      s.lift_offs += was && !loaded;
+      lift_offs += was && !loaded;
       s.contact[l] = loaded;
       s.foot_clearance[l] = -report.penetration[l];
       const sim::Vec3<float>& v = report.foot_velocity[l];
@@ -239,7 +238,7 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
       sums.reward += value;
       sums.torque_squared += s.torque_squared;
       sums.power += s.power;
-      sums.lift_offs += s.lift_offs;
+      sums.lift_offs += lift_offs;
       sums.kernel[kind] += kernel;
       sums.kind_steps[kind] += 1.0;
       const double commanded = std::hypot(s.command[0], s.command[1]);
@@ -287,7 +286,6 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     } else {
       rollout.end(t, env) = learner::End::kNone;
       if (--e.command_steps_left <= 0) new_command(env, e);
-      advance_command(e);
       if (uniform(env, e) < config_.episode.push_probability) {
         push(env, e, state);
         batch_.set_state(env, state);
@@ -360,7 +358,7 @@ WindowStats Task::end_window(double transitions) {
                  0.0, 1.0);
   cost_ramp_.all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late;
   cost_ramp_.energy = 1.0 + (r.energy_end - 1.0) * late;
-  cost_ramp_.unsteadiness = 1.0 + (r.unsteadiness_end - 1.0) * late;
+  cost_ramp_.late = late;
   return w;
 }
 

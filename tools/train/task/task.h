@@ -61,22 +61,22 @@ class Task {
   /// the ramp of the costs.
   WindowStats end_window(double transitions);
   const Curriculum& curriculum() const { return curriculum_; }
+  /// Share, 0 to 1, of what comes late in the training: rises while the costs go to their end.
+  double late() const { return cost_ramp_.late; }
 
   void save(learner::Checkpoint& checkpoint) const;
   void load(const learner::Checkpoint& checkpoint);
 
  private:
   static constexpr int kPrivileged =
-      kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 3 + 8;
+      kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
 
   static constexpr int kGroundFeatures = 6;
 
   // One environment beside its robot in the batch. Trivially copyable: a checkpoint.
   struct Env {
     std::uint64_t draws = 0;
-    std::array<float, 3> command{};  // what the policy sees, on its way to ...
-    std::array<float, 3> asked{};    // ... what is asked for
-    bool ramped = false;             // else it is there at once
+    std::array<float, 3> command{};
     std::int32_t step = 0, command_steps_left = 0;
     JointArray<float> action_1{}, action_2{};
     JointArray<float> joint_offset{};
@@ -105,7 +105,6 @@ class Task {
     return env % block_envs_ >= block_envs_ - config_.ground.patchy_envs;
   }
   void new_command(int env, Env& e) const;
-  void advance_command(Env& e) const;
   sim::Ground<double> draw_ground(int env, Env& e, bool rigid,
                                   std::array<float, kGroundFeatures>& features) const;
   void new_ground(int env, Env& e, float x_m);

@@ -95,8 +95,6 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("command.zero_share", c.command.zero_share, 0.0, 1.0);
   number("command.in_place_share", c.command.in_place_share, 0.0, 1.0);
   number("command.change_s", c.command.change_s, 0.1, 1000.0);
-  number("command.ramp_share", c.command.ramp_share, 0.0, 1.0);
-  number("command.ramp_mps2", c.command.ramp_mps2, 0.01, 1e9);
   number("command.centripetal_mps2", c.command.centripetal_mps2, 0.0, 1e9);
   number("command.gate_kernel", c.command.gate_kernel, 0.0, 1e9);
   number("command.gate_falls", c.command.gate_falls, 0.0, 1e9);
@@ -184,11 +182,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("reward.smoothness_2", c.reward.smoothness_2, 0.0, 1e9);
   number("reward.orientation", c.reward.orientation, 0.0, 1e9);
   number("reward.base_vertical", c.reward.base_vertical, 0.0, 1e9);
-  number("reward.base_pitch", c.reward.base_pitch, 0.0, 1e9);
-  number("reward.base_roll", c.reward.base_roll, 0.0, 1e9);
-  number("reward.unsupported", c.reward.unsupported, 0.0, 1e9);
-  number("reward.unsteadiness_end", c.reward.unsteadiness_end, 0.0, 1e9);
-  number("reward.lift_off", c.reward.lift_off, 0.0, 1e9);
+  number("reward.base_roll_pitch", c.reward.base_roll_pitch, 0.0, 1e9);
   number("reward.slip", c.reward.slip, 0.0, 1e9);
   number("reward.clearance", c.reward.clearance, 0.0, 1e9);
   number("reward.clearance_m", c.reward.clearance_m, 0.0, 1e9);

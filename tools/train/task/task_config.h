@@ -32,7 +32,7 @@ struct EpisodeSettings {
 struct CommandSettings {
   double speed_start_mps = 0, speed_max_mps = 0, speed_step_mps = 0, forward_share = 0,
          lateral_mps = 0, lateral_share = 0, yaw_radps = 0, yaw_share = 0, zero_share = 0,
-         in_place_share = 0, change_s = 0, ramp_share = 0, ramp_mps2 = 0, centripetal_mps2 = 0, gate_kernel = 0, gate_falls = 0;
+         in_place_share = 0, change_s = 0, centripetal_mps2 = 0, gate_kernel = 0, gate_falls = 0;
 };
 
 struct GroundSettings {
@@ -71,9 +71,9 @@ struct RewardSettings {
   double air_weight = 0, air_target_s = 0, air_longest_s = 0, stance_longest_s = 0;
   double torque = 0, power = 0, energy_speed_mps = 0, energy_offset_mps = 0, joint_speed = 0,
          speed_excess = 0, smoothness_1 = 0, smoothness_2 = 0, orientation = 0, base_vertical = 0,
-         base_pitch = 0, base_roll = 0, unsupported = 0, unsteadiness_end = 0, lift_off = 0, slip = 0, clearance = 0, clearance_m = 0,
-         pose = 0, pose_flexion_share = 0, joint_margin = 0, knee_low_rad = 0, knee_high_rad = 0,
-         height = 0, height_m = 0;
+         base_roll_pitch = 0, slip = 0, clearance = 0, clearance_m = 0, pose = 0,
+         pose_flexion_share = 0, joint_margin = 0, knee_low_rad = 0, knee_high_rad = 0, height = 0,
+         height_m = 0;
 };
 
 struct TrainConfig {

@@ -60,48 +60,13 @@ TEST(RewardTest, AWaySidewaysOrBackwardsCountsDoubleAndATurnCounts) {
   EXPECT_NEAR(energy_cost(obedient(0.0f, 0.0f, -2.0f)), ahead, 1e-9);
 }
 
-TEST(RewardTest, FeetHoldTheBodyLevelInFrontBehindAndOnBothSides) {
-  const auto level = [](std::array<bool, kNumLegs> loaded) {  // LF, RF, LH, RH
-    StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
-    s.contact = loaded;
-    return supported(s);
-  };
-  EXPECT_TRUE(level({true, true, true, true}));
-  EXPECT_TRUE(level({true, false, false, true}));   // diagonal
-  EXPECT_TRUE(level({false, true, true, false}));   // diagonal
-  EXPECT_TRUE(level({false, true, true, true}));    // one swings
-  EXPECT_FALSE(level({true, true, false, false}));  // front
-  EXPECT_FALSE(level({false, false, true, true}));  // hind
-  EXPECT_FALSE(level({true, false, true, false}));  // left
-  EXPECT_FALSE(level({false, true, false, true}));  // right
-  EXPECT_FALSE(level({false, false, false, false}));
-}
-
-TEST(RewardTest, SwayOfAStrideIsNotChargedAndLastingSwayIs) {
+TEST(RewardTest, DriftCostsMuchMoreThanTheSwingOfTheGait) {
   const RewardSettings r = shipped_settings();
   const StepOutcome straight = obedient(1.0f, 0.0f, 0.0f);
-  StepOutcome swaying = straight, drifting = straight;
-  swaying.vy = drifting.vy = 0.2f;
-  swaying.yaw_rate = drifting.yaw_rate = 0.5f;
-  drifting.drift = {1.0f, 0.2f, 0.5f};
-  EXPECT_NEAR(positive_reward(swaying, r), positive_reward(straight, r), 1e-6);
-  EXPECT_LT(positive_reward(drifting, r), positive_reward(straight, r) - 0.5);
-}
-
-TEST(RewardTest, UnsteadinessIsChargedInFullFromTheStart) {
-  const RewardSettings r = shipped_settings();
-  StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
-  EXPECT_EQ(unsteadiness(s, r), 0.0);
-  s.contact = {true, true, false, false};
-  EXPECT_NEAR(unsteadiness(s, r), r.unsupported, 1e-12);
-  const StepOutcome steady = s;
-  s.vz = 0.2f;
-  s.pitch_rate = -1.0f;
-  s.roll_rate = 1.0f;
-  const double more = unsteadiness(s, r) - unsteadiness(steady, r);
-  EXPECT_NEAR(more, r.base_vertical * 0.04 + r.base_pitch + r.base_roll, 1e-6);
-  EXPECT_NEAR(reward(steady, r, {.all = 0.0}) - reward(s, r, {.all = 0.0}),
-              r.scale * r.cost_weight * more, 1e-6);
+  StepOutcome swinging = straight, drifting = straight;
+  swinging.vy = drifting.vy = 0.1f;
+  drifting.drift[1] = 0.1f;
+  EXPECT_LT(positive_reward(drifting, r), positive_reward(swinging, r) - 0.3);
 }
 
 TEST(RewardTest, CostsGrowWithTheirRampAndARewardIsNeverNegative) {
