@@ -51,6 +51,8 @@ Json parse_header(const std::string& path, std::string_view text) {
     return Json::parse(text.begin(), text.end(), watch_keys);
   } catch (const Json::parse_error& error) {
     fail_file(path, "header is not valid JSON at byte {}", error.byte);
+  } catch (const Json::exception&) {
+    fail_file(path, "header is not valid JSON: a number is too large");
   }
 }
 

@@ -64,7 +64,8 @@ CommandSource::CommandSource(const std::string& text) : text_(text) {
     return;
   }
   std::ifstream in(text);
-  if (!std::filesystem::is_regular_file(text) || !in) {
+  std::error_code unreadable;  // a wrong list of numbers may be too long for a name
+  if (!std::filesystem::is_regular_file(text, unreadable) || !in) {
     throw InputError(
         fmt::format("--command: '{}' is neither vx,vy,wz (finite numbers) nor a file", text));
   }

@@ -20,6 +20,7 @@ class DdsBridge {
                                              inbox_.get());
   }
 
+  void begin(std::int64_t start_time_ns) noexcept { telemetry_->begin(start_time_ns); }
   /// Every tick, in order, from one ordinary thread.
   void add(const TickRecord& tick) { telemetry_->add(tick); }
   /// For the control thread; null if commands come from elsewhere.

@@ -14,6 +14,7 @@
 #include "rt/core/errors.h"
 #include "rt/core/floating_point.h"
 #include "rt/core/program.h"
+#include "rt/core/standard_error.h"
 #include "rt/dds_bridge.h"
 #include "rt/options.h"
 #include "rt/output_files.h"
@@ -25,18 +26,19 @@
 #include "rt/run_pictures.h"
 #include "rt/signals.h"
 #include "rt/summary.h"
+#include "rt/telemetry/start_time.h"
 
 namespace {
 
 using namespace sandrunner;
 
 void show_progress(const RunSample& s) {
-  fmt::print(stderr, "\r{:8.1f} s  {:<9} {:6.2f} m/s  x {:7.2f} m ", s.t_s, mode_name(s.mode),
-             s.vx_mps, s.base_position_m[0]);
-  std::fflush(stderr);
+  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {:6.2f} m/s  x {:7.2f} m ", s.t_s,
+                                mode_name(s.mode), s.vx_mps, s.base_position_m[0]));
 }
 
 std::string recording_line(const RecordingResult& r, const std::string& dir) {
+  if (r.ticks == 0 && r.stopped_because.empty()) return "recorded nothing: no tick ran\n";
   return fmt::format("recorded {} ticks, {:.1f} MB, in {}/run.mcap{}{}\n", r.ticks,
                      1e-6 * static_cast<double>(r.bytes), dir,
                      r.dropped > 0 ? fmt::format("; {} LOST", r.dropped) : "",
@@ -51,6 +53,7 @@ int run(int argc, char** argv) {
     return kExitOk;
   }
   const CommandSource command(options->live ? "0,0,0" : options->command);
+  const std::string command_text = options->live ? "dds" : command.text();
   const std::string policy_text = options->policy_path.empty()
                                       ? std::string(shipped_policy_text())
                                       : read_safetensors_bytes(options->policy_path);
@@ -63,7 +66,7 @@ int run(int argc, char** argv) {
   for (const std::string& assignment : options->assignments) tree.set(assignment);
   if (options->live) tree.set("dds.enabled=true");
   if (!options->dds_security_dir.empty()) {
-    tree.set("dds.security_dir=" + options->dds_security_dir);
+    tree.set_text("dds.security_dir", options->dds_security_dir, "--dds-security");
   }
   ProcessConfig config = read_process_config(tree, &policy.spec());
   config.simulator.seed = options->seed;
@@ -72,13 +75,21 @@ int run(int argc, char** argv) {
 
   flush_denormals_to_zero();
   const SignalWatch signals;
-  const std::unique_ptr<Recorder> recorder = make_recorder(*options, config, policy_text);
-  const std::unique_ptr<BlackBox> black_box = make_black_box(*options, config, policy_text, policy);
   std::optional<DdsBridge> dds;
   if (config.dds.enabled) dds.emplace(config, options->live);
+  const std::unique_ptr<Recorder> recorder = make_recorder(*options, config, policy_text);
+  const std::unique_ptr<BlackBox> black_box = make_black_box(*options, config, policy_text, policy);
   TickTap tap;
+  bool begun = false;
   if (recorder || black_box || dds) {
     tap = [&](const TickRecord& tick) {
+      if (!begun) {
+        begun = true;
+        const std::int64_t start_ns = start_time_ns(tick);
+        if (recorder) recorder->begin(start_ns);
+        if (black_box) black_box->begin(start_ns);
+        if (dds) dds->begin(start_ns);
+      }
       if (recorder) recorder->add(tick);
       if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
@@ -94,25 +105,35 @@ int run(int argc, char** argv) {
           ? run_realtime(config, &policy, command, plan, out, signals.interrupted(), progress, tap,
                          hooks)
           : run_lockstep(config, &policy, command, plan, out, signals.interrupted(), progress, tap);
-  if (terminal) fmt::print(stderr, "\r{:60}\r", "");
+  if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
 
   const RecordingResult recorded = recorder ? recorder->close() : RecordingResult();
 
-  // Files first: nobody may be listening on standard output any more.
+  const BlackBoxResult kept = black_box ? black_box->close() : BlackBoxResult();
+
+  // Files first: nobody may be listening on standard output any more. But what became of the robot
+  // is told whatever becomes of them.
   std::string written;
+  std::optional<InputError> not_written;
   if (out) {
     const std::string dir = options->out_dir + "/";
-    write_text(summary_json(result, *options, command, policy.spec().name), dir + "summary.json");
-    write_text(config.effective, dir + "config.toml");
-    write_csv(result.record, dir + "run.csv");
-    draw_run_plot(result.record, dir + "run.png");
-    draw_run_strip(result.record, dir + "strip.png");
-    written = fmt::format(
-        "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
+    try {
+      write_text(summary_json(result, *options, command_text, policy.spec().name),
+                 dir + "summary.json");
+      write_text(config.effective, dir + "config.toml");
+      write_csv(result.record, dir + "run.csv");
+      draw_run_plot(result.record, dir + "run.png");
+      draw_run_strip(result.record, dir + "strip.png");
+      written = fmt::format(
+          "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
+    } catch (const InputError& error) {
+      not_written = error;
+    }
   }
   if (recorder) written += recording_line(recorded, options->record_dir);
-  if (black_box) written += black_box_lines(black_box->close());
-  fmt::print("{}{}", summary_table(result, command), written);
+  if (black_box) written += black_box_lines(kept);
+  fmt::print("{}{}", summary_table(result, command_text), written);
+  if (not_written) throw *not_written;
   return result.survived ? kExitOk : kExitRobotFailed;
 }
 

@@ -42,9 +42,13 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   GateConfig& g = c.gate;
   number("gate.joint_fault_rad", g.joint_fault_rad, 0.0, 10.0);
   number("gate.target_margin_rad", g.target_margin_rad, 0.0, 10.0);
-  number("gate.speed_limit_radps", g.speed_limit_radps, 0.0, 1e4);
+  // 0: those of the robot's joints; else one for all of them.
+  double speed_limit_radps = 0.0, torque_limit_nm = 0.0;
+  number("gate.speed_limit_radps", speed_limit_radps, 0.0, 1e4);
+  if (speed_limit_radps > 0.0) g.speed_limit_radps = all_joints(speed_limit_radps);
   number("gate.speed_fault_radps", g.speed_fault_radps, 0.0, 1e4);
-  number("gate.torque_limit_nm", g.torque_limit_nm, 0.0, 1e4);
+  number("gate.torque_limit_nm", torque_limit_nm, 0.0, 1e4);
+  if (torque_limit_nm > 0.0) g.torque_limit_nm = all_joints(torque_limit_nm);
   number("gate.torque_fault_ratio", g.torque_fault_ratio, 0.0, 100.0);
   number("gate.torque_fault_s", g.torque_fault_s, 0.0, 10.0);
   number("gate.tilt_limit_deg", g.tilt_limit_deg, 0.0, 180.0);
@@ -65,8 +69,8 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
   ControllerConfig& c = p.controller;
   c.gate.joint_lower_rad = p.robot.model.lower_rad;
   c.gate.joint_upper_rad = p.robot.model.upper_rad;
-  c.gate.speed_limit_radps = p.robot.model.speed_limit_radps[0];
-  c.gate.torque_limit_nm = p.robot.model.torque_limit_nm[0];
+  c.gate.speed_limit_radps = p.robot.model.speed_limit_radps;
+  c.gate.torque_limit_nm = p.robot.model.torque_limit_nm;
   c.stand.nominal_rad = p.robot.nominal_rad;
   if (spec) {
     c.walk.kp_nmprad = spec->kp_nmprad;

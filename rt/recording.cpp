@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "rt/build.h"
 #include "rt/output_files.h"
 
@@ -13,7 +11,6 @@ namespace {
 
 RecordingInfo info_of(const Options& options, const ProcessConfig& config,
                       std::string_view policy) {
-  using std::chrono::system_clock, std::chrono::nanoseconds, std::chrono::duration_cast;
   RecordingInfo info;
   info.build = build_name();
   info.start_mode = options.start_walking ? "walk" : "passive";
@@ -21,7 +18,6 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
   info.config = config.effective;
   info.policy = policy;
   info.robot = config.robot.description;
-  info.start_time_ns = duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
   return info;
 }
 

@@ -22,6 +22,8 @@ class RunObserver {
   void add(const TickRecord& tick);
 
   RunFigures figures() const;
+  /// Time that the figures are of: in Walk under the command.
+  double walked_s() const noexcept { return statistics_.time_s(); }
   /// Everything kept, with the footprints; the observer's own is gone afterwards.
   RunRecord take_record();
 

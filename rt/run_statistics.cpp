@@ -20,6 +20,7 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
   if (periods_.empty() || periods_.back().ticks == kTicksPerPolicyStep) periods_.emplace_back();
   Period& p = periods_.back();
   ++p.ticks;
+  ++ticks_;
   const SimulatedTick& robot = tick.simulated;
   const sim::RigidState<double>& x = robot.robot;
   const sim::Mat3<double> r = sim::rotation_matrix(x.orientation);

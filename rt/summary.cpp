@@ -73,19 +73,21 @@ std::string realtime_table(const RealtimeReport& r) {
 
 }  // namespace
 
-std::string summary_table(const RunResult& r, const CommandSource& command) {
+std::string summary_table(const RunResult& r, const std::string& command) {
   const RunFigures& f = r.figures;
   std::string t;
   const auto row = [&](const std::string& name, const std::string& value) {
     t += fmt::format("  {:<26}{}\n", name, value);
   };
-  t += fmt::format("{}\n", r.interrupted ? "interrupted, ended in damping"
-                           : r.survived  ? "finished on its feet"
-                                         : fmt::format("FAILED: {} after {:.2f} s of Walk",
-                                                       r.fall_reason, r.fall_time_s.value_or(0.0)));
+  std::string end = r.interrupted ? "interrupted, ended in damping" : "finished on its feet";
+  if (!r.survived) {
+    end = "FAILED: " + r.fall_reason;
+    if (r.fall_time_s) end += fmt::format(" after {:.2f} s of Walk", *r.fall_time_s);
+  }
+  t += end + "\n";
   if (r.walked_s > 0.0) {
-    t += fmt::format("over the second half of {:.1f} s in Walk, command {}:\n", r.walked_s,
-                     command.text());
+    t +=
+        fmt::format("over the second half of {:.1f} s in Walk, command {}:\n", r.walked_s, command);
     row("velocity x, commanded",
         fmt::format("{:6.3f} m/s     of {:6.3f}", f.mean_velocity_mps[0], f.mean_command_mps[0]));
     row("velocity y, commanded",
@@ -115,7 +117,7 @@ std::string summary_table(const RunResult& r, const CommandSource& command) {
   return t;
 }
 
-std::string summary_json(const RunResult& r, const Options& options, const CommandSource& command,
+std::string summary_json(const RunResult& r, const Options& options, const std::string& command,
                          const std::string& policy_name) {
   using Json = nlohmann::ordered_json;
   const RunFigures& f = r.figures;
@@ -129,7 +131,7 @@ std::string summary_json(const RunResult& r, const Options& options, const Comma
   j["fall_reason"] = r.survived ? Json() : Json(r.fall_reason);
   j["interrupted"] = r.interrupted;
   j["duration_s"] = r.walked_s;
-  j["command"] = command.text();
+  j["command"] = command;
   j["mean_velocity_mps"] = f.mean_velocity_mps;
   j["mean_yaw_rate_radps"] = f.mean_yaw_rate_radps;
   j["sinkage_mm"] = {{"mean", 1e3 * f.sinkage_mean_m}, {"max", 1e3 * f.sinkage_max_m}};
@@ -146,7 +148,8 @@ std::string summary_json(const RunResult& r, const Options& options, const Comma
   j["state_hash"] = fmt::format("{:016x}", r.state_hash);
   j["realtime_factor"] = r.realtime_factor;
   if (r.realtime) j["realtime"] = realtime_json(*r.realtime);
-  return j.dump(2) + "\n";
+  // A file named on the command line may have a name that is not UTF-8.
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace sandrunner

@@ -10,10 +10,10 @@
 namespace sandrunner {
 
 /// The result as a table for a person.
-std::string summary_table(const RunResult& result, const CommandSource& command);
+std::string summary_table(const RunResult& result, const std::string& command);
 
 /// The result as summary.json (rt/README.md lists the keys).
 std::string summary_json(const RunResult& result, const Options& options,
-                         const CommandSource& command, const std::string& policy_name);
+                         const std::string& command, const std::string& policy_name);
 
 }  // namespace sandrunner

@@ -15,8 +15,9 @@ struct TorqueSpeedLine {
   double no_load_speed_radps = 28.1;
 };
 
-/// Torque of a joint drive: the PD law, clamped to +-`limit_nm` (and to the line, if there is one:
-/// stall > 0).
+/// Torque of a joint drive, N m: the PD law, clamped to +-`limit_nm` (and to the line, if there is
+/// one: stall > 0). Positions rad, rates rad/s, kp N m/rad, kd N m s/rad, `inverse_no_load_speed`
+/// s/rad.
 template <typename S>
 inline S drive_torque(S q, S qd, S q_desired, S qd_desired, S kp, S kd, S feedforward_nm,
                       S limit_nm, S stall_torque_nm, S inverse_no_load_speed) noexcept {

@@ -31,7 +31,7 @@ template <typename S>
 struct BatchSums {
   S torque_squared{};  ///< sum over joints of tau^2, N^2 m^2
   S power{};           ///< signed sum of tau qd, W
-  S speed_squared{};   ///< sum over joints of qd^2
+  S speed_squared{};   ///< sum over joints of qd^2, rad^2/s^2
   S speed_excess{};    ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
   S stop_excess{};     ///< sum over joints of the distance past the stop, rad
   S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
@@ -43,12 +43,14 @@ struct BatchSums {
 /// What the last tick of the period showed.
 template <typename S>
 struct BatchReport {
-  std::array<Vec3<S>, kNumLegs> foot_centre;            ///< world, m
-  std::array<Vec3<S>, kNumLegs> foot_velocity;          ///< of the contact point, world, m/s
-  std::array<S, kNumLegs> penetration{};                ///< m
-  std::array<std::array<S, 3>, kNumLegs> foot_force{};  ///< N
+  std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m
+  std::array<Vec3<S>, kNumLegs> foot_velocity;  ///< of the contact point, world, m/s
+  std::array<S, kNumLegs> penetration{};        ///< m
+  std::array<std::array<S, 3>, kNumLegs>
+      foot_force{};  ///< on the robot, contact frame (world axes on level ground), N
 };
 
+/// All of one robot, as it is written and read.
 template <typename S>
 struct BatchRobot {
   RobotModel<S> model;
@@ -87,6 +89,7 @@ class Batch {
         BatchWidth width = best_batch_width());
 
   int size() const noexcept { return robots_; }
+  /// Robots to a pack.
   int width() const noexcept { return kernel_.width; }
   int packs() const noexcept { return (robots_ + width() - 1) / width(); }
 

@@ -18,23 +18,25 @@
 
 namespace sandrunner::sim {
 
-/// One contact point. Rows of the contact frame: two tangents, normal.
+/// One contact point. Rows of the contact frame: two tangents, normal. J_b, J_l: its Jacobian by
+/// base velocity (body components) and by the leg's joint rates; Y, M_ll, L, D as in Dynamics.
 template <typename S>
 struct PointContact {
   int leg = -1;                         ///< -1: on the base
   Mask<S> active{};                     ///< takes part
   Mask<S> hard{};                       ///< impenetrable; else the normal impulse is given
-  S friction{};                         ///< hard: mu
+  S friction{};                         ///< hard: Coulomb's mu
   S disc{};                             ///< soft: radius of the friction disc, N s
-  std::array<std::array<S, 6>, 3> w{};  ///< rows of (J_b - J_l Y) L^-T D^-1/2
-  std::array<std::array<S, 3>, 3> j{};  ///< rows of J_l (per joint of the leg)
-  std::array<std::array<S, 3>, 3> p{};  ///< rows of J_l M_ll^-1
+  std::array<std::array<S, 6>, 3> w{};  ///< rows of (J_b - J_l Y) L^-T D^-1/2, kg^-1/2
+  std::array<std::array<S, 3>, 3> j{};  ///< rows of J_l (per joint of the leg), m
+  std::array<std::array<S, 3>, 3> p{};  ///< rows of J_l M_ll^-1, 1/(kg m)
   Sym3<S> g;                            ///< own 3x3 Delassus block, 1/kg
   std::array<S, 3> free{};              ///< velocity without any contact impulse, m/s
   std::array<S, 3> impulse{};           ///< N s; in: start; out: solution
 };
 
-/// A joint at its stop. The row's direction points away from the stop.
+/// A joint at its stop. The row's direction points away from the stop; w, j, p as in PointContact,
+/// for a rate in rad/s in place of a velocity.
 template <typename S>
 struct StopRow {
   int leg = 0;
@@ -42,7 +44,7 @@ struct StopRow {
   std::array<S, 6> w{};
   std::array<S, 3> j{};  ///< +-1 at the joint
   std::array<S, 3> p{};
-  S g{};
+  S g{};        ///< rad/s per N m s
   S free{};     ///< velocity without impulse, less the least velocity allowed, rad/s
   S impulse{};  ///< N m s
 };
@@ -51,10 +53,11 @@ struct StopRow {
 /// per leg.
 template <typename S>
 struct ImpulseSum {
-  std::array<S, 6> y{};
-  std::array<std::array<S, 3>, kNumLegs> joint{};
+  std::array<S, 6> y{};                            ///< base, kg^1/2 m/s
+  std::array<std::array<S, 3>, kNumLegs> joint{};  ///< N m s
 };
 
+/// Adds an impulse (N s, or N m s at a stop) along the row w, j of `leg` (-1: the base).
 template <typename S>
 inline void add_impulse(const std::array<S, 6>& w, const std::array<S, 3>& j, int leg, S impulse,
                         ImpulseSum<S>& sum) noexcept {
@@ -80,6 +83,7 @@ inline void add_impulses(const PointContact<S>& c, const std::array<S, std::size
   }
 }
 
+/// Velocity (m/s, or rad/s at a stop) along a row under all impulses; `free`: without any.
 template <typename S>
 inline S row_velocity(const std::array<S, 6>& w, const std::array<S, 3>& p, int leg, S free,
                       const ImpulseSum<S>& sum) noexcept {
@@ -100,13 +104,13 @@ inline S row_velocity(const std::array<S, 6>& w, const std::array<S, 3>& p, int 
 template <typename S>
 inline constexpr int kDiscIterations = std::is_same_v<S, double> ? 3 : 2;
 
-/// argmin 1/2 t^T G t + b^T t over the disc |t| <= radius: the tangential impulse whose velocity G
-/// t + b is zero inside the disc and opposes t on its rim. On the rim t = -(G + s 1)^-1 b with s >
-/// 0 from Newton's iteration on 1/|t(s)| = 1/radius, which is nearly linear in s. The start has G's
-/// Rayleigh quotient along b for G, exact where b is an eigenvector; with the conditions that feet
-/// show (up to 2.3) the direction is then off by less than 2e-3, 1e-6, 1e-12 after 1, 2, 3 steps.
-/// With adj and det of G + s 1, which are linear and quadratic in s, t = -adj b / det needs no
-/// division on the way.
+/// argmin 1/2 t^T G t + b^T t over the disc |t| <= radius (G 1/kg, b m/s, radius and t N s): the
+/// tangential impulse whose velocity G t + b is zero inside the disc and opposes t on its rim. On
+/// the rim t = -(G + s 1)^-1 b with s > 0 from Newton's iteration on 1/|t(s)| = 1/radius, which is
+/// nearly linear in s. The start has G's Rayleigh quotient along b for G, exact where b is an
+/// eigenvector; with the conditions that feet show (up to 2.3) the direction is then off by less
+/// than 2e-3, 1e-6, 1e-12 after 1, 2, 3 steps. With adj and det of G + s 1, which are linear and
+/// quadratic in s, t = -adj b / det needs no division on the way.
 template <typename S>
 inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& ty,
                           int iterations = kDiscIterations<S>) noexcept {
@@ -140,9 +144,9 @@ inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& t
   ty = select(slides, y * scale, ty);
 }
 
-/// Exact impulse of one hard contact: given b, its velocity without own impulse, finds lambda_n >=
-/// 0 with v_n >= 0 and lambda_n v_n = 0, and lambda_t on the disc mu lambda_n whose velocity
-/// opposes it.
+/// Exact impulse (N s, to `tolerance`) of one hard contact: given b, its velocity without own
+/// impulse (m/s), finds lambda_n >= 0 with v_n >= 0 and lambda_n v_n = 0, and lambda_t on the disc
+/// mu lambda_n whose velocity opposes it.
 ///
 /// Friction changes the normal velocity as much as the normal impulse does when a leg is steep (mu
 /// G_nt > G_nn), so that treating the two in turn may cycle. Here lambda(s) = -(G + s diag(1, 1,
@@ -207,7 +211,7 @@ inline void solve_hard(const Sym3<S>& g, const std::array<S, 3>& b, S friction, 
 
 /// One visit of the paper's iteration (algorithm S1, constants of the authors' code): a gradient
 /// step of half the contact's own curvature, projected onto lambda_n >= 0 and the friction disc. v:
-/// velocity with all impulses.
+/// velocity with all impulses, m/s. Returns the contact's next impulse, N s.
 template <typename S>
 inline std::array<S, 3> projected_step(const PointContact<S>& c, const Mask<S>& hard, S vx, S vy,
                                        S vz) noexcept {

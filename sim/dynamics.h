@@ -19,7 +19,8 @@ namespace sandrunner::sim {
 
 inline constexpr double kGravity_mps2 = 9.81;
 
-/// Configuration and velocity of one robot (or one a lane).
+/// Configuration and velocity of one robot (or one a lane). Joints in the order of kJointNames:
+/// HAA, HFE, KFE of LF, RF, LH, RH.
 template <typename S>
 struct RigidState {
   Vec3<S> position;                ///< base origin, world, m
@@ -30,8 +31,8 @@ struct RigidState {
   std::array<S, kNumJoints> qd{};  ///< joint velocities, rad/s
 };
 
-/// A generalised velocity, acceleration or (dually) force: base linear and angular part in body
-/// components, joints.
+/// A generalised velocity (m/s, rad/s), acceleration (m/s^2, rad/s^2), force (N, N m) or impulse
+/// (N s, N m s): base linear and angular part in body components, joints.
 template <typename S>
 struct Motion {
   Vec3<S> linear, angular;
@@ -54,7 +55,8 @@ inline Sym3<S> inverse(const Sym3<S>& m) noexcept {
           diff_of_products(m.xx, m.yy, m.xy, m.xy) * d};
 }
 
-/// Sine and cosine of a leg's angles, and its points in the hip frame relative to the HAA origin.
+/// Sine and cosine of a leg's angles, and its points in the hip frame relative to the HAA origin,
+/// m.
 template <typename S>
 struct LegPose {
   S s1, c1;            ///< HAA
@@ -62,6 +64,7 @@ struct LegPose {
   Vec3<S> knee, foot;  ///< KFE origin and foot centre, hip frame
 };
 
+/// q1, q2, q3: positions of HAA, HFE and KFE, rad.
 template <typename S>
 inline LegPose<S> leg_pose(const LegModel<S>& leg, S q1, S q2, S q3) noexcept {
   LegPose<S> p;
@@ -73,13 +76,14 @@ inline LegPose<S> leg_pose(const LegModel<S>& leg, S q1, S q2, S q3) noexcept {
   return p;
 }
 
-/// Position in the base frame of a point given in the hip frame.
+/// Position in the base frame, from the base origin, of a point given in the hip frame, m.
 template <typename S>
 inline Vec3<S> hip_to_base(const LegModel<S>& leg, const LegPose<S>& p, const Vec3<S>& v) noexcept {
   return leg.haa + rotate_x(p.s1, p.c1, v);
 }
 
-/// Mass matrix, bias and their factorisation at one configuration and velocity.
+/// Mass matrix, bias and their factorisation at one configuration and velocity. SI units
+/// throughout: kg, m, kg m^2, rad.
 template <typename S>
 class Dynamics {
  public:

@@ -3,7 +3,9 @@
 // generalises it (section S11), its plastic memory, the moving average of the normal force (eq.
 // S16), and the horizontal stroke resistance (paper, eqs. 1 and 2). Where the paper's text and its
 // authors' code differ, the code is followed, since the published network was trained with it: the
-// filter's constants, ungated friction, depth term z - r_f.
+// filter's constants, ungated friction, depth term z - r_f, stroke resistance that begins beyond
+// the crater's radius and counts horizontal travel as fresh ground (the paper's text: any overlap
+// with the wall, and its greatest value so far).
 //
 // z is the penetration of the deepest point below the undisturbed surface, positive down; v =
 // dz/dt.
@@ -21,14 +23,14 @@ struct FootContact {
   S region{};                ///< index of the patch of ground it touched down on
   S velocity{};              ///< v of the previous step; kept up in the air too, m/s
   S memory_depth{};          ///< deepest penetration so far, less what has healed, m
-  S memory_x{}, memory_y{};  ///< where that was
-  S memory_travel{};         ///< greatest horizontal distance from there since
+  S memory_x{}, memory_y{};  ///< where that was, world, m
+  S memory_travel{};         ///< greatest horizontal distance from there since, m
   S restart_flat{};          ///< I_flat at which the present cone began to grow, m^3
   S filter{};                ///< tau_r of eq. S16
   S force{};                 ///< filtered normal force, N
   S stroke_latched{};        ///< 1: the foot ploughs beyond its crater
-  S stroke_x{}, stroke_y{}, stroke_depth{};  ///< crater's centre and depth as latched
-  S stroke_travel{};                         ///< greatest distance from that centre since
+  S stroke_x{}, stroke_y{}, stroke_depth{};  ///< crater's centre and depth as latched, m
+  S stroke_travel{};                         ///< greatest distance from that centre since, m
 };
 
 /// Forces on the foot at one step.
@@ -38,12 +40,12 @@ struct GranularForce {
   S raw{};             ///< before the filter, gated, N
   S friction_bound{};  ///< of the tangential force, N
   S stroke{};          ///< horizontal stroke resistance, N, acts along -(direction_x, direction_y)
-  S direction_x{}, direction_y{};
+  S direction_x{}, direction_y{};  ///< unit vector, world
 };
 
-/// One step of the granular law at a foot. (x, y), z, v, (vx, vy): place, penetration and velocity
-/// of the deepest point; `rate_hz`: steps per second. Lanes in which the foot is in the air come
-/// out zero; `contact` is updated.
+/// One step of the granular law at a foot. (x, y), z, v, (vx, vy): place (world, m), penetration
+/// (m), its rate and horizontal velocity (m/s) of the deepest point; `rate_hz`: steps per second.
+/// Lanes in which the foot is in the air come out zero; `contact` is updated.
 template <typename S>
 inline GranularForce<S> granular_step(const Ground<S>& g, const FootProfile<S>& foot, S x, S y, S z,
                                       S v, S vx, S vy, S rate_hz,

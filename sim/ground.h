@@ -58,33 +58,34 @@ struct GroundParameters {
   std::uint64_t roughness_seed = 1;
 };
 
-/// Constants of one patch, derived once. S: one robot, or a value a lane.
+/// Constants of one patch, derived once from GroundParameters, whose symbols and units they keep
+/// (N/m^3, N/m, N s/m, m; ratios without unit). S: one robot, or a value a lane.
 template <typename S>
 struct Ground {
   S is_granular{}, is_rigid{}, is_linear{};  ///< exactly one of them is 1
   S friction{};
-  S sigma_flat{}, sigma_cone{};
-  S k{};            ///< nu / tan(theta)
-  S k2_third{};     ///< k^2/3
-  S inverse_cos{};  ///< 1/cos(theta)
-  S full_depth{};   ///< z_c, at which the lower flat has vanished
-  S full_flat{};    ///< I_flat(z_c)
-  S added_mass{};   ///< c_g phi rho nu (per I_flat), 0: no added mass
-  S drag{};         ///< c_d c_g phi rho nu (per A_flat), 0: no drag
-  S memory{};       ///< 1: plastic memory, 0: none
-  S tolerance{};
-  S healing_slope{};  ///< tan(gamma_c), 0: no healing
-  S crater_radius{};
-  S filter_step{};  ///< c_r, what tau_r gains at a reversal; 0: no filter
-  S friction_gated{};
-  S stroke_stiffness{}, stroke_damping{}, stroke_depth_scaling{};
-  S stroke_offset{};  ///< r_f/sin(gamma_c) - r_c - r_f/tan(gamma_c)
+  S sigma_flat{}, sigma_cone{};  ///< N/m^3
+  S k{};                         ///< nu / tan(theta)
+  S k2_third{};                  ///< k^2/3
+  S inverse_cos{};               ///< 1/cos(theta)
+  S full_depth{};                ///< z_c, at which the lower flat has vanished, m
+  S full_flat{};                 ///< I_flat(z_c), m^3
+  S added_mass{};                ///< c_g phi rho nu (per I_flat), kg/m^3; 0: no added mass
+  S drag{};                      ///< c_d c_g phi rho nu (per A_flat), kg/m^3; 0: no drag
+  S memory{};                    ///< 1: plastic memory, 0: none
+  S tolerance{};                 ///< eps_f, m
+  S healing_slope{};             ///< tan(gamma_c), 0: no healing
+  S crater_radius{};             ///< r_c, m
+  S filter_step{};               ///< c_r, what tau_r gains at a reversal; 0: no filter
+  S friction_gated{};            ///< 1: friction only while the normal force acts
+  S stroke_stiffness{}, stroke_damping{}, stroke_depth_scaling{};  ///< k_h, b_h, beta_d
+  S stroke_offset{};  ///< r_f/sin(gamma_c) - r_c - r_f/tan(gamma_c), m
   S inverse_tan_crater{};
-  S stiffness{}, damping{};
-  S roughness{}, wave_number{}, phase{};
+  S stiffness{}, damping{};               ///< k_s, b_s
+  S roughness{}, wave_number{}, phase{};  ///< m, rad/m, rad
 };
 
-/// Cone integrals at depth z of a foot with the given P0, P1 (see FootProfile).
+/// Cone integrals at depth z (m) of a foot with the given P0, P1 (m^3; see FootProfile).
 template <typename S>
 struct Cone {
   S flat_integral;  ///< I_flat, m^3
@@ -114,7 +115,8 @@ inline S quasistatic_force(const Ground<S>& g, const Cone<S>& c) noexcept {
 Ground<double> derive_ground(const GroundParameters& parameters, const FootProfile<double>& foot,
                              double foot_radius_m);
 
-/// Height of the uneven rigid surface at (x, y) and its gradient; 0 for ground without roughness.
+/// Height (m) of the uneven rigid surface at (x, y) (world, m) and its gradient; 0 for ground
+/// without roughness.
 /// Six plane waves whose directions and phases follow from the seed: smooth, deterministic, and
 /// cheap in lanes.
 template <typename S>

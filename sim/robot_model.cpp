@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "rt/core/config_tree.h"
@@ -95,6 +96,7 @@ class UrdfReader {
 
   Body<double> body(const std::string& link_name) const {
     const urdf::Link& l = link(link_name);
+    bodies_.insert(link_name);
     if (!l.inertial) fail(fmt::format("link '{}' has no inertial", link_name));
     const urdf::Inertial& i = *l.inertial;
     Body<double> b{i.mass, to_vec(i.origin.position), {i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz}};
@@ -128,6 +130,17 @@ class UrdfReader {
     return best;
   }
 
+  /// Fails for a mass that no body() has asked for: left out, the robot would be too light.
+  void refuse_other_masses() const {
+    for (const auto& [link_name, l] : urdf_->links_) {
+      if (!l->inertial || !(l->inertial->mass > 0.0) || bodies_.contains(link_name)) continue;
+      fail(
+          fmt::format("link '{}' has a mass but is no link of base, legs or feet; add it to the "
+                      "one that it is fixed to",
+                      link_name));
+    }
+  }
+
   std::size_t moving_joints() const {
     std::size_t n = 0;
     for (const auto& [joint_name, j] : urdf_->joints_) n += j->type != urdf::Joint::FIXED;
@@ -147,6 +160,7 @@ class UrdfReader {
 
   std::string name_;
   urdf::ModelInterfaceSharedPtr urdf_;
+  mutable std::set<std::string> bodies_;
 };
 
 // What a fixed joint joins becomes one body: `child` sits at `offset` in the frame of `parent`.
@@ -282,6 +296,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
     m.foot_radius_m = radius;
     m.foot_width_m = width;
   }
+  urdf.refuse_other_masses();
   robot.nominal_height_m =
       nominal_height > 0.0 ? nominal_height : standing_height(m, robot.nominal_rad);
   robot.lying_height_m = standing_height(m, robot.lying_rad);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/ground_truth.h"
 #include "sim/random.h"
 
 namespace sandrunner::sim {
@@ -33,8 +34,9 @@ void Simulator::disturb(double height_above_m) {
     x.velocity = {draw(), draw(), draw()};
     x.angular_velocity = {draw(), draw(), draw()};
   }
-  // Lowest point of the feet (and, lying, of the box) to the wanted height above the surface.
-  if (config_.seed > 0 || height_above_m == 0.0) {
+  // Lowest point of the feet (and, lying, of the box) to the wanted height above the surface. What
+  // stands undisturbed on level ground stands at its nominal height.
+  if (config_.seed > 0 || height_above_m == 0.0 || terrain_.highest > 0.0) {
     double lowest = 1e9;
     for (int l = 0; l < kNumLegs; ++l) {
       const LegPose<double> p =
@@ -44,8 +46,14 @@ void Simulator::disturb(double height_above_m) {
       lowest = std::min(lowest, foot.z - model_.foot_radius_m - surface_height(foot.x, foot.y));
       lowest = std::min(lowest, knee.z - model_.knee_radius_m - surface_height(knee.x, knee.y));
     }
-    lowest =
-        std::min(lowest, model_.base_box_centre_m.z - model_.base_box_half_m.z - terrain_.highest);
+    for (const double side_x : {-1.0, 1.0}) {
+      for (const double side_y : {-1.0, 1.0}) {
+        const double corner_x = model_.base_box_centre_m.x + side_x * model_.base_box_half_m.x;
+        const double corner_y = model_.base_box_centre_m.y + side_y * model_.base_box_half_m.y;
+        lowest = std::min(lowest, model_.base_box_centre_m.z - model_.base_box_half_m.z -
+                                      surface_height(corner_x, corner_y));
+      }
+    }
     x.position.z = height_above_m - lowest;
   }
   update_truth();
@@ -55,7 +63,7 @@ void Simulator::reset_standing() {
   state_ = {};
   RigidState<double>& x = state_.robot.rigid;
   x.q = robot_.nominal_rad;
-  x.position = {0.0, 0.0, robot_.nominal_height_m + terrain_.highest};
+  x.position = {0.0, 0.0, robot_.nominal_height_m};
   disturb(0.002);
 }
 
@@ -145,20 +153,7 @@ void Simulator::skip(std::uint64_t ticks, const SafeCommand& held) noexcept {
 }
 
 void Simulator::update_truth() noexcept {
-  const RobotState<double>& x = state_.robot;
-  const Mat3<double> r = rotation_matrix(x.rigid.orientation);
-  const Vec3<double> v = transposed_times(r, x.rigid.velocity);
-  truth_.state.velocity_mps = {v.x, v.y, v.z};
-  // The ground counts from the deepest remembered penetration of the feet in contact.
-  double deepest = 0.0;
-  for (int l = 0; l < kNumLegs; ++l) {
-    if (x.feet[l].active > 0.0) deepest = std::max(deepest, x.feet[l].memory_depth);
-    const LegPose<double> p =
-        leg_pose(model_.legs[l], x.rigid.q[3 * l], x.rigid.q[3 * l + 1], x.rigid.q[3 * l + 2]);
-    truth_.state.foot_height_m[l] =
-        x.rigid.position.z + dot(r.r2, hip_to_base(model_.legs[l], p, p.foot));
-  }
-  truth_.state.body_height_m = x.rigid.position.z + deepest;
+  truth_.state = ground_truth(model_, state_.robot, terrain_);
 }
 
 void Simulator::restore(const SimulatorState& state) noexcept {

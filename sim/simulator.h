@@ -59,7 +59,8 @@ class Simulator final : public RobotIo {
  public:
   Simulator(const Robot& robot, const SimulatorConfig& config);
 
-  /// On its feet in the nominal pose, at rest, base at the robot's nominal height (`--start walk`).
+  /// On its feet in the nominal pose, at rest, base at the robot's nominal height (`--start walk`);
+  /// on uneven ground as high as the feet find it, the lowest 2 mm above.
   /// A seed above 0 disturbs it: joints +-0.1 rad, base twist +-0.1 (m/s, rad/s), height such that
   /// the lowest foot is 2 mm above the ground; uniform draws from the seed.
   void reset_standing();

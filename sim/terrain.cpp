@@ -80,7 +80,8 @@ void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file) {
     config.add_text(embedded_sim_file(preset_or_file + ".toml"), "preset " + preset_or_file);
     return;
   }
-  if (!std::filesystem::is_regular_file(preset_or_file)) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(preset_or_file, unreadable)) {
     throw InputError(fmt::format("--terrain: '{}' is neither a preset ({}) nor a file",
                                  preset_or_file, fmt::join(kPresets, ", ")));
   }

@@ -237,6 +237,23 @@ void ConfigTree::set(const std::string& assignment) {
   add_layer(path + " = \"" + value + "\"", origin, false);
 }
 
+void ConfigTree::set_text(const std::string& path, const std::string& value,
+                          const std::string& option) {
+  std::string quoted;
+  for (const char c : value) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += {'\\', c};
+    } else if (code < 0x20 || code == 0x7f) {
+      constexpr const char* kDigits = "0123456789abcdef";
+      quoted += {'\\', 'u', '0', '0', kDigits[code >> 4], kDigits[code & 15]};
+    } else {
+      quoted += c;
+    }
+  }
+  add_layer(path + " = \"" + quoted + "\"", option, false);
+}
+
 ConfigTree::Found ConfigTree::find(const std::string& path) const {
   for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
     const toml::node* node = layer->table.get();

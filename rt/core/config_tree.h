@@ -41,6 +41,9 @@ class ConfigTree {
   /// Adds a layer of one "path.to.key=value". The value is TOML; a bare word that is no TOML value
   /// (dry-sand, runs/a.csv) is taken as a string.
   void set(const std::string& assignment);
+  /// Adds a layer of one string, whatever is in it (a path of the command line). `option` names it
+  /// in errors.
+  void set_text(const std::string& path, const std::string& value, const std::string& option);
 
   /// The getters return the value of the strongest layer that has the dotted path, or the fallback,
   /// which is not checked. Ranges include their ends. Asking for a key makes it known to

@@ -73,9 +73,10 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
                          .command = input.command.velocity,
                          .action_rad = counts ? &input.policy.target_rad : nullptr,
                          .policy_age_ticks = walking ? tick - state_.policy_input_tick : 0};
-  // A reset is judged as strictly as the fault that it wants to leave.
+  // A reset is judged as strictly as where the robot will stand up from: whoever lies on its back
+  // is to be put right first.
   const bool resetting = state_.mode == Mode::kFault && next != Mode::kFault;
-  const std::uint64_t found = gate_.judge(judged, resetting ? Mode::kFault : next, state_.gate);
+  const std::uint64_t found = gate_.judge(judged, resetting ? Mode::kStand : next, state_.gate);
   if (found != 0) {
     next = next_mode(next, Event::kFault);
   } else if (resetting) {
@@ -130,8 +131,9 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   if (!event) return mode;
   if (mode == Mode::kFault && tick < state_.disable_tick) return mode;  // drives still on
   if (mode == Mode::kWalk) {
-    // The latest wish counts: asking for Walk during the stop takes the stop back.
-    if (event == Event::kRequestStand) {
+    // The latest wish counts: asking for Walk during the stop takes the stop back. Asking again
+    // for the stop that is on its way does not begin it anew.
+    if (event == Event::kRequestStand && state_.stopping == 0) {
       state_.stopping = 1;
       state_.zero_since_tick = tick;
       state_.restless_tick = tick;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "rt/core/errors.h"
+#include "rt/core/standard_error.h"
 
 namespace sandrunner {
 
@@ -32,7 +33,7 @@ inline bool parse_command_line(CLI::App& app, int argc, const char* const* argv)
 template <typename Body>
 int run_program(const char* name, Body&& body) {
   const auto say = [&](const std::string& message) {
-    fmt::print(stderr, "{}: {}\n", name, one_line(message));
+    to_standard_error(fmt::format("{}: {}\n", name, one_line(message)));
   };
   try {
     const int code = body();

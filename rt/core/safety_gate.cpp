@@ -125,7 +125,6 @@ std::uint64_t ticks_from_s(double duration_s) noexcept {
 
 SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
     : config_(config),
-      torque_fault_nm_(config.torque_fault_ratio * config.torque_limit_nm),
       torque_fault_ticks_(std::max<std::uint64_t>(1, ticks_from_s(config.torque_fault_s))),
       tilt_limit_cos_(cos_of_degrees(config.tilt_limit_deg)),
       tilt_fault_cos_(cos_of_degrees(config.tilt_fault_deg)) {
@@ -133,11 +132,12 @@ SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
   for (int j = 0; j < kNumJoints; ++j) {
     lower_.position_rad[j] = config.joint_lower_rad[j] - config.target_margin_rad;
     upper_.position_rad[j] = config.joint_upper_rad[j] + config.target_margin_rad;
+    upper_.velocity_radps[j] = config.speed_limit_radps[j];
+    lower_.velocity_radps[j] = -config.speed_limit_radps[j];
+    upper_.feedforward_nm[j] = config.torque_limit_nm[j];
+    lower_.feedforward_nm[j] = -config.torque_limit_nm[j];
+    torque_fault_nm_[j] = config.torque_fault_ratio * config.torque_limit_nm[j];
   }
-  lower_.velocity_radps.fill(-config.speed_limit_radps);
-  upper_.velocity_radps.fill(config.speed_limit_radps);
-  lower_.feedforward_nm.fill(-config.torque_limit_nm);
-  upper_.feedforward_nm.fill(config.torque_limit_nm);
 }
 
 std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
@@ -189,11 +189,11 @@ std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& stat
     if (excess_rad > config_.joint_fault_rad) found |= bit(Fault::kJointPosition);
 
     const double speed_radps = std::fabs(joints.velocity_radps[j]);
-    too_fast = too_fast || speed_radps > config_.speed_limit_radps;
+    too_fast = too_fast || speed_radps > config_.speed_limit_radps[j];
     if (speed_radps > config_.speed_fault_radps) found |= bit(Fault::kJointSpeed);
 
     std::uint64_t& over_ticks = state.torque_over_ticks[j];
-    over_ticks = std::fabs(joints.torque_nm[j]) > torque_fault_nm_ ? over_ticks + 1 : 0;
+    over_ticks = std::fabs(joints.torque_nm[j]) > torque_fault_nm_[j] ? over_ticks + 1 : 0;
     if (over_ticks >= torque_fault_ticks_) found |= bit(Fault::kJointTorque);
   }
   if (past_stop) ++state.joint_limit_ticks;

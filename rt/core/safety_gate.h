@@ -36,6 +36,13 @@ inline constexpr int kNumFaults = 12;
 /// "none".
 const char* fault_name(Fault fault) noexcept;
 
+/// The same value for every joint.
+inline JointArray<double> all_joints(double value) noexcept {
+  JointArray<double> all;
+  all.fill(value);
+  return all;
+}
+
 /// Thresholds. The defaults of the faults lie beyond what the published network does in normal
 /// running (46 rad/s, a knee 0.3 rad past its range). Speed and torque are those of the
 /// reference robot; its stops come from its URDF.
@@ -46,10 +53,12 @@ struct GateConfig {
                                      3.1416, 6.2832, -0.0262, 3.1416, 6.2832, -0.0262};
   double joint_fault_rad = 0.35;   ///< fault: measured this far past a stop (limit: past it at all)
   double target_margin_rad = 1.0;  ///< a commanded position is clamped to the stops plus this
-  double speed_limit_radps = 25.7;  ///< counted; a commanded velocity is clamped to it
+  JointArray<double> speed_limit_radps =
+      all_joints(25.7);  ///< counted; a commanded velocity is clamped to it
   double speed_fault_radps = 60.0;
-  double torque_limit_nm = 63.45;   ///< a feed-forward torque is clamped to it
-  double torque_fault_ratio = 1.2;  ///< fault: measured torque over this times the limit ...
+  JointArray<double> torque_limit_nm =
+      all_joints(63.45);            ///< a feed-forward torque is clamped to it
+  double torque_fault_ratio = 1.2;  ///< fault: measured torque over this times its limit ...
   double torque_fault_s = 0.005;    ///< ... in all samples of a joint for this long
   double tilt_limit_deg = 45.0;     ///< between the body's and the world's z axis; only counted
   double tilt_fault_deg = 60.0;
@@ -118,7 +127,7 @@ class SafetyGate {
   JointCommand damping_;
   JointCommand lower_;  // what pass() clamps to; the gains in them are not used
   JointCommand upper_;
-  double torque_fault_nm_;
+  JointArray<double> torque_fault_nm_{};
   std::uint64_t torque_fault_ticks_;
   double tilt_limit_cos_;
   double tilt_fault_cos_;

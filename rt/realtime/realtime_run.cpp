@@ -109,8 +109,9 @@ RunResult run_realtime(const ProcessConfig& config, Policy* policy, const Comman
   if (hooks.op) {  // the script had no part in it
     const GateState& gate = control.controller().state().gate;
     result.interrupted = interrupt.load();
-    result.survived = gate.faults == 0;
+    result.survived = gate.first_fault == Fault::kNone;  // also if somebody has reset it since
     if (!result.survived) result.fall_reason = fault_name(gate.first_fault);
+    result.walked_s = observer.walked_s();
   }
   result.simulated_s = static_cast<double>(simulator.state().tick) * kControlPeriod_s;
   result.realtime_factor = 1.0;

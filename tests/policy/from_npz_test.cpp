@@ -79,6 +79,8 @@ TEST_F(FromNpzTest, BadWeightsAreOneLineAndNoFile) {
       {"del arrays['actor.1.bias']", "no tensor 'actor.1.bias'"},
       {"arrays['actor.1.bias'] = np.zeros(7)", "shape [7], expected [128]"},
       {"arrays['actor.1.bias'] = np.full(128, np.nan)", "not finite"},
+      {"arrays['actor.1.bias'] = np.full(128, 'a')", "'actor.1.bias' is not of numbers"},
+      {"arrays['estimate.variance'] = np.full(8, -1.0)", "a variance below 0"},
   };
   for (const auto& [change, cause] : cases) {
     ASSERT_EQ(python(std::string("save.py \"") + change + "\""), 0) << error();
@@ -88,6 +90,26 @@ TEST_F(FromNpzTest, BadWeightsAreOneLineAndNoFile) {
     EXPECT_NE(line.find(cause), std::string::npos) << line;
     EXPECT_FALSE(std::filesystem::exists(folder_.path("new.safetensors"))) << change;
   }
+}
+
+TEST_F(FromNpzTest, BadOptionsAndFilesAreOneLineAndNoFile) {
+  ASSERT_EQ(python("save.py"), 0) << error();
+  const auto expect_refused = [&](const std::string& options, const std::string& cause) {
+    EXPECT_EQ(convert(options), 2) << options;
+    const std::string line = error();
+    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
+    EXPECT_NE(line.find(cause), std::string::npos) << line;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("new.safetensors"))) << options;
+  };
+  for (const char* bad : {"kp_nmprad=4O", "kd_nmsprad=-1", "action_scale_rad=0",
+                          "torque_limit_nm=", "observation_clip=nan", "action_clip=1_0"}) {
+    expect_refused(std::string("--map names.txt --set ") + bad, bad);
+  }
+  write_file(folder_.path("latin"), "actor.1.bias \xe9\n");
+  expect_refused("--map latin", "latin: not a text file");
+  const std::string whole = read_file(folder_.path("policy.npz"));
+  write_file(folder_.path("policy.npz"), whole.substr(0, whole.size() / 2));
+  expect_refused("--map names.txt", "policy.npz: not an npz of arrays");
 }
 
 }  // namespace

@@ -201,6 +201,14 @@ TEST_F(PolicyFileTest, RefusesBadMetadata) {
   expect_refused_after([](TensorFile& f) { f.metadata.clear(); }, "not a policy file");
 }
 
+TEST_F(PolicyFileTest, RefusesANumberThatNoDoubleHolds) {
+  std::string bytes = read_file(path_);
+  const std::size_t at = bytes.find("\"shape\":[") + 9;
+  bytes.replace(at, 5, "1e999");  // whatever stood there: it ends the reading
+  write_file(folder_.path("huge"), bytes);
+  expect_refused(folder_.path("huge"), "not valid JSON");
+}
+
 TEST_F(PolicyFileTest, ActionClipMayBeAbsent) {
   TensorFile content = read_safetensors(path_);
   content.metadata.erase("sandrunner.action_clip");

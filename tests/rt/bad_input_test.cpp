@@ -57,6 +57,7 @@ TEST_F(BadInputTest, Commands) {
   expect_refused("--command 1,2", "'1,2' has 2 numbers, expected 3");
   expect_refused("--command nan,0,0", "'nan,0,0'");
   expect_refused("--command fast", "'fast'");
+  expect_refused("--command " + std::string(300, '1') + ",", "--command: '111");
   expect_refused("--command 100,0,0", "100");
   write("command.csv", "t_s,vx,vy,wz\n0,1,0,0\n1,oops,0,0\n");
   expect_refused("--command command.csv", "command.csv:3: '1,oops,0,0'");

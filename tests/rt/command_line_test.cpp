@@ -68,6 +68,11 @@ TEST_F(CommandLineTest, RunWritesItsResults) {
             static_cast<int>(100.0 * j.at("duration_s").get<double>() + (code == 0 ? 0.0 : 51.0)));
 }
 
+TEST_F(CommandLineTest, StandardErrorThatNobodyTakesEndsNothing) {
+  // After a hang-up the terminal refuses what is written to it; /dev/full does so too.
+  EXPECT_EQ(WEXITSTATUS(std::system("'" SANDRUNNER_PROGRAM "' --nosuch 2>/dev/full")), 2);
+}
+
 TEST_F(CommandLineTest, SummaryHasEveryKey) {
   const int code = run("--policy policy --start walk --duration 0.4 --command 1,0,0.25 --out .");
   const Json j = summary(".");
@@ -250,6 +255,8 @@ TEST_F(InterruptTest, FullDiskLeavesNoHalfFile) {
     EXPECT_EQ(name.find(".part"), std::string::npos) << name;
     EXPECT_NE(name, "run.csv");
   }
+  // What became of the robot is told all the same.
+  EXPECT_NE(output().find("interrupted, ended in damping"), std::string::npos) << output();
 }
 
 }  // namespace

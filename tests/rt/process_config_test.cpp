@@ -84,8 +84,8 @@ TEST(ProcessConfigTest, RobotGivesTheLimitsOfTheGate) {
   const GateConfig raibo = config_of("rigid").controller.gate;
   EXPECT_EQ(raibo.joint_lower_rad[0], -1.5708);
   EXPECT_EQ(raibo.joint_upper_rad[8], -0.0262);
-  EXPECT_EQ(raibo.speed_limit_radps, 25.7);
-  EXPECT_EQ(raibo.torque_limit_nm, 63.45);
+  EXPECT_EQ(raibo.speed_limit_radps, all_joints(25.7));
+  EXPECT_EQ(raibo.torque_limit_nm, all_joints(63.45));
 
   std::string urdf(embedded_sim_file("raibo.urdf"));
   const auto replace_all = [&](const std::string& from, const std::string& to) {
@@ -103,8 +103,8 @@ TEST(ProcessConfigTest, RobotGivesTheLimitsOfTheGate) {
   write_file(folder.path("other.toml"), map);
   const ProcessConfig config = config_of("rigid", {"robot=" + folder.path("other.toml")});
   EXPECT_EQ(config.controller.gate.joint_lower_rad[5], -2.2);
-  EXPECT_EQ(config.controller.gate.speed_limit_radps, 21.0);
-  EXPECT_EQ(config.controller.gate.torque_limit_nm, 44.0);
+  EXPECT_EQ(config.controller.gate.speed_limit_radps, all_joints(21.0));
+  EXPECT_EQ(config.controller.gate.torque_limit_nm, all_joints(44.0));
   EXPECT_EQ(config.controller.stand.nominal_rad[10], 0.6);
 }
 

@@ -171,6 +171,23 @@ TEST(RobotModelTest, RefusesMissingAndForeignParts) {
   expect_refused(edited(urdf, "joint name=\"LH_S2F\"", "fixed", "floating"), "moving joints");
 }
 
+TEST(RobotModelTest, RefusesAMassThatItWouldLeaveOut) {
+  const std::string fixed =
+      "<joint name=\"mount\" type=\"fixed\"><parent link=\"base\"/><child link=\"battery\"/>"
+      "<origin xyz=\"0 0 0.1\" rpy=\"0 0 0\"/></joint></robot>";
+  const std::string inertial =
+      "<inertial><mass value=\"5\"/><inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" "
+      "iyz=\"0\" izz=\"0.1\"/></inertial>";
+  const std::string urdf = shipped_urdf();
+  expect_refused(edited(urdf, "</robot>", "</robot>",
+                        "<link name=\"battery\">" + inertial + "</link>" + fixed),
+                 "battery");
+  // A link without one is a frame.
+  EXPECT_NO_THROW(parse_robot(
+      shipped_map(), "map",
+      edited(urdf, "</robot>", "</robot>", "<link name=\"battery\"/>" + fixed), "urdf"));
+}
+
 TEST(RobotModelTest, RefusesOtherAxesAndRotatedJoints) {
   const std::string urdf = shipped_urdf();
   expect_refused(edited(urdf, "joint name=\"LF_HAA\"", "axis xyz=\"1 0 0\"", "axis xyz=\"0 1 0\""),

@@ -57,6 +57,33 @@ TEST(SimulatorTest, StandsAtRestInTheNominalPoseWithSeedZero) {
   EXPECT_EQ(x.orientation.w, 1.0);
 }
 
+TEST(SimulatorTest, OnUnevenGroundItStartsOnTheGroundWithAnySeed) {
+  const Robot robot = load_raibo();
+  SimulatorConfig config = config_of("rigid");
+  config.terrain.patches.front().ground.roughness_m = 0.05;
+  for (const std::uint64_t seed : {0u, 1u}) {
+    config.seed = seed;
+    Simulator simulator(robot, config);
+    for (const bool lying : {false, true}) {
+      lying ? simulator.reset_lying() : simulator.reset_standing();
+      const RigidState<double>& x = simulator.state().robot.rigid;
+      double lowest_m = 1.0;  // of feet and knees above the surface
+      for (int l = 0; l < kNumLegs; ++l) {
+        const LegModel<double>& leg = robot.model.legs[l];
+        const LegPose<double> p = leg_pose(leg, x.q[3 * l], x.q[3 * l + 1], x.q[3 * l + 2]);
+        for (const auto& [point, radius_m] : {std::pair(p.foot, robot.model.foot_radius_m),
+                                              std::pair(p.knee, robot.model.knee_radius_m)}) {
+          const Vec3<double> at = x.position + hip_to_base(leg, p, point);
+          lowest_m = std::fmin(lowest_m, at.z - radius_m - simulator.surface_height(at.x, at.y));
+        }
+      }
+      // Lying, it may rest on its belly alone.
+      EXPECT_GT(lowest_m, -1e-9) << seed << lying;
+      EXPECT_LT(lowest_m, lying ? 0.1 : 0.002 + 1e-9) << seed << lying;
+    }
+  }
+}
+
 TEST(SimulatorTest, SeedsDisturbTheStartWithinTheirBounds) {
   const Robot robot = load_raibo();
   double largest = 0.0;
@@ -295,6 +322,13 @@ TEST(SimulatorTest, TruthHoldsTheEstimatedQuantities) {
   }
   EXPECT_GT(deepest, 0.01);
   EXPECT_EQ(truth.body_height_m, x.position.z + deepest);
+
+  SimulatorConfig uneven = config_of("rigid");
+  uneven.terrain.patches.front().ground.roughness_m = 0.05;
+  const Simulator on_hills(robot, uneven);
+  EXPECT_GT(std::fabs(on_hills.surface_height(0.0, 0.0)), 0.001);
+  EXPECT_EQ(on_hills.truth().state.body_height_m,
+            on_hills.state().robot.rigid.position.z - on_hills.surface_height(0.0, 0.0));
   const Vec3<double> v = transposed_times(rotation_matrix(x.orientation), x.velocity);
   EXPECT_NEAR(truth.velocity_mps[0], v.x, 1e-12);
   for (int l = 0; l < kNumLegs; ++l) {

@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "rt/core/errors.h"
+#include "rt/core/standard_error.h"
 #include "tools/ctl/dds_io.h"
 #include "tools/ctl/errors.h"
 #include "tools/ctl/topics.h"
@@ -136,8 +137,8 @@ void watch_topic(const Options& options, Interrupt& interrupt) {
   };
   if (!interrupt.wait_until(kFindRobot_ns, [&] { return look() || writers_of(reader) > 0; }) &&
       !interrupt.came()) {
-    fmt::print(stderr, "sandrunner-ctl: nobody publishes {} {} yet, waiting\n", topic.name,
-               place(options.dds));
+    to_standard_error(fmt::format("sandrunner-ctl: nobody publishes {} {} yet, waiting\n",
+                                  topic.name, place(options.dds)));
   }
   while (!look() && !interrupt.wait(kLook_ns)) {
   }

@@ -6,6 +6,7 @@
 
 #include "rt/core/errors.h"
 #include "rt/core/program.h"
+#include "rt/core/standard_error.h"
 #include "tools/ctl/commands.h"
 #include "tools/ctl/errors.h"
 
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
     try {
       return run(argc, argv);
     } catch (const RefusedError& error) {
-      fmt::print(stderr, "sandrunner-ctl: {}\n", one_line(error.what()));
+      to_standard_error(fmt::format("sandrunner-ctl: {}\n", one_line(error.what())));
       return kExitRefused;
     }
   });

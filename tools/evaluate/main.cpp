@@ -9,6 +9,7 @@
 #include "policy/policy_file.h"
 #include "rt/core/errors.h"
 #include "rt/core/program.h"
+#include "rt/core/standard_error.h"
 #include "rt/output_files.h"
 #include "tools/evaluate/files.h"
 #include "tools/evaluate/options.h"
@@ -37,13 +38,13 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
   }
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto progress = [&](std::size_t done) {
-    fmt::print(stderr, "\r{:<8} {:<20} {:6} of {} runs ", part.name, name, done, trials.size());
-    std::fflush(stderr);
+    to_standard_error(
+        fmt::format("\r{:<8} {:<20} {:6} of {} runs ", part.name, name, done, trials.size()));
   };
   const std::vector<TrialFigures> all =
       run_trials(study.robot(), study.foot(), policy, trials, settings,
                  terminal ? progress : std::function<void(std::size_t)>());
-  if (terminal) fmt::print(stderr, "\r{:60}\r", "");
+  if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
   std::vector<std::vector<TrialFigures>> groups;
   auto at = all.begin();
   for (const Group& group : part.groups) {

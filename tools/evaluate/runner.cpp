@@ -14,6 +14,7 @@
 #include "rt/core/floating_point.h"
 #include "sim/actuator.h"
 #include "sim/divergence.h"
+#include "sim/ground_truth.h"
 #include "sim/random.h"
 
 namespace sandrunner::evaluate {
@@ -25,24 +26,6 @@ constexpr std::uint64_t kDrawsPerStep = 64;
 // Standard deviations of the training's observation noise (tools/train/raibo.toml).
 constexpr double kGravityNoise = 0.03, kRateNoise_radps = 0.1, kPositionNoise_rad = 0.02,
                  kVelocityNoise_radps = 0.3;
-
-StateEstimate truth_of(const sim::RobotModel<double>& model, const sim::RobotState<float>& state) {
-  const sim::RigidState<float>& x = state.rigid;
-  const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
-  const sim::Vec3<float> v = sim::transposed_times(r, x.velocity);
-  StateEstimate truth;
-  truth.velocity_mps = {v.x, v.y, v.z};
-  float deepest = 0.0f;
-  for (int l = 0; l < kNumLegs; ++l) {
-    if (state.feet[l].active > 0.0f) deepest = std::max(deepest, state.feet[l].memory_depth);
-    const sim::LegPose<double> pose =
-        sim::leg_pose<double>(model.legs[l], x.q[3 * l], x.q[3 * l + 1], x.q[3 * l + 2]);
-    const sim::Vec3<double> foot = sim::hip_to_base(model.legs[l], pose, pose.foot);
-    truth.foot_height_m[l] = x.position.z + r.r2.x * foot.x + r.r2.y * foot.y + r.r2.z * foot.z;
-  }
-  truth.body_height_m = x.position.z + deepest;
-  return truth;
-}
 
 // The robots of one pack from start to end.
 class PackRun {
@@ -150,9 +133,9 @@ class PackRun {
     policy_.set_state(lane.memory);
     const PolicyStep answer = policy_.step(observe(trial, step, command, state));
     lane.memory = policy_.state();
-    lane.recorder.begin_period(state, truth_of(robot_.model, state), answer.estimate, asked,
-                               lane.target_rad, answer.target_rad, policy_.spec().kp_nmprad,
-                               policy_.spec().kd_nmsprad, facts_);
+    lane.recorder.begin_period(state, sim::ground_truth(robot_.model, state, *trial.terrain),
+                               answer.estimate, asked, lane.target_rad, answer.target_rad,
+                               policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);
     for (int j = 0; j < kNumJoints; ++j) {
       lane.drive.target_before[j] = static_cast<float>(lane.target_rad[j]);
       lane.drive.target[j] = static_cast<float>(answer.target_rad[j]);

@@ -15,9 +15,13 @@ npz are translated by --map, a text file with a line "ours theirs" for each. --s
 """
 import argparse
 import json
+import math
 import os
+import re
 import struct
 import sys
+import zipfile
+import zlib
 
 import numpy as np
 
@@ -48,6 +52,11 @@ METADATA = {
     "yaw_command_clip_mps2": "2.943",
     "observation_clip": "10",
 }
+# Metadata that is a number, and whether 0 is refused.
+NUMBERS = {
+    "action_scale_rad": True, "action_clip": False, "kp_nmprad": False, "kd_nmsprad": False, "torque_limit_nm": True,
+    "yaw_command_clip_mps2": True, "observation_clip": True,
+}
 GOLDEN_STEPS = 50
 
 
@@ -56,18 +65,26 @@ def fail(message):
     sys.exit(2)
 
 
+def usable(text, above_zero):
+    if not re.fullmatch(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", text):
+        return False
+    return math.isfinite(float(text)) and (float(text) > 0 or not above_zero)
+
+
 def read_tensors(path, map_path):
     try:
         archive = np.load(path, allow_pickle=False)
         available = {name: archive[name] for name in archive.files}
-    except (OSError, ValueError, AttributeError) as error:
-        fail(f"{path}: not an npz of arrays: {str(error).splitlines()[0]}")
+    except (OSError, ValueError, AttributeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        fail(f"{path}: not an npz of arrays: {(str(error).splitlines() or [type(error).__name__])[0]}")
     names = {}
     if map_path:
         try:
             lines = open(map_path, encoding="utf-8").read().splitlines()
         except OSError as error:
             fail(f"{map_path}: {error.strerror}")
+        except UnicodeDecodeError:
+            fail(f"{map_path}: not a text file (UTF-8)")
         for number, line in enumerate(lines, 1):
             words = line.split()
             if not words:
@@ -80,11 +97,16 @@ def read_tensors(path, map_path):
         theirs = names.get(name, name)
         if theirs not in available:
             fail(f"{path}: has no tensor '{theirs}'")
-        tensor = np.asarray(available[theirs], dtype=np.float32)
+        try:
+            tensor = np.asarray(available[theirs], dtype=np.float32)
+        except (ValueError, TypeError):
+            fail(f"{path}: tensor '{theirs}' is not of numbers")
         if tensor.shape != shape:
             fail(f"{path}: tensor '{theirs}' has shape {list(tensor.shape)}, expected {list(shape)}")
         if not np.isfinite(tensor).all():
             fail(f"{path}: tensor '{theirs}' holds a value that is not finite")
+        if name.endswith(".variance") and (tensor < 0).any():
+            fail(f"{path}: tensor '{theirs}' holds a variance below 0")
         tensors[name] = tensor
     return tensors
 
@@ -157,11 +179,10 @@ def main():
         key, equals, value = assignment.partition("=")
         if not equals or key not in METADATA:
             fail(f"--set {assignment}: expected one of {', '.join(METADATA)} and a value")
+        if key in NUMBERS and not usable(value, NUMBERS[key]):
+            fail(f"--set {assignment}: expected a number {'>' if NUMBERS[key] else '>='} 0")
         metadata[key] = value
-    try:
-        clip = float(metadata["observation_clip"])
-    except ValueError:
-        fail(f"--set observation_clip={metadata['observation_clip']}: not a number")
+    clip = float(metadata["observation_clip"])
     tensors = read_tensors(arguments.npz, arguments.map)
     tensors.update(golden_example(tensors, clip))
     all_metadata = {f"sandrunner.{key}": value for key, value in metadata.items()}

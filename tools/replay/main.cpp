@@ -16,6 +16,7 @@
 #include "rt/core/errors.h"
 #include "rt/core/floating_point.h"
 #include "rt/core/program.h"
+#include "rt/core/standard_error.h"
 #include "rt/output_files.h"
 #include "rt/replay.h"
 #include "rt/run_csv.h"
@@ -92,8 +93,9 @@ int run(int argc, char** argv) {
   const auto begin = [&](const RecordingInfo& info) {
     player.emplace(info, *arguments);
     if (info.build != build_name()) {
-      fmt::print(stderr, "sandrunner-replay: warning: recorded by build {}, this is {}\n",
-                 info.build, build_name());
+      to_standard_error(
+          fmt::format("sandrunner-replay: warning: recorded by build {}, this is {}\n", info.build,
+                      build_name()));
     }
   };
   const auto tick = [&](const TickRecord& recorded) {

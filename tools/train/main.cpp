@@ -18,6 +18,7 @@
 #include "rt/build.h"
 #include "rt/core/errors.h"
 #include "rt/core/program.h"
+#include "rt/core/standard_error.h"
 #include "rt/output_files.h"
 #include "tools/train/embedded.h"
 #include "tools/train/progress.h"
@@ -204,8 +205,8 @@ class Training {
           fmt::format("no finite update from {} on, with smaller and smaller learning rates",
                       checkpoint_path_));
     }
-    fmt::print(stderr, "update {} is not finite: back to {}, slower\n", learner_.updates(),
-               checkpoint_path_);
+    to_standard_error(fmt::format("update {} is not finite: back to {}, slower\n",
+                                  learner_.updates(), checkpoint_path_));
     restore(learner::load_checkpoint(checkpoint_path_));
     // The same steps would end in the same bits.
     for (int i = 0; i < fallbacks_; ++i) learner_.halve_learning_rate();

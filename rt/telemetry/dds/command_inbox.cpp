@@ -144,6 +144,10 @@ void CommandInbox::answer(std::uint64_t id, std::string_view request) {
 }
 
 const char* CommandInbox::follow(Wish wish) {
+  // What calms the robot waits for a controller that does not answer; until it has come, nothing
+  // but a harder stop takes its place.
+  const bool waiting = calming_number_ > operator_.considered();
+  if (waiting && wish != Wish::kDamp) return "the controller does not answer";
   const WishDecision decision = decide(wish, operator_.mode(), can_walk_);
   if (decision.refusal) return decision.refusal;
   if (wish == Wish::kStop || wish == Wish::kDamp) {
@@ -153,6 +157,7 @@ const char* CommandInbox::follow(Wish wish) {
   if (decision.request != ModeRequest::kNone) {
     wish_.request = decision.request;
     ++wish_.request_number;
+    if (wish == Wish::kStop || wish == Wish::kDamp) calming_number_ = wish_.request_number;
   }
   operator_.wish(wish_);
   const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;

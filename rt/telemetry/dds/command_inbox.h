@@ -48,6 +48,7 @@ class CommandInbox {
   const bool stamped_, can_walk_;
   CommandGate gate_;
   OperatorWish wish_;
+  std::uint64_t calming_number_ = 0;  // of the latest request that calms the robot
   dds_entity_t cmd_vel_, requests_, replies_, wake_, waitset_;
   std::array<std::atomic<std::uint64_t>, 4> velocities_{};  // by CommandVerdict
   std::array<std::atomic<std::uint64_t>, 2> answers_{};     // refused, accepted

@@ -32,7 +32,8 @@ std::string escaped(const std::string& text) {
 std::string security_xml(const std::string& dir, const std::string& identity) {
   const auto file = [&](const std::string& name) {
     const std::filesystem::path path = std::filesystem::absolute(dir) / name;
-    if (!std::filesystem::is_regular_file(path)) {
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(path, unreadable)) {
       throw InputError(fmt::format(
           "DDS security: found no file {}, expected a folder made by tools/dds_security.sh",
           path.string()));

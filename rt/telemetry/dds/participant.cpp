@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "rt/core/errors.h"
+#include "rt/core/standard_error.h"
 
 namespace sandrunner {
 namespace {
@@ -70,8 +71,9 @@ class Log {
       lines_ = 0;
     }
     if (++lines_ > kLogLines) return;
-    fmt::print(stderr, "DDS: {}\n{}", message,
-               lines_ == kLogLines ? "DDS: more is not shown for ten seconds\n" : "");
+    to_standard_error(
+        fmt::format("DDS: {}\n{}", message,
+                    lines_ == kLogLines ? "DDS: more is not shown for ten seconds\n" : ""));
   }
 
  private:

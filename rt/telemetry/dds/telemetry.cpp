@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/telemetry/dds/telemetry.h"
 
-#include <chrono>
+#include "rt/telemetry/start_time.h"
 
 namespace sandrunner {
 namespace {
 
 constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
-
-std::int64_t wall_clock_ns() {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 
@@ -31,7 +27,7 @@ Telemetry::~Telemetry() {
 
 void Telemetry::add(const TickRecord& record) {
   const std::uint64_t tick = record.input.sensors.tick;
-  if (start_ns_ == 0) start_ns_ = wall_clock_ns() - static_cast<std::int64_t>(tick) * kTick_ns;
+  if (start_ns_ == 0) start_ns_ = start_time_ns(record);
   const std::int64_t stamp_ns = start_ns_ + static_cast<std::int64_t>(tick) * kTick_ns;
   odometry_.add(record);
   diagnostics_.add(record);

@@ -31,6 +31,8 @@ class Telemetry {
   Telemetry(const Telemetry&) = delete;
   Telemetry& operator=(const Telemetry&) = delete;
 
+  /// `start_ns` as above. Before the first add().
+  void begin(std::int64_t start_ns) noexcept { start_ns_ = start_ns; }
   /// Every tick, in order.
   void add(const TickRecord& tick);
 

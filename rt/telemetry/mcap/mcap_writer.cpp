@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -46,6 +47,16 @@ void put(Bytes& to, Number value) {
 void put(Bytes& to, std::string_view text) {
   put(to, static_cast<std::uint32_t>(text.size()));
   put_bytes(to, text.data(), text.size());
+}
+
+/// Opens `path` for writing, making it if need be. Throws InputError.
+int open_file(const std::string& path, int flags) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0644);
+  if (fd < 0) {
+    throw InputError(one_line(fmt::format("{}: cannot be written ({}), expected a path for an MCAP",
+                                          path, std::strerror(errno))));
+  }
+  return fd;
 }
 
 /// Puts what `body` appends, with its length, a `Length`, in front.
@@ -102,15 +113,18 @@ void McapWriter::FreeCompressor::operator()(void* context) const noexcept {
   ZSTD_freeCCtx(static_cast<ZSTD_CCtx*>(context));
 }
 
+void McapWriter::try_path(const std::string& path) {
+  struct stat before {};
+  const bool there = ::stat(path.c_str(), &before) == 0;
+  ::close(open_file(path, 0));
+  if (!there) ::unlink(path.c_str());
+}
+
 McapWriter::McapWriter(const std::string& path) : path_(path), compressor_(ZSTD_createCCtx()) {
   if (!compressor_) throw std::bad_alloc();
   ZSTD_CCtx_setParameter(static_cast<ZSTD_CCtx*>(compressor_.get()), ZSTD_c_compressionLevel,
                          kCompressionLevel);
-  fd_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd_ < 0) {
-    throw InputError(one_line(fmt::format("{}: cannot be written ({}), expected a path for an MCAP",
-                                          path, std::strerror(errno))));
-  }
+  fd_ = open_file(path, O_TRUNC);
   put_bytes(out_, kMcapMagic.data(), kMcapMagic.size());
   put_record(out_, kMcapHeader, [&] {
     put(out_, std::string_view("ros2"));

@@ -28,6 +28,8 @@ class McapWriter {
  public:
   /// Creates or empties the file and writes its beginning. Throws InputError.
   explicit McapWriter(const std::string& path);
+  /// Throws what the constructor would, and leaves what is at `path` as it is.
+  static void try_path(const std::string& path);
   /// Without `close()` before it: flushes and leaves a cut file.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;

@@ -63,6 +63,8 @@ class BlackBox {
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
+  /// As the Recorder's.
+  void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
   /// Every tick, in order, from one ordinary thread. If the queue of two seconds is full, the
   /// newest ticks are dropped and counted.
   void add(const TickRecord& tick) { queue_.add(tick); }
@@ -90,7 +92,7 @@ class BlackBox {
   void write_file(const std::string& path, const RecordingInfo& info);
 
   const std::string folder_;
-  const RecordingInfo info_;
+  RecordingInfo info_;  // of its thread, from the first tick on
   const std::uint64_t kept_ticks_;
   TickQueue queue_;
   // Of its thread.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/telemetry/recording/recorder.h"
 
-#include "rt/core/errors.h"
+#include <utility>
+
+#include "rt/telemetry/mcap/mcap_writer.h"
 
 namespace sandrunner {
 namespace {
@@ -11,9 +13,13 @@ constexpr std::size_t kQueuedBatches = 200;  // two seconds
 
 }  // namespace
 
-Recorder::Recorder(const std::string& path, const RecordingInfo& info,
-                   const RecordingLimits& limits, bool wait)
-    : limits_(limits), writer_(path, info), queue_(kBatchTicks, kQueuedBatches, wait) {
+Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits,
+                   bool wait)
+    : path_(path),
+      limits_(limits),
+      info_(std::move(info)),
+      queue_(kBatchTicks, kQueuedBatches, wait) {
+  McapWriter::try_path(path_);
   thread_ = std::thread([this] { work(); });
 }
 
@@ -24,7 +30,7 @@ RecordingResult Recorder::close() {
     queue_.finish();
     thread_.join();
     result_.dropped = queue_.dropped();
-    result_.bytes = writer_.bytes_written();
+    if (writer_) result_.bytes = writer_->bytes_written();
   }
   return result_;
 }
@@ -34,21 +40,22 @@ void Recorder::work() {
     if (stopped_) continue;
     try {
       write(*batch);
-    } catch (const InputError& error) {
+    } catch (const std::exception& error) {  // also no memory: the run itself goes on
       stop(error.what());
     }
   }
   try {
-    writer_.close();
-  } catch (const InputError& error) {
+    if (writer_) writer_->close();
+  } catch (const std::exception& error) {
     stop(error.what());
   }
 }
 
 void Recorder::write(const TickQueue::Batch& batch) {
-  writer_.write(batch);
+  if (!writer_) writer_.emplace(path_, info_);
+  writer_->write(batch);
   result_.ticks += batch.size();
-  if (writer_.bytes_written() > limits_.bytes) stop("the limit of its size is reached");
+  if (writer_->bytes_written() > limits_.bytes) stop("the limit of its size is reached");
   const std::uint64_t first = batch.front().input.sensors.tick;
   if (static_cast<double>(first) * kControlPeriod_s > limits_.time_s) {
     stop("the limit of its time is reached");
@@ -60,8 +67,8 @@ void Recorder::stop(const std::string& reason) {
   stopped_ = true;
   result_.stopped_because = reason;
   try {
-    writer_.close();
-  } catch (const InputError&) {  // the disk is full: what is there is readable
+    if (writer_) writer_->close();
+  } catch (const std::exception&) {  // the disk is full: what is there is readable
   }
 }
 

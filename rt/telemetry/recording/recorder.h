@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -25,18 +26,21 @@ struct RecordingResult {
 
 /// Writes every tick of a run into a file (recording_writer.h) in a thread of its own.
 ///
-/// A disk that fills up or a limit ends the recording, not the run. A kill loses at most the last
-/// second.
+/// A disk that fills up, a limit or a lack of memory ends the recording, not the run. A kill loses
+/// at most the last second. The file is made with the first tick: one of an earlier run outlives a
+/// run that is refused.
 class Recorder {
  public:
   /// `wait`: add() waits for a full queue (lockstep, where nothing else suffers) instead of
   /// dropping the newest ticks and counting them. Throws InputError if the file cannot be written.
-  Recorder(const std::string& path, const RecordingInfo& info, const RecordingLimits& limits,
-           bool wait);
+  Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits, bool wait);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  /// Wall clock of tick 0, ns since 1970, if it is known later than the rest of the info. Before
+  /// the first add().
+  void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
   /// Every tick, in order, from one ordinary thread.
   void add(const TickRecord& tick) { queue_.add(tick); }
   /// Finishes the file. Nothing may be added afterwards.
@@ -47,10 +51,12 @@ class Recorder {
   void write(const TickQueue::Batch& batch);
   void stop(const std::string& reason);
 
+  const std::string path_;
   const RecordingLimits limits_;
-  RecordingWriter writer_;
+  RecordingInfo info_;  // of the thread that writes, from the first tick on
   TickQueue queue_;
   // Of the thread that writes.
+  std::optional<RecordingWriter> writer_;
   bool stopped_ = false;
   RecordingResult result_;
   std::thread thread_;

@@ -138,6 +138,17 @@ TEST(ConfigTreeTest, SetTakesTomlValuesAndBareWords) {
             "--set a.preset: a.preset: found \"dry-sand\", expected a finite number from 0 to 1");
 }
 
+TEST(ConfigTreeTest, SetTextTakesAnyText) {
+  for (const char* text :
+       {"", "robot keys", "2024", "a\"b\\c", "tab\there\nand there", "Schlüssel"}) {
+    ConfigTree config;
+    config.set_text("dds.dir", text, "--dir");
+    EXPECT_EQ(config.text("dds.dir", "none"), text);
+  }
+  ConfigTree config;
+  EXPECT_EQ(error_of([&] { config.set_text("dds.dir", "\xff", "--dir"); }).substr(0, 5), "--dir");
+}
+
 TEST(ConfigTreeTest, SetRefusesWhatIsNoAssignment) {
   ConfigTree config;
   for (const char* bad : {"", "a", "=1", "a.=1", ".a=1", "a..b=1", "a b=1", "a[0]=1", "a=",

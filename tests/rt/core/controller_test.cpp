@@ -140,6 +140,16 @@ TEST(ControllerTest, StopSlowsDownWaitsForRestThenStands) {
   EXPECT_EQ(loop.output.command.joints().position_rad, loop.config.stand.nominal_rad);
 }
 
+TEST(ControllerTest, StopThatIsAskedForAgainAndAgainIsStillOneStop) {
+  FakeLoop loop;
+  loop.reach(Mode::kWalk);
+  for (int n = 0; n < 14; ++n) {  // as a key that is held down
+    loop.request(ModeRequest::kStand);
+    loop.run_s(0.1);
+  }
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+}
+
 TEST(ControllerTest, StopEndsAfterItsLongestWaitIfTheRobotNeverRests) {
   FakeLoop loop;
   loop.reach(Mode::kWalk);

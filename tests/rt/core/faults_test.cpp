@@ -203,6 +203,16 @@ TEST_F(ResetTest, RefusedWhileTheConditionHolds) {
   EXPECT_FALSE(loop.output.command.enabled());
 }
 
+TEST_F(ResetTest, RefusedWhileTheRobotLiesOnItsSide) {
+  loop.spoil = [](ControllerInput& seen) { seen.sensors.imu.orientation_wxyz = tilted(90.0); };
+  loop.run_s(2.1);
+  loop.request(ModeRequest::kResetFault);
+  EXPECT_EQ(loop.output.mode, Mode::kFault);
+  loop.spoil = nullptr;
+  loop.request(ModeRequest::kResetFault);
+  EXPECT_EQ(loop.output.mode, Mode::kPassive);
+}
+
 TEST_F(ResetTest, LeadsToPassiveAndNeverFurther) {
   loop.spoil = nullptr;
   loop.run_s(2.1);

@@ -183,6 +183,29 @@ TEST_F(SafetyGateTest, TorqueFaultNeedsTwentySamplesOfOneJointInARow) {
   EXPECT_EQ(sample(8, 77.0), static_cast<std::uint64_t>(Fault::kJointTorque));
 }
 
+TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
+  config.torque_limit_nm[2] = 30.0;
+  config.speed_limit_radps[4] = 10.0;
+  const SafetyGate other(config, 2.0);
+  wanted.feedforward_nm[2] = wanted.feedforward_nm[1] = 50.0;
+  const SafeCommand passed = other.pass(wanted, true, state);
+  EXPECT_EQ(passed.joints().feedforward_nm[2], 30.0);
+  EXPECT_EQ(passed.joints().feedforward_nm[1], 50.0);
+  sensors.joints.velocity_radps[3] = sensors.joints.velocity_radps[5] = 11.0;
+  other.judge({sensors, command}, Mode::kWalk, state);
+  EXPECT_EQ(state.speed_limit_ticks, 0u);
+  sensors.joints.velocity_radps[4] = 11.0;
+  other.judge({sensors, command}, Mode::kWalk, state);
+  EXPECT_EQ(state.speed_limit_ticks, 1u);
+  sensors.joints.torque_nm[1] = sensors.joints.torque_nm[3] = 40.0;
+  for (int n = 0; n < 40; ++n) {
+    EXPECT_EQ(other.judge({sensors, command}, Mode::kWalk, state), 0u);
+  }
+  sensors.joints.torque_nm[2] = 40.0;
+  for (int n = 0; n < 20; ++n) other.judge({sensors, command}, Mode::kWalk, state);
+  EXPECT_EQ(state.faults, static_cast<std::uint64_t>(Fault::kJointTorque));
+}
+
 TEST_F(SafetyGateTest, SampleFromTheFutureIsStale) {
   sensors.tick = 100;
   sensors.joints.tick = 101;

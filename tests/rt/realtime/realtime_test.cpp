@@ -107,6 +107,27 @@ TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
   EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kNonFiniteCommand));
 }
 
+TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedAlsoIfItWasReset) {
+  LiveOperator op;
+  int step = 0;
+  const RunResult result = run_live(op, [&](PolicyThread&) {
+    const auto when = [&](int n, bool condition, const auto& action) {
+      if (step != n || !condition) return;
+      action();
+      ++step;
+    };
+    when(0, op.time_s() > 0.2, [&] { op.want(VelocityCommand{kNan, 0.0, 0.0}); });
+    when(1, op.mode() == Mode::kFault, [&] { op.want(VelocityCommand{}); });
+    when(2, op.time_s() > 2.6, [&] { op.want(ModeRequest::kResetFault); });
+    when(3, op.mode() == Mode::kPassive, [&] { op.end(); });
+    if (op.time_s() > 5.0) op.end();
+  });
+  EXPECT_EQ(step, 4);
+  EXPECT_FALSE(result.survived);
+  EXPECT_EQ(result.fall_reason, "non_finite_command");
+  EXPECT_GT(result.walked_s, 0.1);
+}
+
 TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());

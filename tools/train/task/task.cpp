@@ -7,6 +7,7 @@
 #include "estimator/observation.h"
 #include "rt/core/command_shaping.h"
 #include "sim/divergence.h"
+#include "sim/ground_truth.h"
 #include "sim/terrain.h"
 
 namespace sandrunner::train {
@@ -53,34 +54,13 @@ Task::Task(const TrainConfig& config, std::uint64_t seed)
   }
 }
 
-std::array<float, kEstimateSize> Task::truth(const Env& e, const sim::RobotState<float>& state,
-                                             const sim::BatchReport<float>&) const {
-  const sim::RigidState<float>& x = state.rigid;
-  const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
-  const sim::Vec3<float> v = sim::transposed_times(r, x.velocity);
+std::array<float, kEstimateSize> Task::truth(const Env& e,
+                                             const sim::RobotState<float>& state) const {
+  const StateEstimate t = sim::ground_truth(robot_.model, state, e.terrain);
   std::array<float, kEstimateSize> out;
-  float surface = 0.0f, deepest = 0.0f, unused_x, unused_y;
-  const sim::Ground<float>& ground = e.terrain.ground[0];
-  if (ground.roughness > 0.0f) {
-    sim::rough_surface(ground, x.position.x, x.position.y, surface, unused_x, unused_y);
-  }
-  for (int l = 0; l < kNumLegs; ++l) {
-    const sim::FootContact<float>& contact = state.feet[l];
-    if (contact.active > 0.0f &&
-        e.terrain.ground[static_cast<std::size_t>(contact.region)].is_granular > 0.0f) {
-      deepest = std::max(deepest, contact.memory_depth);
-    }
-    const sim::LegModel<double>& leg = robot_.model.legs[l];
-    const sim::LegPose<double> p =
-        sim::leg_pose(leg, double(x.q[3 * l]), double(x.q[3 * l + 1]), double(x.q[3 * l + 2]));
-    const sim::Vec3<double> foot = sim::hip_to_base(leg, p, p.foot);
-    out[4 + l] = x.position.z - surface +
-                 static_cast<float>(r.r2.x * foot.x + r.r2.y * foot.y + r.r2.z * foot.z);
-  }
-  out[0] = x.position.z - surface + deepest;
-  out[1] = v.x;
-  out[2] = v.y;
-  out[3] = v.z;
+  out[0] = static_cast<float>(t.body_height_m);
+  for (int i = 0; i < 3; ++i) out[1 + i] = static_cast<float>(t.velocity_mps[i]);
+  for (int l = 0; l < kNumLegs; ++l) out[4 + l] = static_cast<float>(t.foot_height_m[l]);
   return out;
 }
 
@@ -92,7 +72,7 @@ void Task::privileged(int, const Env& e, const sim::RobotState<float>& state,
       e.command, {r.r2.x, r.r2.y, r.r2.z},
       {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z}, x.q, x.qd);
   for (int i = 0; i < kObservationSize; ++i) *out++ = normalised(scales_, i, clean[i]);
-  const auto estimate = truth(e, state, report);
+  const auto estimate = truth(e, state);
   for (int i = 0; i < kEstimateSize; ++i) {
     *out++ = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i],
                         -6.0f, 6.0f);
@@ -135,7 +115,7 @@ void Task::observe_env(int env, int t, learner::Rollout& rollout) {
   auto observation = rollout.observation(t).col(env);
   for (int i = 0; i < kObservationSize; ++i) observation[i] = normalised(scales_, i, raw[i]);
   privileged(env, e, state, report, rollout.privileged(t).col(env).data());
-  const auto estimate = truth(e, state, report);
+  const auto estimate = truth(e, state);
   auto target = rollout.estimate_target(t).col(env);
   for (int i = 0; i < kEstimateSize; ++i) {
     target[i] = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i],
@@ -190,7 +170,7 @@ void Task::step(int block, int t, learner::Learner& learner, int worker) {
     s.roll_rate = x.angular_velocity.x;
     s.pitch_rate = x.angular_velocity.y;
     s.up_z = r.r2.z;
-    const auto estimate = truth(e, state, report);
+    const auto estimate = truth(e, state);
     s.body_height = estimate[0];
     s.q = x.q;
     const auto action = rollout.action(t).col(env);

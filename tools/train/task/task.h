@@ -111,8 +111,7 @@ class Task {
   void new_robot(int env, Env& e);
   void hard_reset(int env, Env& e);
   void push(int env, Env& e, sim::RobotState<float>& state) const;
-  std::array<float, kEstimateSize> truth(const Env& e, const sim::RobotState<float>& state,
-                                         const sim::BatchReport<float>& report) const;
+  std::array<float, kEstimateSize> truth(const Env& e, const sim::RobotState<float>& state) const;
   void observe_env(int env, int t, learner::Rollout& rollout);
   void privileged(int env, const Env& e, const sim::RobotState<float>& state,
                   const sim::BatchReport<float>& report, float* out) const;

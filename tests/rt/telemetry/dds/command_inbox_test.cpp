@@ -172,6 +172,20 @@ TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLat
   }
 }
 
+TEST(CommandInboxTest, ADampThatWaitsForTheControllerIsNotReplacedByAWalk) {
+  const DdsConfig config = test_config();
+  DdsParticipant participant(config);
+  DdsOperator op(config.stale_ticks());
+  CommandInbox inbox(participant, config, true, op);
+  Peer peer(config);
+  Asker asker(peer);
+  for (const char* wish : {"damp", "stand", "walk"}) {
+    EXPECT_STREQ(asker.ask(wish).reason, "the controller does not answer") << wish;
+  }
+  op.command(0);
+  EXPECT_EQ(op.command(1).request, ModeRequest::kDamp);
+}
+
 TEST(CommandInboxTest, TwistStampedIfTheConfigSaysSo) {
   DdsConfig config = test_config();
   config.stamped_cmd_vel = true;

@@ -130,6 +130,21 @@ TEST_F(RecordingTest, FullDiskEndsTheRecordingAndNotTheRun) {
   EXPECT_FALSE(read_recording(path(), {}, [](const TickRecord&) { return true; }).complete);
 }
 
+TEST_F(RecordingTest, RunThatIsRefusedLeavesTheRecordingOfTheRunBefore) {
+  record();
+  const std::string before = read_file(path());
+  EXPECT_EQ(run(SANDRUNNER_PROGRAM,
+                "--clock realtime --command dds --set dds.interface=nosuch "
+                "--record '" +
+                    folder_.path("") + "'"),
+            2)
+      << output();
+  EXPECT_EQ(read_file(path()), before);
+  // Nor does one that ends before its first tick.
+  Recorder(path(), {}, {}, true).close();
+  EXPECT_EQ(read_file(path()), before);
+}
+
 TEST_F(RecordingTest, LimitOfTimeEndsTheRecording) {
   record("--set recording.limit_s=0.2");
   EXPECT_NE(output().find("the limit of its time is reached"), std::string::npos) << output();
