@@ -45,6 +45,20 @@ std::string recording_line(const RecordingResult& r, const std::string& dir) {
                      r.stopped_because.empty() ? "" : "; STOPPED: " + r.stopped_because);
 }
 
+// Writes the files of --out; returns the line that names them. Throws InputError.
+std::string write_results(const RunResult& result, const Options& options,
+                          const std::string& command, const ProcessConfig& config,
+                          const std::string& policy_name) {
+  const std::string dir = options.out_dir + "/";
+  write_text(summary_json(result, options, command, policy_name), dir + "summary.json");
+  write_text(config.effective, dir + "config.toml");
+  write_csv(result.record, dir + "run.csv");
+  draw_run_plot(result.record, dir + "run.png");
+  draw_run_strip(result.record, dir + "strip.png");
+  return fmt::format(
+      "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
+}
+
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
@@ -108,27 +122,16 @@ int run(int argc, char** argv) {
   if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
 
   const RecordingResult recorded = recorder ? recorder->close() : RecordingResult();
-
   const BlackBoxResult kept = black_box ? black_box->close() : BlackBoxResult();
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
   std::string written;
   std::optional<InputError> not_written;
-  if (out) {
-    const std::string dir = options->out_dir + "/";
-    try {
-      write_text(summary_json(result, *options, command_text, policy.spec().name),
-                 dir + "summary.json");
-      write_text(config.effective, dir + "config.toml");
-      write_csv(result.record, dir + "run.csv");
-      draw_run_plot(result.record, dir + "run.png");
-      draw_run_strip(result.record, dir + "strip.png");
-      written = fmt::format(
-          "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
-    } catch (const InputError& error) {
-      not_written = error;
-    }
+  try {
+    if (out) written = write_results(result, *options, command_text, config, policy.spec().name);
+  } catch (const InputError& error) {
+    not_written = error;
   }
   if (recorder) written += recording_line(recorded, options->record_dir);
   if (black_box) written += black_box_lines(kept);
