@@ -20,7 +20,6 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
   if (periods_.empty() || periods_.back().ticks == kTicksPerPolicyStep) periods_.emplace_back();
   Period& p = periods_.back();
   ++p.ticks;
-  ++ticks_;
   const SimulatedTick& robot = tick.simulated;
   const sim::RigidState<double>& x = robot.robot;
   const sim::Mat3<double> r = sim::rotation_matrix(x.orientation);
@@ -74,6 +73,12 @@ void RunStatistics::follow_stances(const TickRecord& tick) {
     footprints_.push_back({static_cast<double>(tick.input.sensors.tick + 1) * kControlPeriod_s,
                            stance.x, stance.y, stance.depth});
   }
+}
+
+double RunStatistics::time_s() const noexcept {
+  std::int64_t ticks = 0;
+  for (const Period& p : periods_) ticks += p.ticks;
+  return static_cast<double>(ticks) * kControlPeriod_s;
 }
 
 RunFigures RunStatistics::figures(double mass_kg, double motor_constant) const {

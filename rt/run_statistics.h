@@ -47,7 +47,7 @@ class RunStatistics {
   /// Figures so far. `mass_kg`, `motor_constant` (N m/sqrt(W)): for the cost of transport.
   RunFigures figures(double mass_kg, double motor_constant) const;
   /// Time that the ticks so far make.
-  double time_s() const noexcept { return static_cast<double>(ticks_) * kControlPeriod_s; }
+  double time_s() const noexcept;
   const std::vector<Footprint>& footprints() const noexcept { return footprints_; }
 
  private:
@@ -71,7 +71,6 @@ class RunStatistics {
   };
   void follow_stances(const TickRecord& tick);
 
-  std::uint64_t ticks_ = 0;
   std::vector<Period> periods_;
   std::array<Stance, kNumLegs> stances_;
   std::vector<EndedStance> ended_;

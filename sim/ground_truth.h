@@ -9,6 +9,16 @@
 
 namespace sandrunner::sim {
 
+/// Height of the undisturbed surface at (x, y), world, m; 0 where it is even. S: float or double.
+template <typename S>
+S surface_height(const Terrain<S>& terrain, S x, S y) noexcept {
+  const Ground<S>& ground = terrain.ground[static_cast<std::size_t>(terrain.region_at(x))];
+  if (!(ground.roughness > S(0.0))) return S(0.0);
+  S height, slope_x, slope_y;
+  rough_surface(ground, x, y, height, slope_x, slope_y);
+  return height;
+}
+
 /// What the policy's network estimates, as it is: the truth of training, simulator and evaluation.
 /// Velocity of the base origin in the body frame, m/s; heights in m. The undisturbed ground is the
 /// surface under the base origin; the deformed ground lies below it by the deepest penetration that
@@ -20,12 +30,8 @@ StateEstimate ground_truth(const RobotModel<double>& model, const RobotState<S>&
   const RigidState<S>& x = state.rigid;
   const Mat3<S> r = rotation_matrix(x.orientation);
   const Vec3<S> v = transposed_times(r, x.velocity);
-  const Ground<S>& below =
-      terrain.ground[static_cast<std::size_t>(terrain.region_at(x.position.x))];
-  S surface = S(0.0), deepest = S(0.0), slope_x, slope_y;
-  if (below.roughness > S(0.0)) {
-    rough_surface(below, x.position.x, x.position.y, surface, slope_x, slope_y);
-  }
+  const S surface = surface_height(terrain, x.position.x, x.position.y);
+  S deepest = S(0.0);
   StateEstimate truth;
   truth.velocity_mps = {v.x, v.y, v.z};
   for (int l = 0; l < kNumLegs; ++l) {

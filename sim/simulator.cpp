@@ -171,11 +171,7 @@ void Simulator::add_to(StateHash& hash) const noexcept {
 }
 
 double Simulator::surface_height(double x_m, double y_m) const noexcept {
-  const Ground<double>& ground = terrain_.ground[static_cast<int>(terrain_.region_at(x_m))];
-  if (!(ground.roughness > 0.0)) return 0.0;
-  double height, slope_x, slope_y;
-  rough_surface(ground, x_m, y_m, height, slope_x, slope_y);
-  return height;
+  return sim::surface_height(terrain_, x_m, y_m);
 }
 
 SimulatorConfig read_simulator_config(ConfigTree& config) {

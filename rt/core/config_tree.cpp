@@ -234,7 +234,7 @@ void ConfigTree::set(const std::string& assignment) {
     throw InputError(one_line(origin + ": found '" + value +
                               "', expected a TOML value (strings in quotes unless one word)"));
   }
-  add_layer(path + " = \"" + value + "\"", origin, false);
+  set_text(path, value, origin);
 }
 
 void ConfigTree::set_text(const std::string& path, const std::string& value,

@@ -23,6 +23,21 @@ RunResult run_live(LiveOperator& op, const std::function<void(PolicyThread&)>& m
                       interrupt, {}, {}, hooks);
 }
 
+/// Actions that follow each other, each once its condition holds.
+class Steps {
+ public:
+  template <typename Action>
+  void when(int number, bool condition, const Action& action) {
+    if (done_ != number || !condition) return;
+    action();
+    ++done_;
+  }
+  int done() const { return done_; }
+
+ private:
+  int done_ = 0;
+};
+
 TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
@@ -47,20 +62,15 @@ TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
 TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
   LiveOperator op;
   bool stood = false, walked_again = false;
-  int step = 0;
+  Steps steps;
   const RunResult result = run_live(op, [&](PolicyThread&) {
-    const auto when = [&](int n, bool condition, const auto& action) {
-      if (step != n || !condition) return;
-      action();
-      ++step;
-    };
-    when(0, op.mode() == Mode::kWalk, [&] { op.want(VelocityCommand{0.5, 0.0, 0.0}); });
-    when(1, op.time_s() > 0.5, [&] { op.want(ModeRequest::kStand); });
-    when(2, op.mode() == Mode::kStand, [&] {
+    steps.when(0, op.mode() == Mode::kWalk, [&] { op.want(VelocityCommand{0.5, 0.0, 0.0}); });
+    steps.when(1, op.time_s() > 0.5, [&] { op.want(ModeRequest::kStand); });
+    steps.when(2, op.mode() == Mode::kStand, [&] {
       stood = true;
       op.want(ModeRequest::kWalk);
     });
-    when(3, op.mode() == Mode::kWalk, [&] {
+    steps.when(3, op.mode() == Mode::kWalk, [&] {
       walked_again = true;
       op.end();
     });
@@ -109,20 +119,15 @@ TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
 
 TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedAlsoIfItWasReset) {
   LiveOperator op;
-  int step = 0;
+  Steps steps;
   const RunResult result = run_live(op, [&](PolicyThread&) {
-    const auto when = [&](int n, bool condition, const auto& action) {
-      if (step != n || !condition) return;
-      action();
-      ++step;
-    };
-    when(0, op.time_s() > 0.2, [&] { op.want(VelocityCommand{kNan, 0.0, 0.0}); });
-    when(1, op.mode() == Mode::kFault, [&] { op.want(VelocityCommand{}); });
-    when(2, op.time_s() > 2.6, [&] { op.want(ModeRequest::kResetFault); });
-    when(3, op.mode() == Mode::kPassive, [&] { op.end(); });
+    steps.when(0, op.time_s() > 0.2, [&] { op.want(VelocityCommand{kNan, 0.0, 0.0}); });
+    steps.when(1, op.mode() == Mode::kFault, [&] { op.want(VelocityCommand{}); });
+    steps.when(2, op.time_s() > 2.6, [&] { op.want(ModeRequest::kResetFault); });
+    steps.when(3, op.mode() == Mode::kPassive, [&] { op.end(); });
     if (op.time_s() > 5.0) op.end();
   });
-  EXPECT_EQ(step, 4);
+  EXPECT_EQ(steps.done(), 4);
   EXPECT_FALSE(result.survived);
   EXPECT_EQ(result.fall_reason, "non_finite_command");
   EXPECT_GT(result.walked_s, 0.1);

@@ -4,6 +4,7 @@
 
 #include "rt/core/command_shaping.h"
 #include "sim/actuator.h"
+#include "sim/ground_truth.h"
 #include "sim/random.h"
 #include "tools/train/task/task.h"
 
@@ -176,8 +177,7 @@ void Task::hard_reset(int env, Env& e) {
   x.position = {draw(5.0), draw(5.0), 0.0f};
   new_ground(env, e, x.position.x);
   const sim::Ground<float>& ground = e.terrain.ground[0];
-  float height, slope_x, slope_y;
-  sim::rough_surface(ground, x.position.x, x.position.y, height, slope_x, slope_y);
+  const float height = sim::surface_height(e.terrain, x.position.x, x.position.y);
   x.position.z =
       static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
   const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
