@@ -11,7 +11,7 @@
 #include <new>
 
 #include "policy/activations.h"
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {

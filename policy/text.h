@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner {
 

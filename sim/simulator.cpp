@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "sim/ground_truth.h"
-#include "sim/random.h"
+#include "sim/lanes/random.h"
+#include "sim/step/ground_truth.h"
 
 namespace sandrunner::sim {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "rt/core/robot_io.h"
 #include "rt/core/state_hash.h"
-#include "sim/actuator.h"
-#include "sim/robot_step.h"
-#include "sim/terrain.h"
+#include "sim/ground/terrain_description.h"
+#include "sim/step/actuator.h"
+#include "sim/step/robot_step.h"
 
 namespace sandrunner::sim {
 

@@ -8,8 +8,8 @@
 #include "rt/core/log_histogram.h"
 #include "rt/core/spsc_ring.h"
 #include "rt/core/triple_buffer.h"
-#include "rt/operator_input.h"
-#include "rt/tick_record.h"
+#include "rt/loop/operator_input.h"
+#include "rt/loop/tick_record.h"
 
 namespace sandrunner {
 

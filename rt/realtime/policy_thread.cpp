@@ -2,7 +2,7 @@
 #include "rt/realtime/policy_thread.h"
 
 #include "rt/core/slot_grid.h"
-#include "rt/lockstep.h"
+#include "rt/loop/lockstep.h"
 #include "rt/realtime/clock.h"
 
 namespace sandrunner {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/core/config_tree.h"
+#include "rt/base/config_tree.h"
 
 namespace sandrunner {
 

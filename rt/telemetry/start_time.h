@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
-#include "rt/tick_record.h"
+#include "rt/loop/tick_record.h"
 
 namespace sandrunner {
 

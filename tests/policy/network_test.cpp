@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "policy/policy_file.h"
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "tests/policy/allocation_counter.h"
 #include "tests/policy/random_policy.h"
 

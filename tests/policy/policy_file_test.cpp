@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "policy/safetensors.h"
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "tests/policy/random_policy.h"
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <limits>
 
-#include "rt/core/errors.h"
-#include "tests/policy/temporary_folder.h"
+#include "rt/base/errors.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {

@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 

@@ -10,9 +10,9 @@
 
 #include "core/printing.h"
 #include "policy/policy_file.h"
-#include "rt/core/errors.h"
-#include "rt/process_config.h"
-#include "rt/run.h"
+#include "rt/base/errors.h"
+#include "rt/run/process_config.h"
+#include "rt/run/run.h"
 #include "tests/policy/random_policy.h"
 
 namespace sandrunner {

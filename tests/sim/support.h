@@ -8,11 +8,11 @@
 #include <cstdint>
 
 #include "rt/core/safety_gate.h"
-#include "sim/ground.h"
-#include "sim/random.h"
-#include "sim/robot_model.h"
-#include "sim/robot_step.h"
-#include "sim/terrain.h"
+#include "sim/ground/ground.h"
+#include "sim/ground/terrain_description.h"
+#include "sim/lanes/random.h"
+#include "sim/robot/robot_model.h"
+#include "sim/step/robot_step.h"
 
 namespace sandrunner::sim {
 

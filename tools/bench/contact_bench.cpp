@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "rt/core/floating_point.h"
-#include "sim/dynamics.h"
-#include "sim/random.h"
+#include "sim/lanes/random.h"
+#include "sim/robot/dynamics.h"
 #include "tools/bench/clock.h"
 
 namespace sandrunner::bench {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cone model of sim/granular.h against dynamic resistive force theory on the same drops (paper,
-// section S13 and fig. S12: cylinders dropped on ground with random parameters).
+// The cone model of sim/ground/granular.h against dynamic resistive force theory on the same drops
+// (paper, section S13 and fig. S12: cylinders dropped on ground with random parameters).
 #pragma once
 
 #include <cstdint>
 
-#include "sim/granular.h"
+#include "sim/ground/granular.h"
 #include "tools/bench/drft.h"
 #include "tools/bench/report.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Dynamic resistive force theory (DRFT), the peer against which the cone model of sim/granular.h is
-// timed: the force of granular ground on a rigid body as the sum over its surface elements that are
-// below the surface and lead,
+// Dynamic resistive force theory (DRFT), the peer against which the cone model of
+// sim/ground/granular.h is timed: the force of granular ground on a rigid body as the sum over its
+// surface elements that are below the surface and lead,
 //   dF = (zeta |z| alpha - lambda rho v_n^2 n) dA,     leading: v_n = v . n > 0,
 // z: depth of the element below the undisturbed surface, n: its outward normal, v: its velocity.
 // The first term is resistive force theory, the second the momentum of the grains put in motion
@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/vec.h"
+#include "sim/lanes/vec.h"
 
 namespace sandrunner::bench {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "rt/core/errors.h"
-#include "rt/core/program.h"
+#include "rt/base/errors.h"
+#include "rt/base/program.h"
 #include "tools/bench/batch_bench.h"
 #include "tools/bench/contact_bench.h"
 #include "tools/bench/policy_bench.h"

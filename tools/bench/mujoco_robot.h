@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/robot_model.h"
+#include "sim/robot/robot_model.h"
 
 namespace sandrunner::bench {
 

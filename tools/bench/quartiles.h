@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "rt/quantile.h"
+#include "rt/base/quantile.h"
 
 namespace sandrunner::bench {
 

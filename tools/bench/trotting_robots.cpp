@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/random.h"
+#include "sim/lanes/random.h"
 
 namespace sandrunner::bench {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <vector>
 
-#include "sim/actuator.h"
-#include "sim/batch.h"
-#include "sim/robot_model.h"
-#include "sim/terrain.h"
+#include "sim/batch/batch.h"
+#include "sim/ground/terrain_description.h"
+#include "sim/robot/robot_model.h"
+#include "sim/step/actuator.h"
 
 namespace sandrunner::bench {
 

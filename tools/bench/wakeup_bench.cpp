@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "policy/policy_file.h"
-#include "rt/core/errors.h"
-#include "rt/run.h"
-#include "sim/terrain.h"
+#include "rt/base/errors.h"
+#include "rt/run/run.h"
+#include "sim/ground/terrain_description.h"
 #include "tools/bench/realtime_bench.h"
 
 namespace sandrunner::bench {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "rt/core/errors.h"
-#include "rt/core/standard_error.h"
+#include "rt/base/errors.h"
+#include "rt/base/standard_error.h"
 #include "tools/ctl/dds_io.h"
 #include "tools/ctl/errors.h"
 #include "tools/ctl/topics.h"

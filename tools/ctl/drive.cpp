@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "tools/ctl/command_pacer.h"
 #include "tools/ctl/commands.h"
 #include "tools/ctl/dds_io.h"

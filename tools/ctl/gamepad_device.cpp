@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner::ctl {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "rt/core/errors.h"
-#include "rt/core/program.h"
-#include "rt/core/standard_error.h"
+#include "rt/base/errors.h"
+#include "rt/base/program.h"
+#include "rt/base/standard_error.h"
 #include "tools/ctl/commands.h"
 #include "tools/ctl/errors.h"
 

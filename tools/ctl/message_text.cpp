@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "rt/core/mode_machine.h"
 #include "rt/telemetry/dds/diagnostics.h"
 

@@ -7,7 +7,7 @@
 
 #include <cerrno>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner::ctl {
 namespace {

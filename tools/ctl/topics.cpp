@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "rt/telemetry/dds/tick_batches.h"
 #include "tools/ctl/message_text.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "rt/core/command_shaping.h"
-#include "sim/random.h"
+#include "sim/lanes/random.h"
 #include "tools/evaluate/study.h"
 
 namespace sandrunner::evaluate {

@@ -7,10 +7,10 @@
 #include <cstdio>
 
 #include "policy/policy_file.h"
-#include "rt/core/errors.h"
-#include "rt/core/program.h"
-#include "rt/core/standard_error.h"
-#include "rt/output_files.h"
+#include "rt/base/errors.h"
+#include "rt/base/output_files.h"
+#include "rt/base/program.h"
+#include "rt/base/standard_error.h"
 #include "tools/evaluate/files.h"
 #include "tools/evaluate/options.h"
 #include "tools/evaluate/pictures.h"

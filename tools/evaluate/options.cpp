@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <thread>
 
-#include "rt/core/errors.h"
-#include "rt/core/program.h"
+#include "rt/base/errors.h"
+#include "rt/base/program.h"
 
 namespace sandrunner::evaluate {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "rt/plot.h"
+#include "rt/plot/plot.h"
 
 namespace sandrunner::evaluate {
 namespace {

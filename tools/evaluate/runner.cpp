@@ -12,10 +12,10 @@
 #include "estimator/observation.h"
 #include "rt/core/command_shaping.h"
 #include "rt/core/floating_point.h"
-#include "sim/actuator.h"
-#include "sim/divergence.h"
-#include "sim/ground_truth.h"
-#include "sim/random.h"
+#include "sim/lanes/random.h"
+#include "sim/step/actuator.h"
+#include "sim/step/divergence.h"
+#include "sim/step/ground_truth.h"
 
 namespace sandrunner::evaluate {
 namespace {

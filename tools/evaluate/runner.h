@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "policy/policy.h"
-#include "sim/robot_model.h"
+#include "sim/robot/robot_model.h"
 #include "tools/evaluate/trial.h"
 #include "tools/evaluate/trial_figures.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/terrain.h"
+#include "sim/ground/terrain_description.h"
 #include "tools/evaluate/trial.h"
 
 namespace sandrunner::evaluate {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "rt/core/messages.h"
-#include "sim/robot_step.h"
+#include "sim/step/robot_step.h"
 
 namespace sandrunner::evaluate {
 

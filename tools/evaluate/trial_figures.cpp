@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "rt/quantile.h"
+#include "rt/base/quantile.h"
 
 namespace sandrunner::evaluate {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one run of one robot comes to. Definitions as in rt/run_statistics.h where both have a
-// figure, but for the cost of transport: of |v_xy| here, of |vx| there. "Steady" is the second half
-// of the run.
+// What one run of one robot comes to. Definitions as in rt/report/run_statistics.h where both have
+// a figure, but for the cost of transport: of |v_xy| here, of |vx| there. "Steady" is the second
+// half of the run.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "rt/core/messages.h"
-#include "sim/batch.h"
+#include "sim/batch/batch.h"
 #include "tools/evaluate/trial.h"
 
 namespace sandrunner::evaluate {

@@ -11,8 +11,8 @@
 
 #include "policy/policy_file.h"
 #include "policy/text.h"
-#include "rt/core/errors.h"
-#include "rt/core/program.h"
+#include "rt/base/errors.h"
+#include "rt/base/program.h"
 
 namespace sandrunner {
 namespace {

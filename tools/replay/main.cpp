@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "policy/policy_file.h"
-#include "rt/build.h"
-#include "rt/core/errors.h"
+#include "rt/base/build.h"
+#include "rt/base/errors.h"
+#include "rt/base/output_files.h"
+#include "rt/base/program.h"
+#include "rt/base/standard_error.h"
 #include "rt/core/floating_point.h"
-#include "rt/core/program.h"
-#include "rt/core/standard_error.h"
-#include "rt/output_files.h"
-#include "rt/replay.h"
-#include "rt/run_csv.h"
-#include "rt/run_observer.h"
-#include "rt/run_pictures.h"
+#include "rt/loop/replay.h"
+#include "rt/report/run_csv.h"
+#include "rt/report/run_observer.h"
+#include "rt/report/run_pictures.h"
 #include "rt/telemetry/recording/recording_file.h"
 
 namespace {

@@ -15,11 +15,11 @@
 #include <thread>
 
 #include "policy/policy_file.h"
-#include "rt/build.h"
-#include "rt/core/errors.h"
-#include "rt/core/program.h"
-#include "rt/core/standard_error.h"
-#include "rt/output_files.h"
+#include "rt/base/build.h"
+#include "rt/base/errors.h"
+#include "rt/base/output_files.h"
+#include "rt/base/program.h"
+#include "rt/base/standard_error.h"
 #include "tools/train/embedded.h"
 #include "tools/train/progress.h"
 #include "tools/train/task/task.h"

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "rt/output_files.h"
-#include "rt/plot.h"
+#include "rt/base/output_files.h"
+#include "rt/plot/plot.h"
 
 namespace sandrunner::train {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "rt/core/safety_gate.h"
 
 namespace sandrunner {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "rt/core/config_tree.h"
+#include "rt/base/config_tree.h"
 
 namespace sandrunner {
 

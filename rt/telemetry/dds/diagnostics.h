@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "rt/core/log_histogram.h"
+#include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/command_inbox.h"
 #include "rt/telemetry/dds/participant.h"
-#include "rt/tick_record.h"
 
 namespace sandrunner {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "rt/core/errors.h"
-#include "rt/core/standard_error.h"
+#include "rt/base/errors.h"
+#include "rt/base/standard_error.h"
 
 namespace sandrunner {
 namespace {

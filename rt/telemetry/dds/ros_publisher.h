@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/participant.h"
 #include "rt/telemetry/odometry.h"
-#include "rt/tick_record.h"
 
 namespace sandrunner {
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
+#include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/command_inbox.h"
 #include "rt/telemetry/dds/diagnostics.h"
 #include "rt/telemetry/dds/ros_publisher.h"
 #include "rt/telemetry/dds/tick_batches.h"
 #include "rt/telemetry/odometry.h"
-#include "rt/tick_record.h"
 
 namespace sandrunner {
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <utility>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {

@@ -15,7 +15,7 @@
 #include <new>
 #include <utility>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {

@@ -12,7 +12,7 @@
 #include <span>
 #include <utility>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "rt/core/floating_point.h"
 
 namespace sandrunner {

@@ -12,7 +12,7 @@
 
 #include "policy/policy.h"
 #include "rt/core/controller.h"
-#include "rt/replay.h"
+#include "rt/loop/replay.h"
 #include "rt/telemetry/recording/recording_writer.h"
 #include "rt/telemetry/recording/tick_queue.h"
 

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
+#include "rt/loop/tick_fields.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
 #include "rt/telemetry/recording/cdr.h"
-#include "rt/tick_fields.h"
 
 namespace sandrunner {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstddef>
 
 #include "rt/core/mode_machine.h"
+#include "rt/loop/tick_fields.h"
 #include "rt/telemetry/recording/ros_messages.h"
-#include "rt/tick_fields.h"
 
 namespace sandrunner {
 namespace {

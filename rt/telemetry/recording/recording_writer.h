@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
+#include "rt/loop/tick_record.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
 #include "rt/telemetry/odometry.h"
-#include "rt/tick_record.h"
 
 namespace sandrunner {
 
@@ -23,7 +23,7 @@ struct RecordingInfo {
   /// Where the recording begins: 0 at the start of the run. Else it replays from `state`, and not
   /// at all if that is empty.
   std::uint64_t first_tick = 0;
-  std::string state;  ///< before `first_tick`: replay_state_bytes() (rt/replay.h)
+  std::string state;  ///< before `first_tick`: replay_state_bytes() (rt/loop/replay.h)
 };
 
 /// Mode that the controller of the run started in.

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
+#include "rt/loop/tick_record.h"
 #include "rt/telemetry/odometry.h"
 #include "rt/telemetry/recording/cdr.h"
-#include "rt/tick_record.h"
 
 namespace sandrunner {
 

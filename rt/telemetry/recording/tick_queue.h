@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "rt/tick_record.h"
+#include "rt/loop/tick_record.h"
 
 namespace sandrunner {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "rt/core/triple_buffer.h"
-#include "rt/operator_input.h"
+#include "rt/loop/operator_input.h"
 
 namespace sandrunner {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "mcap_sample.h"
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
 
 namespace sandrunner {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mcap_bytes.h"
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
 
 namespace sandrunner {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {

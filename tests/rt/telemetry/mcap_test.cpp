@@ -12,7 +12,7 @@
 #include "mcap_content.h"
 #include "mcap_sample.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {

@@ -15,7 +15,7 @@
 #include "mcap_bytes.h"
 #include "mcap_content.h"
 #include "mcap_sample.h"
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {

@@ -2,7 +2,7 @@
 // A robot's trajectory in the batch has the same bits at every width, in any lane, beside any
 // neighbours and from any number of threads; and it is that of the simulator in double, to the
 // precision of float.
-#include "sim/batch.h"
+#include "sim/batch/batch.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 
 #include "rt/core/floating_point.h"
 #include "rt/core/state_hash.h"
-#include "sim/actuator.h"
+#include "sim/step/actuator.h"
 #include "tests/sim/support.h"
 
 namespace sandrunner::sim {

@@ -8,7 +8,7 @@
 
 #include "fake_robot.h"
 #include "program.h"
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner::ctl {
 namespace {

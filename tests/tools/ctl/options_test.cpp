@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner::ctl {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/policy/random_policy.h"
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "rt/core/floating_point.h"
-#include "rt/run.h"
+#include "rt/run/run.h"
 #include "support.h"
 
 namespace sandrunner::evaluate {

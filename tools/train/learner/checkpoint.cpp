@@ -15,7 +15,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner::learner {
 namespace {

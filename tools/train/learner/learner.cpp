@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "tools/train/learner/gae.h"
 #include "tools/train/learner/random.h"
 

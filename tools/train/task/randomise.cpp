@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "rt/core/command_shaping.h"
-#include "sim/actuator.h"
-#include "sim/ground_truth.h"
-#include "sim/random.h"
+#include "sim/lanes/random.h"
+#include "sim/step/actuator.h"
+#include "sim/step/ground_truth.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::train {

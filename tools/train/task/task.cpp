@@ -6,9 +6,9 @@
 
 #include "estimator/observation.h"
 #include "rt/core/command_shaping.h"
-#include "sim/divergence.h"
-#include "sim/ground_truth.h"
-#include "sim/terrain.h"
+#include "sim/ground/terrain_description.h"
+#include "sim/step/divergence.h"
+#include "sim/step/ground_truth.h"
 
 namespace sandrunner::train {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/batch.h"
+#include "sim/batch/batch.h"
 #include "tools/train/learner/learner.h"
 #include "tools/train/task/normalise.h"
 #include "tools/train/task/reward.h"

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "rt/core/errors.h"
-#include "sim/batch.h"
+#include "rt/base/errors.h"
+#include "sim/batch/batch.h"
 
 namespace sandrunner::train {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "rt/core/config_tree.h"
+#include "rt/base/config_tree.h"
 #include "tools/train/learner/learner.h"
 
 namespace sandrunner::train {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "rt/telemetry/dds/participant.h"
 
 namespace sandrunner {

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "rt/core/safety_gate.h"
+#include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/telemetry.h"
-#include "rt/tick_record.h"
 
 namespace sandrunner {
 

@@ -15,10 +15,10 @@
 
 #include "rt/realtime/setup.h"
 #include "rt/telemetry/recording/recording_file.h"
-#include "tests/policy/temporary_folder.h"
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/dds/child.h"
 #include "tests/rt/telemetry/dds/support.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {

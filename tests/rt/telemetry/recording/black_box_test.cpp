@@ -9,9 +9,9 @@
 #include <set>
 #include <thread>
 
-#include "rt/build.h"
+#include "rt/base/build.h"
 #include "rt/core/floating_point.h"
-#include "rt/lockstep.h"
+#include "rt/loop/lockstep.h"
 #include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/recording/recording_program.h"

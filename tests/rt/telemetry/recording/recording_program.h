@@ -11,10 +11,10 @@
 #include <memory>
 #include <string>
 
+#include "rt/loop/tick_fields.h"
 #include "rt/telemetry/recording/recorder.h"
 #include "rt/telemetry/recording/recording_file.h"
-#include "rt/tick_fields.h"
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 

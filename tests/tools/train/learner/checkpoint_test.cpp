@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner::learner {
 namespace {

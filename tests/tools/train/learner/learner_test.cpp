@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/core/errors.h"
+#include "rt/base/errors.h"
 #include "toy_task.h"
 
 namespace sandrunner::learner {

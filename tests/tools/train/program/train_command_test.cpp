@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "policy/policy_file.h"
-#include "tests/policy/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rt/core/config_tree.h"
+#include "rt/base/config_tree.h"
 #include "tools/train/embedded.h"
 
 namespace sandrunner::train {

@@ -6,8 +6,8 @@
 
 #include "estimator/observation.h"
 #include "rt/core/floating_point.h"
-#include "sim/batch.h"
-#include "sim/terrain.h"
+#include "sim/batch/batch.h"
+#include "sim/ground/terrain_description.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::train {

@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/base/config_tree.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+
+/// One source of values. Layers are never merged: copies of toml++ nodes lose their line numbers.
+struct ConfigTree::Layer {
+  std::shared_ptr<const toml::table> table;
+  std::string origin;
+  bool has_lines = true;
+
+  std::string where(const toml::node& node) const {
+    return has_lines ? fmt::format("{}:{}", origin, node.source().begin.line) : origin;
+  }
+};
+
+/// What was asked for, by path: the value that counted, as TOML.
+struct ConfigTree::Record {
+  struct Tables {
+    const toml::array* source = nullptr;
+    std::vector<std::shared_ptr<Record>> elements;
+  };
+  std::map<std::string, std::string> values;  ///< empty text: none
+  std::map<std::string, Tables> tables;
+
+  std::map<std::string, std::string> entries() const {
+    std::map<std::string, std::string> all;
+    for (const auto& [path, value] : values) {
+      if (!value.empty()) all[path] = value;
+    }
+    for (const auto& [path, array] : tables) {
+      std::string text = "[";
+      for (const auto& element : array.elements) {
+        std::string pairs;
+        for (const auto& [key, value] : element->entries()) {
+          pairs += (pairs.empty() ? "" : ", ") + key + " = " + value;
+        }
+        text += "\n  {" + pairs + "},";
+      }
+      all[path] = text + (array.elements.empty() ? "]" : "\n]");
+    }
+    return all;
+  }
+};
+
+struct ConfigTree::Found {
+  const Layer* layer = nullptr;
+  const toml::node* node = nullptr;
+};
+
+namespace {
+
+constexpr std::string_view kBareWordCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./~+:@";
+/// Letters, digits, _, - and the dot.
+constexpr std::string_view kPathCharacters = kBareWordCharacters.substr(0, 26 + 26 + 10 + 3);
+
+std::string toml_text(const std::string& value) {
+  std::ostringstream out;
+  out << toml::toml_formatter{toml::value<std::string>{value},
+                              toml::format_flags::allow_unicode_strings};
+  return out.str();
+}
+
+std::string toml_text(double value) {
+  std::string text = fmt::format("{}", value);  // shortest digits that read back to the same bits
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string describe(const toml::node& node) {
+  constexpr std::size_t kLongest = 60;
+  if (const auto* value = node.as_string()) {
+    const std::string quoted = toml_text(value->get());
+    return quoted.size() <= kLongest ? quoted : quoted.substr(0, kLongest) + "...";
+  }
+  if (const auto* value = node.as_floating_point()) return toml_text(value->get());
+  if (const auto* value = node.as_integer()) return std::to_string(value->get());
+  if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
+  if (const auto* value = node.as_array()) return fmt::format("an array of {}", value->size());
+  if (node.is_table()) return "a table";
+  return "a date or time";
+}
+
+template <typename T>
+std::string describe_range(const std::string& noun, T min, T max) {
+  const bool has_min = min > std::numeric_limits<T>::lowest();
+  const bool has_max = max < std::numeric_limits<T>::max();
+  if (has_min && has_max) return fmt::format("{} from {} to {}", noun, min, max);
+  if (has_min) return fmt::format("{} of at least {}", noun, min);
+  if (has_max) return fmt::format("{} of at most {}", noun, max);
+  return noun;
+}
+
+/// A number within the range, or nothing.
+std::optional<double> number_in(const toml::node& node, double min, double max) {
+  const std::optional<double> value = node.value<double>();
+  if (!value || !(node.is_floating_point() || node.is_integer())) return std::nullopt;
+  if (!std::isfinite(*value) || *value < min || *value > max) return std::nullopt;
+  return value;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, substituted}));
+    }
+  }
+  return row.back();
+}
+
+std::string_view last_part(std::string_view path) {
+  return path.substr(path.rfind('.') + 1);  // npos + 1 is 0
+}
+
+/// The known key that `unknown` was probably meant to be: one that is spelt nearly the same, or the
+/// same key in another table. Empty if there is none.
+std::string likely_meant(const std::string& unknown, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = 3 + unknown.size() / 8;
+  for (const std::string& candidate : known) {
+    const std::string_view key = last_part(candidate);
+    const std::size_t distance = key == last_part(unknown) ? 1 : edit_distance(unknown, candidate);
+    // A distance as long as the key says nothing: all short keys are near each other.
+    if (distance < std::min(best_distance, key.size())) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+/// A key as it is written in a dotted path.
+std::string key_text(std::string_view key) {
+  const bool bare = key.find_first_not_of(kPathCharacters) == std::string_view::npos &&
+                    key.find('.') == std::string_view::npos && !key.empty();
+  return bare ? std::string(key) : toml_text(std::string(key));
+}
+
+using Key = std::pair<std::string, const toml::node*>;
+
+/// All values (and empty tables) of a table with their dotted paths; does not look into what
+/// `is_known(path)`.
+template <typename IsKnown>
+void collect_unknown(const toml::table& table, const std::string& prefix, const IsKnown& is_known,
+                     std::vector<Key>& unknown) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix + key_text(key.str());
+    if (is_known(path)) continue;
+    const toml::table* child = node.as_table();
+    if (child != nullptr && !child->empty()) {
+      collect_unknown(*child, path + ".", is_known, unknown);
+    } else {
+      unknown.emplace_back(path, &node);
+    }
+  }
+}
+
+}  // namespace
+
+ConfigTree::ConfigTree() : record_(std::make_shared<Record>()) {}
+ConfigTree::~ConfigTree() = default;
+ConfigTree::ConfigTree(ConfigTree&&) noexcept = default;
+ConfigTree& ConfigTree::operator=(ConfigTree&&) noexcept = default;
+
+void ConfigTree::add_layer(std::string_view toml, const std::string& origin, bool has_lines) {
+  try {
+    layers_.push_back(
+        {std::make_shared<const toml::table>(toml::parse(toml, origin)), origin, has_lines});
+  } catch (const toml::parse_error& error) {
+    const std::string line = has_lines ? fmt::format(":{}", error.source().begin.line) : "";
+    throw InputError(
+        one_line(fmt::format("{}{}: not valid TOML: {}", origin, line, error.description())));
+  }
+}
+
+void ConfigTree::add_text(std::string_view toml, const std::string& origin) {
+  add_layer(toml, origin, true);
+}
+
+void ConfigTree::add_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string content;
+  std::array<char, 4096> block{};
+  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
+    content.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  // A directory can be opened but not read.
+  if (!file.is_open() || file.bad()) {
+    throw InputError(one_line(
+        fmt::format("{}: cannot be read ({}), expected a TOML file", path, std::strerror(errno))));
+  }
+  add_layer(content, path, true);
+}
+
+void ConfigTree::set(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  const std::string path = assignment.substr(0, equals);
+  const std::string origin = "--set " + path;
+  if (equals == std::string::npos || path.find_first_not_of(kPathCharacters) != std::string::npos) {
+    throw InputError(one_line("--set " + assignment + ": expected --set path.to.key=value"));
+  }
+  const std::string value = assignment.substr(equals + 1);
+  const bool bare_word =
+      !value.empty() && value.find_first_not_of(kBareWordCharacters) == std::string::npos;
+  // A line break would let further keys in.
+  const bool one_value = value.find_first_of("\r\n") == std::string::npos;
+  try {
+    if (one_value) return add_layer(path + " = " + value, origin, false);
+  } catch (const InputError&) {
+    // perhaps a bare word
+  }
+  if (!bare_word) {
+    throw InputError(one_line(origin + ": found '" + value +
+                              "', expected a TOML value (strings in quotes unless one word)"));
+  }
+  set_text(path, value, origin);
+}
+
+void ConfigTree::set_text(const std::string& path, const std::string& value,
+                          const std::string& option) {
+  std::string quoted;
+  for (const char c : value) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += {'\\', c};
+    } else if (code < 0x20 || code == 0x7f) {
+      constexpr const char* kDigits = "0123456789abcdef";
+      quoted += {'\\', 'u', '0', '0', kDigits[code >> 4], kDigits[code & 15]};
+    } else {
+      quoted += c;
+    }
+  }
+  add_layer(path + " = \"" + quoted + "\"", option, false);
+}
+
+ConfigTree::Found ConfigTree::find(const std::string& path) const {
+  for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
+    const toml::node* node = layer->table.get();
+    for (std::size_t begin = 0; node != nullptr && begin <= path.size();) {
+      const std::size_t end = std::min(path.find('.', begin), path.size());
+      const toml::table* table = node->as_table();
+      node = table == nullptr ? nullptr
+                              : table->get(std::string_view(path).substr(begin, end - begin));
+      begin = end + 1;
+    }
+    if (node != nullptr) return {&*layer, node};
+  }
+  return {};
+}
+
+std::string ConfigTree::full_path(const std::string& path) const { return prefix_ + path; }
+
+void ConfigTree::fail(const Found& found, const std::string& path,
+                      const std::string& expected) const {
+  throw InputError(
+      one_line(fmt::format("{}: {}: found {}, expected {}", found.layer->where(*found.node),
+                           full_path(path), describe(*found.node), expected)));
+}
+
+double ConfigTree::number(const std::string& path, double fallback, double min, double max) {
+  double result = fallback;
+  if (const Found found = find(path); found.node != nullptr) {
+    const std::optional<double> value = number_in(*found.node, min, max);
+    if (!value) fail(found, path, describe_range("a finite number", min, max));
+    result = *value;
+  }
+  record_->values[path] = std::isfinite(result) ? toml_text(result) : std::string();
+  return result;
+}
+
+std::int64_t ConfigTree::integer(const std::string& path, std::int64_t fallback, std::int64_t min,
+                                 std::int64_t max) {
+  std::int64_t result = fallback;
+  if (const Found found = find(path); found.node != nullptr) {
+    const auto* value = found.node->as_integer();
+    if (value == nullptr || value->get() < min || value->get() > max) {
+      fail(found, path, describe_range("a whole number", min, max));
+    }
+    result = value->get();
+  }
+  record_->values[path] = std::to_string(result);
+  return result;
+}
+
+bool ConfigTree::flag(const std::string& path, bool fallback) {
+  bool result = fallback;
+  if (const Found found = find(path); found.node != nullptr) {
+    const auto* value = found.node->as_boolean();
+    if (value == nullptr) fail(found, path, "true or false");
+    result = value->get();
+  }
+  record_->values[path] = result ? "true" : "false";
+  return result;
+}
+
+std::string ConfigTree::text(const std::string& path, const std::string& fallback) {
+  std::string result = fallback;
+  if (const Found found = find(path); found.node != nullptr) {
+    const auto* value = found.node->as_string();
+    if (value == nullptr) fail(found, path, "a string");
+    result = value->get();
+  }
+  record_->values[path] = toml_text(result);
+  return result;
+}
+
+std::string ConfigTree::choice(const std::string& path, const std::string& fallback,
+                               const std::vector<std::string>& allowed) {
+  const Found found = find(path);
+  if (found.node != nullptr) {
+    const std::optional<std::string> value = found.node->value<std::string>();
+    if (!value || std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
+      fail(found, path, fmt::format("one of \"{}\"", fmt::join(allowed, "\", \"")));
+    }
+  }
+  return text(path, fallback);
+}
+
+std::vector<double> ConfigTree::numbers(const std::string& path,
+                                        const std::vector<double>& fallback,
+                                        std::size_t expected_size, double min, double max) {
+  std::vector<double> result = fallback;
+  if (const Found found = find(path); found.node != nullptr) {
+    const std::string size =
+        expected_size == kAnySize ? std::string() : fmt::format("{} ", expected_size);
+    const std::string expected =
+        describe_range(fmt::format("an array of {}finite numbers", size), min, max);
+    const toml::array* array = found.node->as_array();
+    if (array == nullptr || (expected_size != kAnySize && array->size() != expected_size)) {
+      fail(found, path, expected);
+    }
+    result.clear();
+    for (const toml::node& element : *array) {
+      const std::optional<double> value = number_in(element, min, max);
+      if (!value) {
+        fail({found.layer, &element}, fmt::format("{}[{}]", path, result.size()), expected);
+      }
+      result.push_back(*value);
+    }
+  }
+  std::string text;
+  bool finite = true;
+  for (const double value : result) {
+    text += (text.empty() ? "" : ", ") + toml_text(value);
+    finite = finite && std::isfinite(value);
+  }
+  record_->values[path] = finite ? "[" + text + "]" : std::string();
+  return result;
+}
+
+std::vector<ConfigTree> ConfigTree::tables(const std::string& path) {
+  const Found found = find(path);
+  const toml::array* array = nullptr;
+  if (found.node != nullptr) {
+    array = found.node->as_array();
+    if (array == nullptr) fail(found, path, "an array of tables");
+    for (const toml::node& element : *array) {
+      if (!element.is_table()) fail({found.layer, &element}, path, "an array of tables");
+    }
+  }
+  Record::Tables& record = record_->tables[path];
+  const std::size_t size = array == nullptr ? 0 : array->size();
+  if (record.source != array || record.elements.size() != size) {
+    record = {array, {}};
+    for (std::size_t i = 0; i < size; ++i) record.elements.push_back(std::make_shared<Record>());
+  }
+  std::vector<ConfigTree> elements;
+  for (std::size_t i = 0; i < size; ++i) {
+    elements.push_back(element(found, path, i, record.elements[i]));
+  }
+  return elements;
+}
+
+ConfigTree ConfigTree::element(const Found& array, const std::string& path, std::size_t index,
+                               const std::shared_ptr<Record>& record) const {
+  ConfigTree element;
+  // Keeps the whole layer alive, points at the element.
+  const std::shared_ptr<const toml::table> table(array.layer->table,
+                                                 (*array.node->as_array())[index].as_table());
+  element.layers_.push_back({table, array.layer->origin, array.layer->has_lines});
+  element.prefix_ = fmt::format("{}[{}].", full_path(path), index);
+  element.record_ = record;
+  return element;
+}
+
+bool ConfigTree::has(const std::string& path) const { return find(path).node != nullptr; }
+
+void ConfigTree::reject_unknown() const {
+  std::vector<std::string> known;
+  for (const auto& [path, text] : record_->values) known.push_back(path);
+  for (const auto& [path, tables] : record_->tables) known.push_back(path);
+  const auto is_known = [&](const std::string& path) {
+    return record_->values.count(path) != 0 || record_->tables.count(path) != 0;
+  };
+  for (const Layer& layer : layers_) {
+    std::vector<Key> unknown;
+    collect_unknown(*layer.table, "", is_known, unknown);
+    std::sort(unknown.begin(), unknown.end(), [](const Key& a, const Key& b) {
+      return a.second->source().begin < b.second->source().begin;
+    });
+    for (const auto& [path, node] : unknown) {
+      const std::string inside = path + ".";
+      const bool is_table = std::any_of(known.begin(), known.end(), [&](const std::string& key) {
+        return key.compare(0, inside.size(), inside) == 0;
+      });
+      if (is_table && node->is_table()) continue;  // an empty one
+      if (is_table) fail({&layer, node}, path, "a table");
+      const std::string meant = likely_meant(path, known);
+      throw InputError(
+          one_line(fmt::format("{}: unknown key '{}'{}", layer.where(*node), full_path(path),
+                               meant.empty() ? "" : ", did you mean '" + full_path(meant) + "'?")));
+    }
+  }
+  for (const auto& [path, tables] : record_->tables) {
+    const Found found = find(path);
+    if (found.node != tables.source) continue;  // a layer added since has replaced the array
+    for (std::size_t i = 0; i < tables.elements.size(); ++i) {
+      element(found, path, i, tables.elements[i]).reject_unknown();
+    }
+  }
+}
+
+std::string ConfigTree::effective() const {
+  std::string text;
+  for (const auto& [path, value] : record_->entries()) text += path + " = " + value + "\n";
+  return text;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/report/run_csv.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "rt/base/errors.h"
+#include "rt/core/mode_machine.h"
+
+namespace sandrunner {
+namespace {
+
+/// Calls `column(name, value)` for every column of a sample: names and values cannot part.
+template <typename Column>
+void for_each_column(const RunSample& s, const Column& column) {
+  const auto vector = [&](const std::string& name, const std::string& unit, const Vector3& v) {
+    for (std::size_t i = 0; i < 3; ++i) column(name + "_" + "xyz"[i] + unit, v[i]);
+  };
+  const auto joints = [&](const std::string& name, const JointArray<double>& values) {
+    for (std::size_t i = 0; i < kNumJoints; ++i) column(kJointNames[i] + name, values[i]);
+  };
+  const auto estimate = [&](const std::string& name, const StateEstimate& e, bool exists) {
+    const auto known = [&](double value) {
+      return exists ? value : std::numeric_limits<double>::quiet_NaN();
+    };
+    column(name + "_body_height_m", known(e.body_height_m));
+    for (std::size_t i = 0; i < 3; ++i) {
+      column(name + "_velocity_" + "xyz"[i] + "_mps", known(e.velocity_mps[i]));
+    }
+    for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
+      column(name + "_" + kLegNames[leg] + "_foot_height_m", known(e.foot_height_m[leg]));
+    }
+  };
+
+  column("command_vx_mps", s.command.vx_mps);
+  column("command_vy_mps", s.command.vy_mps);
+  column("command_wz_radps", s.command.wz_radps);
+  vector("base", "_m", s.base_position_m);
+  for (std::size_t i = 0; i < 4; ++i) {
+    column(std::string("orientation_") + "wxyz"[i], s.orientation_wxyz[i]);
+  }
+  column("vx_mps", s.vx_mps);
+  column("vy_mps", s.vy_mps);
+  column("yaw_rate_radps", s.yaw_rate_radps);
+  joints("_position_rad", s.joint_position_rad);
+  joints("_velocity_radps", s.joint_velocity_radps);
+  joints("_torque_nm", s.joint_torque_nm);
+  for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
+    const std::string name = kLegNames[leg];
+    vector(name + "_hip", "_m", s.hip_position_m[leg]);
+    vector(name + "_knee", "_m", s.knee_position_m[leg]);
+    vector(name + "_foot", "_m", s.foot_position_m[leg]);
+    column(name + "_penetration_m", s.penetration_m[leg]);
+    column(name + "_ground_height_m", s.ground_height_m[leg]);
+    column(name + "_contact", s.contact[leg] ? 1.0 : 0.0);
+  }
+  estimate("estimate", s.estimate, s.has_estimate);
+  estimate("truth", s.truth, true);
+}
+
+}  // namespace
+
+std::vector<std::string> csv_columns() {
+  std::vector<std::string> names = {"t_s", "mode"};
+  for_each_column(RunSample{}, [&](std::string name, double) { names.push_back(std::move(name)); });
+  return names;
+}
+
+void write_csv(const RunRecord& record, const std::string& path) {
+  const std::string part = path + ".part";
+  errno = 0;
+  std::ofstream file(part, std::ios::binary);
+  file << fmt::format("{}\n", fmt::join(csv_columns(), ","));
+  std::string row;
+  for (const RunSample& sample : record.samples) {
+    row.clear();
+    fmt::format_to(std::back_inserter(row), "{:.9g},{}", sample.t_s, mode_name(sample.mode));
+    for_each_column(sample, [&](const std::string&, double value) {
+      fmt::format_to(std::back_inserter(row), ",{:.9g}", value);
+    });
+    file << row << '\n';
+  }
+  file.close();
+  if (!file || std::rename(part.c_str(), path.c_str()) != 0) {
+    const std::string reason = std::strerror(errno);
+    std::remove(part.c_str());
+    throw InputError(
+        fmt::format("{}: cannot be written ({}), expected a path for a CSV", path, reason));
+  }
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "rt/loop/tick_record.h"
+#include "rt/report/run_record.h"
+#include "rt/report/run_statistics.h"
+#include "rt/run/process_config.h"
+
+namespace sandrunner {
+
+/// Turns the ticks of a run into figures, progress and, if asked for, a record. Runs in an ordinary
+/// thread; the order of the ticks matters, gaps do not.
+class RunObserver {
+ public:
+  /// `progress` (may be empty) is called every half second of the robot's time.
+  RunObserver(const ProcessConfig& config, const sim::Simulator& simulator,
+              const std::string& policy_name, bool keep_record,
+              std::function<void(const RunSample&)> progress);
+
+  void add(const TickRecord& tick);
+
+  RunFigures figures() const;
+  /// Time that the figures are of: in Walk under the command.
+  double walked_s() const noexcept { return statistics_.time_s(); }
+  /// Everything kept, with the footprints; the observer's own is gone afterwards.
+  RunRecord take_record();
+
+ private:
+  const sim::Simulator simulator_;  // for its model and terrain
+  const double motor_constant_;
+  const bool keep_record_;
+  const std::function<void(const RunSample&)> progress_;
+  RunStatistics statistics_;
+  RunRecord record_;
+  // An estimate comes some ticks after its input: what it is to be compared with, and where it
+  // goes.
+  std::uint64_t policy_sequence_ = 0;
+  std::uint64_t released_tick_ = 0;
+  bool released_ = false;
+  StateEstimate released_truth_;
+};
+
+}  // namespace sandrunner

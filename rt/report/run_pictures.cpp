@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/report/run_pictures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "rt/core/mode_machine.h"
+#include "rt/plot/plot.h"
+#include "rt/report/side_view.h"
+
+namespace sandrunner {
+namespace {
+
+using plot::Color;
+
+constexpr Color kBlue{0.12, 0.42, 0.75};
+constexpr Color kOrange{0.90, 0.45, 0.05};
+constexpr Color kTeal{0.05, 0.60, 0.50};
+constexpr Color kPurple{0.60, 0.30, 0.68};
+constexpr Color kGray{0.45, 0.48, 0.52};
+constexpr Color kBlack = plot::kInk;
+constexpr std::array<Color, kNumLegs> kLegColors = {kBlue, kOrange, kTeal, kPurple};
+
+constexpr int kViews = 10;
+constexpr int kViewsPerRow = 5;
+constexpr double kGap_px = 8.0;
+constexpr double kHead_px = 46.0;
+
+std::string title_of(const RunRecord& record) {
+  std::string title = "Sandrunner on " + record.terrain;
+  if (!record.policy.empty()) title += ", policy " + record.policy;
+  return title;
+}
+
+/// The samples to look at: from the first to the last in Walk; all of them if there is none.
+struct Walk {
+  std::size_t first = 0, last = 0;
+};
+
+Walk walk_of(const RunRecord& record) {
+  const std::vector<RunSample>& samples = record.samples;
+  const auto walks = [](const RunSample& sample) { return sample.mode == Mode::kWalk; };
+  const auto first = std::find_if(samples.begin(), samples.end(), walks);
+  if (first == samples.end()) return {0, samples.empty() ? 0 : samples.size() - 1};
+  const auto behind_last = std::find_if(samples.rbegin(), samples.rend(), walks).base();
+  return {static_cast<std::size_t>(first - samples.begin()),
+          static_cast<std::size_t>(behind_last - samples.begin()) - 1};
+}
+
+/// A series of `value(sample)`.
+template <typename Value>
+plot::Series series(const RunRecord& record, const std::string& name, const Color& color,
+                    const Value& value) {
+  plot::Series result{name, color, {}, false, false};
+  for (const RunSample& sample : record.samples) result.y.push_back(value(sample));
+  return result;
+}
+
+/// A series of a commanded quantity: dashed steps.
+template <typename Value>
+plot::Series command(const RunRecord& record, const std::string& name, const Color& color,
+                     const Value& value) {
+  plot::Series result = series(record, name, color, value);
+  result.step = true;
+  result.dashed = true;
+  return result;
+}
+
+template <typename Value>
+plot::Series estimate(const RunRecord& record, const Value& value) {
+  return series(record, "estimate", kOrange, [&](const RunSample& sample) {
+    return sample.has_estimate ? value(sample.estimate) : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
+plot::Panel torque_panel(const RunRecord& record, const std::string& title, std::size_t joint) {
+  plot::Panel panel{title, "N m", {}, 10.0};
+  for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
+    panel.series.push_back(series(record, kLegNames[leg], kLegColors[leg], [&](const RunSample& s) {
+      return s.joint_torque_nm[kJointsPerLeg * leg + joint];
+    }));
+  }
+  return panel;
+}
+
+std::vector<plot::Panel> panels(const RunRecord& record) {
+  const auto body_vx = [](const StateEstimate& e) { return e.velocity_mps[0]; };
+  const auto height = [](const StateEstimate& e) { return e.body_height_m; };
+  plot::Panel sinkage{"Sinkage of the feet", "mm", {}, 10.0};
+  for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
+    sinkage.series.push_back(
+        series(record, kLegNames[leg], kLegColors[leg],
+               [&](const RunSample& s) { return 1000.0 * std::max(0.0, s.penetration_m[leg]); }));
+  }
+  return {
+      {"Speed, heading frame",
+       "m/s",
+       {series(record, "vx", kBlue, [](const RunSample& s) { return s.vx_mps; }),
+        series(record, "vy", kTeal, [](const RunSample& s) { return s.vy_mps; }),
+        command(record, "vx commanded", kBlack,
+                [](const RunSample& s) { return s.command.vx_mps; }),
+        command(record, "vy commanded", kGray,
+                [](const RunSample& s) { return s.command.vy_mps; })},
+       0.5},
+      {"Yaw rate",
+       "rad/s",
+       {series(record, "yaw rate", kBlue, [](const RunSample& s) { return s.yaw_rate_radps; }),
+        command(record, "commanded", kBlack,
+                [](const RunSample& s) { return s.command.wz_radps; })},
+       0.5},
+      torque_panel(record, "Torque, hip abduction (HAA)", 0),
+      torque_panel(record, "Torque, hip flexion (HFE)", 1),
+      torque_panel(record, "Torque, knee (KFE)", 2),
+      sinkage,
+      {"Forward speed, body frame: estimate against truth",
+       "m/s",
+       {series(record, "truth", kBlack, [&](const RunSample& s) { return body_vx(s.truth); }),
+        estimate(record, body_vx)},
+       0.5},
+      {"Body height: estimate against truth",
+       "m",
+       {series(record, "truth", kBlack, [&](const RunSample& s) { return height(s.truth); }),
+        estimate(record, height)},
+       0.1},
+  };
+}
+
+/// The stretches of modes other than Walk, shaded.
+std::vector<plot::Span> mode_spans(const RunRecord& record) {
+  std::vector<plot::Span> spans;
+  const std::vector<RunSample>& samples = record.samples;
+  for (std::size_t i = 0; i < samples.size();) {
+    std::size_t next = i;
+    while (next < samples.size() && samples[next].mode == samples[i].mode) ++next;
+    const double end_s = samples[std::min(next, samples.size() - 1)].t_s;
+    Color color{0.955, 0.96, 0.97};
+    if (samples[i].mode == Mode::kFault) color = {0.99, 0.90, 0.89};
+    if (samples[i].mode == Mode::kWalk) color = {1.0, 1.0, 1.0};
+    spans.push_back({samples[i].t_s, end_s, color, mode_name(samples[i].mode)});
+    i = next;
+  }
+  return spans;
+}
+
+}  // namespace
+
+void draw_run_plot(const RunRecord& record, const std::string& png_path) {
+  plot::Figure figure;
+  figure.title = title_of(record);
+  figure.x_label = "time, s";
+  for (const RunSample& sample : record.samples) figure.x.push_back(sample.t_s);
+  figure.panels = panels(record);
+  figure.spans = mode_spans(record);
+  figure.views = {{"", 0.0, 1.0, 0.68}};
+  if (record.samples.size() > 1) {
+    const RunSample& first = record.samples[walk_of(record).first];
+    const RunSample& last = record.samples[walk_of(record).last];
+    figure.views[0] = {"", figure.x.front(), figure.x.back(), 0.68};
+    if (last.t_s - first.t_s > 1.0) {
+      const std::string title = std::string("last second of ") + mode_name(last.mode);
+      figure.views.push_back({title, last.t_s - 1.0, last.t_s, 0.32});
+    }
+  }
+  plot::draw(figure, png_path);
+}
+
+void draw_run_strip(const RunRecord& record, const std::string& png_path) {
+  constexpr int kRows = kViews / kViewsPerRow;
+  const plot::Canvas canvas(
+      static_cast<int>(kGap_px + kViewsPerRow * (kSideViewWidth_px + kGap_px)),
+      static_cast<int>(kHead_px + kRows * (kSideViewHeight_px + kGap_px)));
+  canvas.text(kGap_px + 2.0, 30.0, title_of(record), 20.0, 0.0, plot::kInk, true);
+  canvas.text(kGap_px + kViewsPerRow * (kSideViewWidth_px + kGap_px) - kGap_px, 30.0,
+              "from the right side; far legs light; below: metres walked", 14.0, 1.0,
+              plot::kFaintInk);
+  const std::vector<RunSample>& samples = record.samples;
+  const Walk walk = walk_of(record);
+  std::vector<double> distance_m(samples.size(), 0.0);
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    distance_m[i] = distance_m[i - 1] + samples[i].vx_mps * (samples[i].t_s - samples[i - 1].t_s);
+  }
+  for (std::size_t view = 0; view < kViews && !samples.empty(); ++view) {
+    const std::size_t i = walk.first + (walk.last - walk.first) * view / (kViews - 1);
+    const std::size_t row = view / kViewsPerRow;
+    const std::size_t column = view % kViewsPerRow;
+    const double left_px = kGap_px + static_cast<double>(column) * (kSideViewWidth_px + kGap_px);
+    const double top_px = kHead_px + static_cast<double>(row) * (kSideViewHeight_px + kGap_px);
+    draw_side_view(canvas, record, samples[i], distance_m[i] - distance_m[walk.first], left_px,
+                   top_px);
+  }
+  canvas.save_png(png_path);
+}
+
+}  // namespace sandrunner

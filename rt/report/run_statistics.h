@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "rt/core/messages.h"
+#include "rt/loop/tick_record.h"
+#include "rt/report/run_record.h"
+
+namespace sandrunner {
+
+/// Figures of a run over the second half of its time in Walk.
+struct RunFigures {
+  std::array<double, 2> mean_velocity_mps{};  ///< of the base origin, heading frame
+  double mean_yaw_rate_radps = 0.0;           ///< about world z
+  std::array<double, 2> mean_command_mps{};   ///< vx, vy as given to the policy
+  double mean_yaw_command_radps = 0.0;
+  /// Deepest penetration of the contact point in each stance, mean and maximum over the stances
+  /// that ended in that half. A stance begins at penetration >= 0, ends when the point is 1 mm
+  /// above the surface, and counts from 10 ms on.
+  double sinkage_mean_m = 0.0, sinkage_max_m = 0.0;
+  int stances = 0;
+  /// Interquartile range of a foot centre's height relative to the base origin (world vertical),
+  /// mean over the feet.
+  double foot_clearance_iqr_m = 0.0;
+  double mechanical_power_w = 0.0;  ///< mean signed sum of tau qd, tau after the clamp
+  double torque_squared_nm2 = 0.0;  ///< mean of the sum over joints of tau^2
+  /// (P_mech + P_heat)/(m g |vx|) with P_heat = sum tau^2/k_m^2 (paper, "Beach sand"); none below
+  /// 0.05 m/s.
+  std::optional<double> cost_of_transport;
+  /// Root mean square errors of the network's estimates: length of the velocity error; body height;
+  /// over all feet.
+  double velocity_rmse_mps = 0.0, body_height_rmse_m = 0.0, foot_height_rmse_m = 0.0;
+  bool has_estimate = false;
+  std::int64_t joint_limit_steps = 0;  ///< ticks with a joint past its stop
+  std::int64_t speed_limit_steps = 0;  ///< ticks with a joint above its speed limit
+};
+
+/// Collects figures tick by tick while the robot walks, and footprints.
+class RunStatistics {
+ public:
+  /// `truth`: what the estimate that came with this tick should be; null: none came.
+  void add(const TickRecord& tick, const StateEstimate* truth);
+  /// Figures so far. `mass_kg`, `motor_constant` (N m/sqrt(W)): for the cost of transport.
+  RunFigures figures(double mass_kg, double motor_constant) const;
+  /// Time that the ticks so far make.
+  double time_s() const noexcept;
+  const std::vector<Footprint>& footprints() const noexcept { return footprints_; }
+
+ private:
+  // Sums over one policy period, so that the half that counts can be chosen at the end.
+  struct Period {
+    int ticks = 0, estimates = 0;
+    double vx = 0, vy = 0, yaw_rate = 0, power = 0, torque_squared = 0;
+    VelocityCommand command;
+    double velocity_error2 = 0, height_error2 = 0, foot_error2 = 0;
+    int past_stop = 0, too_fast = 0;
+    std::array<double, kNumLegs> foot_height{};  // relative to the base, at the period's end
+  };
+  struct Stance {
+    bool open = false;
+    int ticks = 0;
+    double depth = 0, x = 0, y = 0;
+  };
+  struct EndedStance {
+    std::size_t period;
+    double depth;
+  };
+  void follow_stances(const TickRecord& tick);
+
+  std::vector<Period> periods_;
+  std::array<Stance, kNumLegs> stances_;
+  std::vector<EndedStance> ended_;
+  std::vector<Footprint> footprints_;
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/report/summary.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+
+namespace {
+
+double us(std::uint64_t ns) { return 1e-3 * static_cast<double>(ns); }
+
+nlohmann::ordered_json histogram_json(const LogHistogram& h) {
+  return {{"p50", us(h.quantile_ns(0.5))},
+          {"p99", us(h.quantile_ns(0.99))},
+          {"p99_9", us(h.quantile_ns(0.999))},
+          {"max", us(h.max_ns())}};
+}
+
+nlohmann::ordered_json realtime_json(const RealtimeReport& r) {
+  nlohmann::ordered_json j;
+  j["ticks"] = r.control.ticks;
+  j["ticks_skipped"] = r.control.skipped;
+  j["longest_miss_ticks"] = r.control.longest_miss;
+  j["policy_releases"] = r.control.releases;
+  j["policy_steps"] = r.policy.steps;
+  j["policy_missed"] = r.policy.missed;
+  j["policy_late"] = r.late_policy_outputs;
+  j["records_dropped"] = r.records_dropped;
+  j["late_us"] = histogram_json(r.control.late);
+  j["read_us"] = histogram_json(r.control.read);
+  j["control_us"] = histogram_json(r.control.control);
+  j["write_us"] = histogram_json(r.control.write);
+  j["tick_us"] = histogram_json(r.control.busy);
+  j["policy_step_us"] = histogram_json(r.policy.step);
+  j["policy_answer_us"] = histogram_json(r.policy.answer);
+  for (const SetupItem& item : r.setup) {
+    j["setup"][item.name] = {{"obtained", item.obtained}, {"detail", item.detail}};
+  }
+  return j;
+}
+
+std::string realtime_table(const RealtimeReport& r) {
+  std::string t = "real time, µs:                p50      p99    p99.9      max\n";
+  const auto row = [&](const char* name, const LogHistogram& h) {
+    t += fmt::format("  {:<22}{:>9.2f}{:>9.2f}{:>9.1f}{:>9.0f}\n", name, us(h.quantile_ns(0.5)),
+                     us(h.quantile_ns(0.99)), us(h.quantile_ns(0.999)), us(h.max_ns()));
+  };
+  row("start after its time", r.control.late);
+  row("sensors", r.control.read);
+  row("control step", r.control.control);
+  row("drives or simulator", r.control.write);
+  row("whole tick", r.control.busy);
+  row("policy step", r.policy.step);
+  row("policy's answer after", r.policy.answer);
+  t +=
+      fmt::format("  {} ticks ran, {} skipped (longest {}); policy: {} steps, {} missed, {} late\n",
+                  r.control.ticks, r.control.skipped, r.control.longest_miss, r.policy.steps,
+                  r.policy.missed, r.late_policy_outputs);
+  if (r.records_dropped > 0) {
+    t += fmt::format("  {} ticks are not in the figures: they came faster than they were taken\n",
+                     r.records_dropped);
+  }
+  for (const SetupItem& item : r.setup) {
+    t += fmt::format("  {:<26}{}{}\n", item.name,
+                     item.obtained ? "" : "NOT OBTAINED: ", item.detail);
+  }
+  return t;
+}
+
+}  // namespace
+
+std::string summary_table(const RunResult& r, const std::string& command) {
+  const RunFigures& f = r.figures;
+  std::string t;
+  const auto row = [&](const std::string& name, const std::string& value) {
+    t += fmt::format("  {:<26}{}\n", name, value);
+  };
+  std::string end = r.interrupted ? "interrupted, ended in damping" : "finished on its feet";
+  if (!r.survived) {
+    end = "FAILED: " + r.fall_reason;
+    if (r.fall_time_s) end += fmt::format(" after {:.2f} s of Walk", *r.fall_time_s);
+  }
+  t += end + "\n";
+  if (r.walked_s > 0.0) {
+    t +=
+        fmt::format("over the second half of {:.1f} s in Walk, command {}:\n", r.walked_s, command);
+    row("velocity x, commanded",
+        fmt::format("{:6.3f} m/s     of {:6.3f}", f.mean_velocity_mps[0], f.mean_command_mps[0]));
+    row("velocity y, commanded",
+        fmt::format("{:6.3f} m/s     of {:6.3f}", f.mean_velocity_mps[1], f.mean_command_mps[1]));
+    row("yaw rate, commanded",
+        fmt::format("{:6.3f} rad/s   of {:6.3f}", f.mean_yaw_rate_radps, f.mean_yaw_command_radps));
+    row("sinkage mean, max", fmt::format("{:6.1f} mm      {:6.1f}   ({} stances)",
+                                         1e3 * f.sinkage_mean_m, 1e3 * f.sinkage_max_m, f.stances));
+    row("foot clearance (IQR)", fmt::format("{:6.1f} mm", 1e3 * f.foot_clearance_iqr_m));
+    row("mechanical power", fmt::format("{:6.1f} W", f.mechanical_power_w));
+    row("torque squared", fmt::format("{:6.0f} N^2m^2", f.torque_squared_nm2));
+    row("cost of transport",
+        f.cost_of_transport ? fmt::format("{:6.3f}", *f.cost_of_transport) : "     -");
+    if (f.has_estimate) {
+      row("estimate errors (rms)",
+          fmt::format("{:6.3f} m/s, body height {:.1f} mm, foot height {:.1f} mm",
+                      f.velocity_rmse_mps, 1e3 * f.body_height_rmse_m, 1e3 * f.foot_height_rmse_m));
+    }
+    row("past joint stop, too fast",
+        fmt::format("{} and {} control steps", f.joint_limit_steps, f.speed_limit_steps));
+  }
+  row("state hash", fmt::format("{:016x}", r.state_hash));
+  row("simulated", r.realtime ? fmt::format("{:.1f} s", r.simulated_s)
+                              : fmt::format("{:.1f} s, {:.0f} times real time", r.simulated_s,
+                                            r.realtime_factor));
+  if (r.realtime) t += realtime_table(*r.realtime);
+  return t;
+}
+
+std::string summary_json(const RunResult& r, const Options& options, const std::string& command,
+                         const std::string& policy_name) {
+  using Json = nlohmann::ordered_json;
+  const RunFigures& f = r.figures;
+  Json j;
+  j["version"] = SANDRUNNER_VERSION;
+  j["policy"] = policy_name.empty() ? Json() : Json(policy_name);
+  j["terrain"] = options.terrain;
+  j["seed"] = options.seed;
+  j["survived"] = r.survived;
+  j["fall_time_s"] = r.fall_time_s ? Json(*r.fall_time_s) : Json();
+  j["fall_reason"] = r.survived ? Json() : Json(r.fall_reason);
+  j["interrupted"] = r.interrupted;
+  j["duration_s"] = r.walked_s;
+  j["command"] = command;
+  j["mean_velocity_mps"] = f.mean_velocity_mps;
+  j["mean_yaw_rate_radps"] = f.mean_yaw_rate_radps;
+  j["sinkage_mm"] = {{"mean", 1e3 * f.sinkage_mean_m}, {"max", 1e3 * f.sinkage_max_m}};
+  j["foot_clearance_iqr_mm"] = 1e3 * f.foot_clearance_iqr_m;
+  j["mechanical_power_w"] = f.mechanical_power_w;
+  j["torque_squared_nm2"] = f.torque_squared_nm2;
+  j["cost_of_transport"] = f.cost_of_transport ? Json(*f.cost_of_transport) : Json();
+  j["estimator"] = f.has_estimate ? Json{{"velocity_rmse_mps", f.velocity_rmse_mps},
+                                         {"body_height_rmse_m", f.body_height_rmse_m},
+                                         {"foot_height_rmse_m", f.foot_height_rmse_m}}
+                                  : Json();
+  j["joint_limit_steps"] = f.joint_limit_steps;
+  j["speed_limit_steps"] = f.speed_limit_steps;
+  j["state_hash"] = fmt::format("{:016x}", r.state_hash);
+  j["realtime_factor"] = r.realtime_factor;
+  if (r.realtime) j["realtime"] = realtime_json(*r.realtime);
+  // A file named on the command line may have a name that is not UTF-8.
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sandrunner

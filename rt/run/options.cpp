@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/run/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "rt/base/errors.h"
+#include "rt/base/program.h"
+#include "sim/ground/terrain_description.h"
+
+namespace sandrunner {
+
+std::optional<Options> parse_options(int argc, const char* const* argv) {
+  Options o;
+  CLI::App app{
+      "Runs a legged robot on sand: the control process, here with the granular simulator in place "
+      "of the robot."};
+  app.option_defaults()->always_capture_default();
+  std::string start = "stand";
+  app.add_option("--policy", o.policy_path, "policy file (default: the one that ships)")
+      ->type_name("FILE")
+      ->capture_default_str();
+  app.add_option(
+         "--terrain", o.terrain,
+         fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
+      ->type_name("PRESET|FILE");
+  app.add_option(
+         "--command", o.command,
+         "velocity vx,vy,wz (m/s, m/s, rad/s), or a CSV file with header t_s,vx,vy,wz, "
+         "linear between rows; dds: operators command over DDS (sandrunner-ctl, ROS 2), until "
+         "Ctrl-C")
+      ->type_name("VX,VY,WZ|FILE|dds");
+  app.add_option("--dds-security", o.dds_security_dir,
+                 "folder made by tools/dds_security.sh: DDS with authentication and encryption")
+      ->type_name("DIR");
+  app.add_option("--duration", o.duration_s, "time in Walk, s")->type_name("S");
+  app.add_option(
+         "--start", start,
+         "stand: lies, stands up, walks, stands again; walk: walks at once from the nominal pose")
+      ->check(CLI::IsMember({"stand", "walk"}));
+  std::string clock = "lockstep";
+  app.add_option("--clock", clock,
+                 "lockstep: one thread, simulated time, as fast as the machine goes; realtime: the "
+                 "threads of the robot on the system's clock")
+      ->check(CLI::IsMember({"lockstep", "realtime"}));
+  app.add_option("--seed", o.seed, "0: exactly the nominal start; above 0: a disturbed one")
+      ->check(CLI::Range(0.0, 9e15))
+      ->type_name("N");
+  app.add_option("--config", o.config_files,
+                 "TOML file with settings; may be repeated, later ones win")
+      ->type_name("FILE")
+      ->always_capture_default(false);
+  app.add_option("--set", o.assignments, "one setting, e.g. terrain.friction=0.6; may be repeated")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false)
+      ->always_capture_default(false);
+  app.add_option("--out", o.out_dir,
+                 "folder for summary.json, config.toml, run.csv, run.png, strip.png")
+      ->type_name("DIR");
+  app.add_option(
+         "--record", o.record_dir,
+         "folder for run.mcap: every tick, to look at and replay; and for black-box-TICK.mcap "
+         "of a realtime run with a fault (else that of --out, or the working folder)")
+      ->type_name("DIR");
+  const CLI::App* report = app.add_subcommand(
+      "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
+  app.set_version_flag("--version", std::string("sandrunner ") + SANDRUNNER_VERSION);
+  if (!parse_command_line(app, argc, argv)) return std::nullopt;
+  o.start_walking = start == "walk";
+  o.realtime = clock == "realtime";
+  o.rt_report = report->parsed();
+  o.live = o.command == "dds";
+  if (o.live && !o.realtime) {
+    throw InputError("--command dds: operators need --clock realtime");
+  }
+  if (o.live && (o.start_walking || app.count("--duration") > 0)) {
+    throw InputError(
+        "--command dds: the operators decide when the robot walks; expected neither "
+        "--duration nor --start walk");
+  }
+  if (!std::isfinite(o.duration_s) || o.duration_s <= 0.0 || o.duration_s > 86400.0) {
+    throw InputError(
+        fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
+  }
+  return o;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "policy/policy.h"
+#include "rt/base/config_tree.h"
+#include "rt/core/controller.h"
+#include "rt/realtime/setup.h"
+#include "rt/telemetry/dds/dds_config.h"
+#include "rt/telemetry/recording/recorder.h"
+#include "sim/robot/robot_model.h"
+#include "sim/simulator.h"
+
+namespace sandrunner {
+
+/// Settings of one run, from the layers terrain preset or file < --config < --set.
+struct ProcessConfig {
+  sim::Robot robot;
+  sim::SimulatorConfig simulator;
+  ControllerConfig controller;
+  RealtimeConfig realtime;
+  RecordingLimits recording;
+  DdsConfig dds;
+  double motor_constant = 3.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
+  std::string effective;        ///< TOML of all settings that counted
+};
+
+/// Reads everything and rejects what is unknown. The robot's stops and limits and the policy's
+/// gains (`spec` may be null) are the defaults of the controller's. Throws InputError.
+ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec);
+
+}  // namespace sandrunner

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/run/run_script.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr std::uint64_t kSettle_ticks = kControlHz;  // in Stand, before Walk and at the end
+
+}  // namespace
+
+RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool has_policy)
+    : source_(command),
+      plan_(plan),
+      has_policy_(has_policy),
+      walk_ticks_(ticks_from_s(plan.walk_s)),
+      phase_(plan.start_walking ? Phase::kWalk : Phase::kStandUp),
+      has_walked_(plan.start_walking) {
+  if (phase_ == Phase::kStandUp) request(ModeRequest::kStand);
+}
+
+OperatorCommand RunScript::command(std::uint64_t tick) noexcept {
+  command_.tick = tick;
+  command_.velocity = phase_ == Phase::kWalk ? source_.at(walked_s()) : VelocityCommand{};
+  return command_;
+}
+
+OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
+  OperatorVerdict verdict;
+  const Phase at_start = phase_;
+  has_walked_ = has_walked_ || facts.mode == Mode::kWalk;
+  verdict.counts = phase_ == Phase::kWalk && facts.mode == Mode::kWalk;
+  if (facts.faults != 0) fail(fault_name(facts.first_fault));
+  // Lying and standing up, base and thighs only carry; once the robot has walked, touching the
+  // ground is a fall.
+  if (has_walked_ && facts.base_contact) fail("base_contact");
+  if (has_walked_ && facts.thigh_contact) fail("thigh_contact");
+  if (facts.interrupted) {
+    interrupted_ = true;
+    damp();
+  }
+  const Phase before = phase_;
+  // What was skipped lies before the damping that this tick begins: a stall does not shorten it.
+  verdict.running = next_phase(facts.mode, phase_ == at_start ? facts.ticks : 1);
+  const bool stood_up = before == Phase::kStandUp && (!verdict.running || phase_ == Phase::kWalk);
+  if (stood_up && facts.base_contact) fail("did_not_stand");
+  return verdict;
+}
+
+bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
+  in_phase_ += ticks;
+  switch (phase_) {
+    case Phase::kStandUp:
+      if (mode != Mode::kStand) standing_ = 0;
+      if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {
+        if (!has_policy_) return false;
+        request(ModeRequest::kWalk);
+        enter(Phase::kWalk);
+      }
+      return true;
+    case Phase::kWalk:
+      if (mode == Mode::kWalk && (walked_ += ticks) >= walk_ticks_) {
+        if (plan_.start_walking) return false;
+        request(ModeRequest::kStand);
+        enter(Phase::kStop);
+      }
+      return true;
+    case Phase::kStop:
+      return !(mode == Mode::kStand && (standing_ += ticks) >= 2 * kSettle_ticks);
+    case Phase::kDamp:
+      return in_phase_ < kDampingEnd_ticks;
+  }
+  return false;
+}
+
+void RunScript::request(ModeRequest r) noexcept {
+  command_.request = r;
+  ++command_.request_id;
+}
+
+void RunScript::enter(Phase phase) noexcept {
+  phase_ = phase;
+  in_phase_ = standing_ = 0;
+}
+
+void RunScript::damp() noexcept {
+  if (phase_ == Phase::kDamp) return;
+  request(ModeRequest::kDamp);
+  enter(Phase::kDamp);
+}
+
+void RunScript::fail(const char* reason) noexcept {
+  // Who interrupts a run lets the robot down: what it touches then is no fall.
+  if (fall_reason_ || interrupted_) return;
+  fall_reason_ = reason;
+  fall_time_s_ = walked_s();
+  damp();
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "rt/loop/operator_input.h"
+#include "rt/run/command_source.h"
+
+namespace sandrunner {
+
+/// What the run is to be.
+struct RunPlan {
+  double walk_s = 20.0;
+  bool start_walking =
+      false;  ///< at once in Walk from the nominal pose; ends when the time is over
+};
+
+/// The operator of a run from the command line: stands the robot up, lets it settle and walk, stops
+/// it, waits; or just walks. Ends in damping after a fall, a fault or an interrupt. Without a
+/// policy it only stands up.
+class RunScript final : public OperatorInput {
+ public:
+  /// `command` must outlive the script.
+  RunScript(const CommandSource& command, const RunPlan& plan, bool has_policy);
+
+  OperatorCommand command(std::uint64_t tick) noexcept override;
+  OperatorVerdict advance(const TickFacts& facts) noexcept override;
+
+  bool survived() const noexcept { return fall_reason_ == nullptr; }
+  /// "base_contact", "thigh_contact", "did_not_stand" or the name of a fault; null: none.
+  const char* fall_reason() const noexcept { return fall_reason_; }
+  double fall_time_s() const noexcept { return fall_time_s_; }  ///< since the start of Walk
+  bool interrupted() const noexcept { return interrupted_; }
+  /// Time in Walk under the command.
+  double walked_s() const noexcept { return static_cast<double>(walked_) * kControlPeriod_s; }
+
+ private:
+  enum class Phase { kStandUp, kWalk, kStop, kDamp };
+  void request(ModeRequest r) noexcept;
+  void enter(Phase phase) noexcept;
+  void damp() noexcept;
+  void fail(const char* reason) noexcept;
+  bool next_phase(Mode mode, std::uint64_t ticks) noexcept;
+
+  const CommandSource& source_;
+  const RunPlan plan_;
+  const bool has_policy_;
+  const std::uint64_t walk_ticks_;
+  Phase phase_;
+  OperatorCommand command_;
+  std::uint64_t in_phase_ = 0, standing_ = 0, walked_ = 0;
+  bool has_walked_, interrupted_ = false;
+  const char* fall_reason_ = nullptr;
+  double fall_time_s_ = 0.0;
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/batch/batch.h"
+
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+
+namespace sandrunner::sim {
+namespace {
+
+bool runs_here(BatchWidth width) noexcept {
+  if (width != BatchWidth::kSixteen) return true;  // x86-64-v3 is the floor of the whole program
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512cd");
+}
+
+const detail::BatchKernel& kernel_of(BatchWidth width) {
+  if (!runs_here(width))
+    throw std::invalid_argument("this processor has no AVX-512: batch width 16");
+  switch (width) {
+    case BatchWidth::kOne:
+      return detail::batch_kernel_x1();
+    case BatchWidth::kEight:
+      return detail::batch_kernel_x8();
+    case BatchWidth::kSixteen:
+      break;
+  }
+  return detail::batch_kernel_x16();
+}
+
+constexpr std::size_t kAlignment = 64;
+
+}  // namespace
+
+BatchWidth best_batch_width() noexcept {
+  return runs_here(BatchWidth::kSixteen) ? BatchWidth::kSixteen : BatchWidth::kEight;
+}
+
+void Batch::Free::operator()(std::byte* memory) const noexcept {
+  ::operator delete[](memory, std::align_val_t(kAlignment));
+}
+
+Batch::Batch(int robots, const FootProfile<double>& foot, const StepSettings& settings,
+             BatchWidth width)
+    : robots_(robots),
+      foot_(foot),
+      settings_(settings),
+      kernel_(kernel_of(width)),
+      memory_(static_cast<std::byte*>(::operator new[](
+          static_cast<std::size_t>(packs()) * kernel_.pack_bytes, std::align_val_t(kAlignment)))) {
+  for (int p = 0; p < packs(); ++p) {
+    kernel_.construct(memory_.get() + static_cast<std::size_t>(p) * kernel_.pack_bytes);
+  }
+}
+
+void Batch::copy_in(int robot, std::size_t offset, const void* values, std::size_t bytes) noexcept {
+  const auto lanes = static_cast<std::size_t>(width());
+  std::byte* to = memory_.get() + static_cast<std::size_t>(robot / width()) * kernel_.pack_bytes +
+                  offset * lanes + static_cast<std::size_t>(robot % width()) * sizeof(float);
+  const auto* from = static_cast<const std::byte*>(values);
+  for (std::size_t at = 0; at < bytes; at += sizeof(float)) {
+    std::memcpy(to + at * lanes, from + at, sizeof(float));
+  }
+}
+
+void Batch::copy_out(int robot, std::size_t offset, void* values,
+                     std::size_t bytes) const noexcept {
+  const auto lanes = static_cast<std::size_t>(width());
+  const std::byte* from =
+      memory_.get() + static_cast<std::size_t>(robot / width()) * kernel_.pack_bytes +
+      offset * lanes + static_cast<std::size_t>(robot % width()) * sizeof(float);
+  auto* to = static_cast<std::byte*>(values);
+  for (std::size_t at = 0; at < bytes; at += sizeof(float)) {
+    std::memcpy(to + at, from + at * lanes, sizeof(float));
+  }
+}
+
+void Batch::set_model(int robot, const RobotModel<float>& v) noexcept {
+  copy_in(robot, offsetof(BatchRobot<float>, model), &v, sizeof(v));
+}
+void Batch::set_terrain(int robot, const Terrain<float>& v) noexcept {
+  copy_in(robot, offsetof(BatchRobot<float>, terrain), &v, sizeof(v));
+}
+void Batch::set_state(int robot, const RobotState<float>& v) noexcept {
+  copy_in(robot, offsetof(BatchRobot<float>, state), &v, sizeof(v));
+}
+void Batch::set_drive(int robot, const BatchDrive<float>& v) noexcept {
+  copy_in(robot, offsetof(BatchRobot<float>, drive), &v, sizeof(v));
+}
+void Batch::set_robot(int robot, const BatchRobot<float>& v) noexcept {
+  copy_in(robot, 0, &v, sizeof(v));
+}
+BatchRobot<float> Batch::robot(int robot) const noexcept {
+  BatchRobot<float> v;
+  copy_out(robot, 0, &v, sizeof(v));
+  return v;
+}
+RobotState<float> Batch::state(int robot) const noexcept {
+  RobotState<float> v;
+  copy_out(robot, offsetof(BatchRobot<float>, state), &v, sizeof(v));
+  return v;
+}
+BatchSums<float> Batch::sums(int robot) const noexcept {
+  BatchSums<float> v;
+  copy_out(robot, offsetof(BatchRobot<float>, sums), &v, sizeof(v));
+  return v;
+}
+BatchReport<float> Batch::report(int robot) const noexcept {
+  BatchReport<float> v;
+  copy_out(robot, offsetof(BatchRobot<float>, report), &v, sizeof(v));
+  return v;
+}
+
+void Batch::advance(int pack, int ticks) noexcept {
+  kernel_.advance(memory_.get() + static_cast<std::size_t>(pack) * kernel_.pack_bytes, foot_,
+                  settings_, ticks);
+}
+
+}  // namespace sandrunner::sim

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many robots at once: packs of 8 or 16 robots in SIMD lanes (or one at a time), each with its own
+// inertia, ground, drives and delay. A robot's trajectory has the same bits at every width, in
+// every lane, beside any neighbours.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "sim/step/robot_step.h"
+
+namespace sandrunner::sim {
+
+/// What a robot's drives do during one policy period.
+template <typename S>
+struct BatchDrive {
+  std::array<S, kNumJoints> target_before{};  ///< joint targets until `switch_tick`, rad
+  std::array<S, kNumJoints> target{};         ///< joint targets from then on, rad
+  S switch_tick{};            ///< ticks into the period at which the new targets arrive
+  S kp{}, kd{};               ///< of all joints, N m/rad, N m s/rad
+  S torque_scale = S(1.0);    ///< delivered over commanded torque
+  S stall_torque_nm{};        ///< torque-speed line; 0: none
+  S inverse_no_load_speed{};  ///< s/rad
+};
+
+/// Share of the drives' speed limit up to which no joint is too fast for `speed_excess`.
+inline constexpr double kSpeedMargin = 0.9;
+
+/// Sums over the ticks of one policy period, for rewards and statistics.
+template <typename S>
+struct BatchSums {
+  S torque_squared{};  ///< sum over joints of tau^2, N^2 m^2
+  S power{};           ///< signed sum of tau qd, W
+  S speed_squared{};   ///< sum over joints of qd^2, rad^2/s^2
+  S speed_excess{};    ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
+  S stop_excess{};     ///< sum over joints of the distance past the stop, rad
+  S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
+  S slip{};                               ///< sum over feet in contact of |v_xy|^2, m^2/s^2
+  std::array<S, kNumLegs> foot_load{};    ///< normal force of each foot, N
+  S base_contact{}, thigh_contact{};      ///< 1: touched the ground in the period
+};
+
+/// What the last tick of the period showed.
+template <typename S>
+struct BatchReport {
+  std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m
+  std::array<Vec3<S>, kNumLegs> foot_velocity;  ///< of the contact point, world, m/s
+  std::array<S, kNumLegs> penetration{};        ///< m
+  std::array<std::array<S, 3>, kNumLegs>
+      foot_force{};  ///< on the robot, contact frame (world axes on level ground), N
+};
+
+/// All of one robot, as it is written and read.
+template <typename S>
+struct BatchRobot {
+  RobotModel<S> model;
+  Terrain<S> terrain;
+  RobotState<S> state;
+  BatchDrive<S> drive;
+  BatchSums<S> sums;
+  BatchReport<S> report;
+};
+
+/// Robots to a pack: 1, 8 (AVX2) or 16 (AVX-512).
+enum class BatchWidth : int { kOne = 1, kEight = 8, kSixteen = 16 };
+/// The widest that this processor runs.
+BatchWidth best_batch_width() noexcept;
+
+namespace detail {
+/// The code for one width; each comes from a source compiled for its instruction set.
+struct BatchKernel {
+  int width;
+  std::size_t pack_bytes, pack_alignment;
+  void (*construct)(void* pack);
+  void (*advance)(void* pack, const FootProfile<double>& foot, const StepSettings& settings,
+                  int ticks);
+};
+const BatchKernel& batch_kernel_x1() noexcept;
+const BatchKernel& batch_kernel_x8() noexcept;
+const BatchKernel& batch_kernel_x16() noexcept;
+}  // namespace detail
+
+/// A batch of robots with one kind of foot. Robots are written and read one by one, in float; packs
+/// advance independently of each other, so that threads may share them out.
+class Batch {
+ public:
+  /// Throws std::invalid_argument if the processor cannot do the width.
+  Batch(int robots, const FootProfile<double>& foot, const StepSettings& settings,
+        BatchWidth width = best_batch_width());
+
+  int size() const noexcept { return robots_; }
+  /// Robots to a pack.
+  int width() const noexcept { return kernel_.width; }
+  int packs() const noexcept { return (robots_ + width() - 1) / width(); }
+
+  void set_model(int robot, const RobotModel<float>& model) noexcept;
+  void set_terrain(int robot, const Terrain<float>& terrain) noexcept;
+  void set_state(int robot, const RobotState<float>& state) noexcept;
+  void set_drive(int robot, const BatchDrive<float>& drive) noexcept;
+  RobotState<float> state(int robot) const noexcept;
+  /// Everything of one robot, for checkpoints.
+  BatchRobot<float> robot(int robot) const noexcept;
+  void set_robot(int robot, const BatchRobot<float>& all) noexcept;
+  BatchSums<float> sums(int robot) const noexcept;
+  BatchReport<float> report(int robot) const noexcept;
+
+  /// Advances all robots of a pack by `ticks` control ticks; their sums start at zero. The calling
+  /// thread must flush denormals (flush_denormals_to_zero()).
+  void advance(int pack, int ticks) noexcept;
+
+ private:
+  struct Free {
+    void operator()(std::byte* memory) const noexcept;
+  };
+  void copy_in(int robot, std::size_t offset, const void* values, std::size_t bytes) noexcept;
+  void copy_out(int robot, std::size_t offset, void* values, std::size_t bytes) const noexcept;
+
+  int robots_;
+  FootProfile<double> foot_;
+  StepSettings settings_;
+  const detail::BatchKernel& kernel_;
+  std::unique_ptr<std::byte[], Free> memory_;
+};
+
+}  // namespace sandrunner::sim

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/batch/batch_kernel.h"
+#include "sim/lanes/pack.h"
+
+namespace sandrunner::sim::detail {
+
+const BatchKernel& batch_kernel_x16() noexcept {
+  static const BatchKernel kernel = make_kernel<Pack<16>>();
+  return kernel;
+}
+
+}  // namespace sandrunner::sim::detail

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+
+#include "sim/ground/ground.h"
+
+namespace sandrunner::sim {
+
+inline constexpr int kMaxRegions = 8;
+
+/// Patches of ground one after the other along x; the last one is endless. All members are S, so
+/// that a pack's terrain is an array of its robots' terrains.
+template <typename S>
+struct Terrain {
+  S count = S(1.0);
+  std::array<Ground<S>, kMaxRegions> ground;
+  std::array<S, kMaxRegions>
+      start_x{};  ///< from where on patch i counts; ascending, that of patch 0 is ignored
+  /// Upper bound of the surface's height, m: 0 without roughness.
+  S highest{};
+
+  /// Index of the patch at x.
+  S region_at(S x) const noexcept {
+    S index = S(0.0);
+    if (!any(count > S(1.0))) return index;
+    for (int i = 1; i < kMaxRegions; ++i) {
+      index = select(both(x >= start_x[i], count > S(double(i))), S(double(i)), index);
+    }
+    return index;
+  }
+  /// The patch of each lane; `scratch` is where lanes that stand on different patches are put
+  /// together.
+  const Ground<S>& pick(S index, Ground<S>& scratch) const noexcept {
+    if constexpr (std::is_floating_point_v<S>) {
+      return ground[static_cast<std::size_t>(index)];
+    } else {
+      if (!any(index > S(0.0))) return ground[0];
+      using Fields = std::array<S, sizeof(Ground<S>) / sizeof(S)>;
+      Fields fields = std::bit_cast<Fields>(ground[0]);
+      for (int i = 1; i < kMaxRegions; ++i) {
+        const Mask<S> here = index == S(double(i));
+        if (!any(here)) continue;
+        const Fields other = std::bit_cast<Fields>(ground[i]);
+        for (std::size_t f = 0; f < fields.size(); ++f) {
+          fields[f] = select(here, other[f], fields[f]);
+        }
+      }
+      scratch = std::bit_cast<Ground<S>>(fields);
+      return scratch;
+    }
+  }
+};
+
+/// The same terrain in another scalar.
+template <typename To>
+Terrain<To> convert_terrain(const Terrain<double>& from) noexcept {
+  using From = std::array<double, sizeof(Ground<double>) / sizeof(double)>;
+  using Values = std::array<To, std::tuple_size_v<From>>;
+  Terrain<To> to;
+  to.count = To(from.count);
+  to.highest = To(from.highest);
+  for (int i = 0; i < kMaxRegions; ++i) {
+    const From values = std::bit_cast<From>(from.ground[i]);
+    Values converted;
+    for (std::size_t f = 0; f < values.size(); ++f) converted[f] = To(values[f]);
+    to.ground[i] = std::bit_cast<Ground<To>>(converted);
+    to.start_x[i] = To(from.start_x[i]);
+  }
+  return to;
+}
+
+/// Height of the undisturbed surface at (x, y), world, m; 0 where it is even. S: float or double.
+template <typename S>
+S surface_height(const Terrain<S>& terrain, S x, S y) noexcept {
+  const Ground<S>& ground = terrain.ground[static_cast<std::size_t>(terrain.region_at(x))];
+  if (!(ground.roughness > S(0.0))) return S(0.0);
+  S height, slope_x, slope_y;
+  rough_surface(ground, x, y, height, slope_x, slope_y);
+  return height;
+}
+
+}  // namespace sandrunner::sim

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/ground/terrain_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "rt/base/errors.h"
+#include "sim/ground/embedded.h"
+
+namespace sandrunner::sim {
+namespace {
+
+const std::vector<std::string> kPresets = {"dry-sand",       "wet-sand", "grass",
+                                           "athletic-track", "vinyl",    "rigid"};
+
+// Reads the ground under `prefix` ("terrain." or, in a patch, ""); what is not there stays as in
+// `p`.
+void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) {
+  const auto number = [&](const char* key, double& value, double min, double max) {
+    value = c.number(prefix + key, value, min, max);
+  };
+  const auto flag = [&](const char* key, bool& value) { value = c.flag(prefix + key, value); };
+  const char* const kinds[] = {"granular", "rigid", "linear"};
+  const std::string kind =
+      c.choice(prefix + "kind", kinds[static_cast<int>(p.kind)], {kinds[0], kinds[1], kinds[2]});
+  for (int i = 0; i < 3; ++i) {
+    if (kind == kinds[i]) p.kind = static_cast<GroundKind>(i);
+  }
+  number("friction", p.friction, 0.0, 5.0);
+  number("sigma_flat_npm3", p.sigma_flat_npm3, 1.0, 1e10);
+  number("sigma_cone_npm3", p.sigma_cone_npm3, 1.0, 1e10);
+  number("recruitment", p.recruitment, 0.01, 20.0);
+  double degrees = p.cone_angle_rad * (180.0 / 3.14159265358979323846);
+  number("cone_angle_deg", degrees, 5.0, 85.0);
+  p.cone_angle_rad = degrees * (3.14159265358979323846 / 180.0);
+  number("mass_scaling", p.mass_scaling, 0.0, 20.0);
+  number("packing", p.packing, 0.0, 1.0);
+  number("grain_density_kgpm3", p.grain_density_kgpm3, 0.0, 2e4);
+  number("drag", p.drag, 0.0, 1e3);
+  number("plastic_tolerance_m", p.plastic_tolerance_m, 0.0, 0.01);
+  number("stroke_stiffness_npm", p.stroke_stiffness_npm, 0.0, 1e5);
+  number("stroke_damping_nspm", p.stroke_damping_nspm, 0.0, 1e3);
+  number("stroke_depth_scaling", p.stroke_depth_scaling, 0.0, 10.0);
+  number("crater_radius_m", p.crater_radius_m, 0.0, 1.0);
+  degrees = p.crater_angle_rad * (180.0 / 3.14159265358979323846);
+  number("crater_angle_deg", degrees, 5.0, 85.0);
+  p.crater_angle_rad = degrees * (3.14159265358979323846 / 180.0);
+  number("stiffness_npm", p.stiffness_npm, 1.0, 1e6);
+  number("damping_nspm", p.damping_nspm, 0.0, 2e3);
+  number("roughness_m", p.roughness_m, 0.0, 0.2);
+  number("roughness_wavelength_m", p.roughness_wavelength_m, 0.05, 100.0);
+  p.roughness_seed = static_cast<std::uint64_t>(c.integer(
+      prefix + "roughness_seed", static_cast<std::int64_t>(p.roughness_seed), 0, 1LL << 40));
+  flag("effects.inertial_drag", p.inertial_drag);
+  flag("effects.added_mass", p.added_mass);
+  flag("effects.plastic_memory", p.plastic_memory);
+  flag("effects.healing", p.healing);
+  flag("effects.filter", p.filter);
+  flag("effects.stroke_resistance", p.stroke_resistance);
+  flag("effects.gated_friction", p.gated_friction);
+}
+
+const std::string& checked_preset(const std::string& name) {
+  if (std::find(kPresets.begin(), kPresets.end(), name) == kPresets.end()) {
+    throw InputError(fmt::format("terrain.patch: preset '{}', expected one of {}", name,
+                                 fmt::join(kPresets, ", ")));
+  }
+  return name;
+}
+
+}  // namespace
+
+std::vector<std::string> terrain_preset_names() { return kPresets; }
+
+void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file) {
+  if (std::find(kPresets.begin(), kPresets.end(), preset_or_file) != kPresets.end()) {
+    config.add_text(embedded_terrain_file(preset_or_file + ".toml"), "preset " + preset_or_file);
+    return;
+  }
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(preset_or_file, unreadable)) {
+    throw InputError(fmt::format("--terrain: '{}' is neither a preset ({}) nor a file",
+                                 preset_or_file, fmt::join(kPresets, ", ")));
+  }
+  config.add_file(preset_or_file);
+}
+
+TerrainDescription read_terrain(ConfigTree& config) {
+  TerrainDescription terrain;
+  terrain.name = config.text("terrain.name", "terrain");
+  const std::string shape = config.choice("terrain.foot.shape", "tyre", {"tyre", "sphere", "disc"});
+  terrain.foot_shape = shape == "tyre"     ? FootShape::kTyre
+                       : shape == "sphere" ? FootShape::kSphere
+                                           : FootShape::kDisc;
+  terrain.hydraulic_factor = config.number("terrain.foot.hydraulic_factor", 0.0, 0.0, 10.0);
+  TerrainPatch first;
+  read_ground(config, "terrain.", first.ground);
+  terrain.patches.push_back(first);
+  for (ConfigTree& table : config.tables("terrain.patch")) {
+    // A patch is a preset, or else the first ground, with the differences that it names.
+    TerrainPatch patch = terrain.patches.front();
+    const std::string preset = table.text("preset", "");
+    if (!preset.empty()) {
+      ConfigTree layer;
+      layer.add_text(embedded_terrain_file(checked_preset(preset) + ".toml"), "preset " + preset);
+      patch.ground = {};
+      read_ground(layer, "terrain.", patch.ground);
+    }
+    patch.from_x_m = table.number("from_x_m", 0.0, -1e4, 1e4);
+    read_ground(table, "", patch.ground);
+    if (terrain.patches.size() > 1 && patch.from_x_m <= terrain.patches.back().from_x_m) {
+      throw InputError(fmt::format("terrain.patch: from_x_m {} after {}, expected ascending values",
+                                   patch.from_x_m, terrain.patches.back().from_x_m));
+    }
+    terrain.patches.push_back(patch);
+  }
+  if (terrain.patches.size() > kMaxRegions) {
+    throw InputError(fmt::format("terrain.patch: {} patches, expected at most {}",
+                                 terrain.patches.size() - 1, kMaxRegions - 1));
+  }
+  return terrain;
+}
+
+FootProfile<double> make_foot_profile(const TerrainDescription& terrain,
+                                      const RobotModel<double>& model) {
+  // A robot with ball feet has no tyre.
+  const FootShape shape = terrain.foot_shape == FootShape::kTyre && !(model.foot_width_m > 0.0)
+                              ? FootShape::kSphere
+                              : terrain.foot_shape;
+  const double factor = terrain.hydraulic_factor > 0.0 ? terrain.hydraulic_factor
+                        : shape == FootShape::kTyre    ? 4.0
+                                                       : 2.0;
+  return fit_foot_profile(shape, model.foot_radius_m, model.foot_width_m, factor);
+}
+
+Terrain<double> make_terrain(const TerrainDescription& description, const FootProfile<double>& foot,
+                             const RobotModel<double>& model) {
+  Terrain<double> terrain;
+  const std::size_t count = description.patches.size();
+  terrain.count = static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    terrain.ground[i] = derive_ground(description.patches[i].ground, foot, model.foot_radius_m);
+    terrain.start_x[i] = description.patches[i].from_x_m;
+    // Six waves of amplitude roughness/sqrt(3) can add up to no more than this.
+    terrain.highest = std::fmax(terrain.highest, terrain.ground[i].roughness * 3.4641016151377544);
+  }
+  return terrain;
+}
+
+}  // namespace sandrunner::sim

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The robot as the simulator knows it: a floating base and four legs of three revolute joints with
+// axes x, y, y (HAA, HFE, KFE) and a foot fixed to the shank. One value of every figure for one
+// robot, or one in each lane of a pack, so that masses and geometry can be randomised robot by
+// robot.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "rt/core/messages.h"
+#include "sim/lanes/vec.h"
+
+namespace sandrunner::sim {
+
+/// A rigid body: mass (kg), centre of mass (m) and inertia about it (kg m^2), in the frame of its
+/// link.
+template <typename S>
+struct Body {
+  S mass{};
+  Vec3<S> com;
+  Sym3<S> inertia;
+};
+
+/// One leg. Joint axes are x (HAA) and y (HFE, KFE); at zero all link frames are parallel to the
+/// base.
+template <typename S>
+struct LegModel {
+  Vec3<S> haa;                ///< HAA origin in the base frame, m
+  Vec3<S> hfe;                ///< HFE origin in the hip frame, m
+  Vec3<S> kfe;                ///< KFE origin in the thigh frame, m
+  Vec3<S> foot;               ///< foot centre in the shank frame, m
+  Body<S> hip, thigh, shank;  ///< the shank includes the foot
+};
+
+template <typename S>
+struct RobotModel {
+  Body<S> base;
+  std::array<LegModel<S>, kNumLegs> legs;
+  std::array<S, kNumJoints> rotor_inertia{};           ///< reflected to the joint, kg m^2
+  std::array<S, kNumJoints> lower_rad{}, upper_rad{};  ///< stops
+  std::array<S, kNumJoints> torque_limit_nm{}, speed_limit_radps{};
+  S foot_radius_m{};                           ///< tyre or sphere
+  S foot_width_m{};                            ///< of the tyre, along y
+  S knee_radius_m{};                           ///< of the thigh's lower end
+  S shank_radius_m{};                          ///< half the thickness of the shank
+  Vec3<S> base_box_centre_m, base_box_half_m;  ///< collision box, base frame
+
+  /// Total mass, kg.
+  S mass() const noexcept {
+    S m = base.mass;
+    for (const auto& leg : legs) m = m + (leg.hip.mass + leg.thigh.mass + leg.shank.mass);
+    return m;
+  }
+};
+
+/// A RobotModel with what controller and program must know beside it.
+struct Robot {
+  std::string name;
+  RobotModel<double> model;
+  JointArray<double> nominal_rad{};  ///< pose of `--start walk`
+  double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching
+  JointArray<double> lying_rad{};    ///< pose in which it lies on its belly
+  double lying_height_m = 0.0;
+  std::string description;  ///< URDF text, as read
+};
+
+/// The robot that ships (sim/robot/raibo.urdf and raibo.toml, embedded in the program).
+Robot load_raibo();
+
+/// Loads a quadruped of this topology. `map_path` is a TOML file that names the links and joints of
+/// the URDF and gives what a URDF cannot (sim/robot/README.md); a relative `urdf` in it is looked
+/// up beside the map. Throws InputError, one line, for anything that is not such a robot.
+Robot load_robot(const std::string& map_path);
+
+/// As load_robot, from texts; `map_name` and `urdf_name` appear in errors.
+Robot parse_robot(const std::string& map_text, const std::string& map_name,
+                  const std::string& urdf_text, const std::string& urdf_name);
+
+/// The same figures in another scalar (one robot in float, or all lanes alike).
+template <typename To>
+RobotModel<To> convert_model(const RobotModel<double>& from) noexcept {
+  const auto vec = [](const Vec3<double>& v) { return Vec3<To>{To(v.x), To(v.y), To(v.z)}; };
+  const auto body = [&](const Body<double>& b) {
+    return Body<To>{To(b.mass),
+                    vec(b.com),
+                    {To(b.inertia.xx), To(b.inertia.xy), To(b.inertia.xz), To(b.inertia.yy),
+                     To(b.inertia.yz), To(b.inertia.zz)}};
+  };
+  RobotModel<To> to;
+  to.base = body(from.base);
+  for (int l = 0; l < kNumLegs; ++l) {
+    const auto& leg = from.legs[l];
+    to.legs[l] = {vec(leg.haa),  vec(leg.hfe),    vec(leg.kfe),   vec(leg.foot),
+                  body(leg.hip), body(leg.thigh), body(leg.shank)};
+  }
+  for (int j = 0; j < kNumJoints; ++j) {
+    to.rotor_inertia[j] = To(from.rotor_inertia[j]);
+    to.lower_rad[j] = To(from.lower_rad[j]);
+    to.upper_rad[j] = To(from.upper_rad[j]);
+    to.torque_limit_nm[j] = To(from.torque_limit_nm[j]);
+    to.speed_limit_radps[j] = To(from.speed_limit_radps[j]);
+  }
+  to.foot_radius_m = To(from.foot_radius_m);
+  to.foot_width_m = To(from.foot_width_m);
+  to.knee_radius_m = To(from.knee_radius_m);
+  to.shank_radius_m = To(from.shank_radius_m);
+  to.base_box_centre_m = vec(from.base_box_centre_m);
+  to.base_box_half_m = vec(from.base_box_half_m);
+  return to;
+}
+
+}  // namespace sandrunner::sim

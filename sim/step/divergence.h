@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include "sim/robot/dynamics.h"
+
+namespace sandrunner::sim {
+
+/// Whether a simulation has left all that a robot does (a speed of 100 m/s and rad/s in sum, 10 m
+/// of height), or is not a number. Flags of contact do not show it: comparisons with nan are false.
+inline bool diverged(const RigidState<float>& x) noexcept {
+  const float speed = std::fabs(x.velocity.x) + std::fabs(x.velocity.y) + std::fabs(x.velocity.z) +
+                      std::fabs(x.angular_velocity.x) + std::fabs(x.angular_velocity.y) +
+                      std::fabs(x.angular_velocity.z);
+  return !(speed < 100.0f) || !(std::fabs(x.position.z) < 10.0f);
+}
+
+}  // namespace sandrunner::sim

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One 0.25 ms step of a robot on its ground: dynamics, contact law of each foot, contact problem,
+// semi-implicit Euler. Free of clock, heap and branches that depend on one lane; instantiated for
+// double (the simulator behind RobotIo) and for float and float packs (training).
+#pragma once
+
+#include <array>
+#include <type_traits>
+
+#include "sim/ground/granular.h"
+#include "sim/ground/terrain.h"
+#include "sim/robot/dynamics.h"
+#include "sim/step/contact_solver.h"
+
+namespace sandrunner::sim {
+
+// Contact points: feet, then knees (thigh), shanks, corners of the base.
+inline constexpr int kNumBaseCorners = 8;
+inline constexpr int kNumPoints = 3 * kNumLegs + kNumBaseCorners;
+
+/// All that one robot's step carries over to the next.
+template <typename S>
+struct RobotState {
+  RigidState<S> rigid;
+  std::array<FootContact<S>, kNumLegs> feet;
+  std::array<std::array<S, 3>, kNumPoints> impulse{};  ///< of the last step: warm start, N s
+  std::array<S, kNumJoints> stop_impulse{};            ///< signed: > 0 at the lower stop
+};
+
+/// What a step shows to those who watch: sensors, statistics, rewards, pictures.
+template <typename S>
+struct StepReport {
+  std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m, at the start of the step
+  std::array<S, kNumLegs> penetration{};        ///< of the deepest point below the surface, m
+  std::array<Vec3<S>, kNumLegs> foot_velocity;  ///< of the deepest point, world, m/s
+  std::array<std::array<S, 3>, kNumLegs>
+      foot_force{};                     ///< contact frame (world axes on level ground), N
+  std::array<S, kNumLegs> raw_force{};  ///< granular law before the filter, N
+  std::array<Vec3<S>, kNumLegs> knee;   ///< world, m
+  S base_contact{}, thigh_contact{}, shank_contact{};  ///< 1: touches the ground
+  Vec3<S> base_acceleration;  ///< of the base origin, body components, m/s^2
+  int sweeps = 0;
+};
+
+struct StepSettings {
+  double dt_s = kControlPeriod_s;
+  double tolerance_ns = 1e-5;  ///< of the contact solver, N s
+  int max_sweeps = 150;
+};
+
+template <typename S>
+class RobotStepper {
+ public:
+  /// Advances `x` by one step under joint torques (N m).
+  void step(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
+            const StepSettings& settings, const std::array<S, kNumJoints>& torque_nm,
+            RobotState<S>& x, StepReport<S>& report) noexcept;
+
+  const Dynamics<S>& dynamics() const noexcept { return dynamics_; }
+  /// The contact problem of the last step as solved, for tests.
+  const std::array<PointContact<S>, kNumPoints>& points() const noexcept { return points_; }
+  int num_points() const noexcept { return num_points_; }
+
+ private:
+  struct Frame {  // rows in body components
+    Vec3<S> t1, t2, n;
+  };
+  using Columns = std::array<Vec3<S>, 3>;  // of a leg's Jacobian, body components
+  /// Maps an impulse along e (body components) at r_base (from the base origin) to the base and the
+  /// joints.
+  void fill_row(const Vec3<S>& e, const Vec3<S>& r_base, int leg, const Columns& columns,
+                std::array<S, 6>& w, std::array<S, 3>& j) noexcept;
+  void fill_rows(const Vec3<S>& r_base, int leg, const Columns& columns, const Frame& frame,
+                 PointContact<S>& c) noexcept;
+  void add_feet(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
+                S dt, RobotState<S>& x, StepReport<S>& report) noexcept;
+  void add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain, RobotState<S>& x,
+                       StepReport<S>& report) noexcept;
+  void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const Vec3<S>& r_base,
+                      const Vec3<S>& r_hip, int leg, int joints, S radius, bool only_rigid,
+                      const Mask<S>& near, int slot, RobotState<S>& x, S& touched) noexcept;
+  void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
+  Frame surface_frame(S slope_x, S slope_y) const noexcept;
+
+  Dynamics<S> dynamics_;
+  Mat3<S> rotation_;  // body to world
+  Vec3<S> velocity_;  // of the base origin, body components
+  Motion<S> free_;    // velocities at the end of the step without contact
+  std::array<PointContact<S>, kNumPoints> points_;
+  std::array<int, kNumPoints> slots_{};
+  int num_points_ = 0;
+  std::array<StopRow<S>, kNumJoints> stops_;
+  std::array<int, kNumJoints> stop_joints_{};
+  int num_stops_ = 0;
+  std::array<GranularForce<S>, kNumLegs> granular_;
+  Ground<S> mixed_ground_;  // of lanes that stand on different patches
+};
+
+}  // namespace sandrunner::sim
+
+#include "sim/step/robot_step_impl.h"

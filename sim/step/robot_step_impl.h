@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Definitions of RobotStepper (robot_step.h).
+#pragma once
+
+#include "sim/step/robot_step.h"
+
+namespace sandrunner::sim {
+
+template <typename S>
+typename RobotStepper<S>::Frame RobotStepper<S>::surface_frame(S slope_x,
+                                                               S slope_y) const noexcept {
+  // Normal of z = h(x, y), and the tangent nearest to world x.
+  const S one = S(1.0);
+  const S n = one / sqrt(fma(slope_x, slope_x, fma(slope_y, slope_y, one)));
+  const Vec3<S> normal{-(slope_x * n), -(slope_y * n), n};
+  const S t = one / sqrt(fma(slope_x, slope_x, one));
+  const Vec3<S> tangent{t, S(0.0), slope_x * t};
+  const Vec3<S> other = cross(normal, tangent);
+  return {transposed_times(rotation_, tangent), transposed_times(rotation_, other),
+          transposed_times(rotation_, normal)};
+}
+
+template <typename S>
+void RobotStepper<S>::fill_row(const Vec3<S>& e, const Vec3<S>& r_base, int leg,
+                               const Columns& columns, std::array<S, 6>& w,
+                               std::array<S, 3>& j) noexcept {
+  Vec3<S> linear = e, angular = cross(r_base, e);
+  if (leg >= 0) {
+    for (int i = 0; i < 3; ++i) {
+      j[i] = dot(e, columns[i]);
+      linear = mul_add(dynamics_.y_linear(leg, i), -j[i], linear);
+      angular = mul_add(dynamics_.y_angular(leg, i), -j[i], angular);
+    }
+  }
+  w = dynamics_.half_solve(linear, angular);
+}
+
+template <typename S>
+void RobotStepper<S>::fill_rows(const Vec3<S>& r_base, int leg, const Columns& columns,
+                                const Frame& frame, PointContact<S>& c) noexcept {
+  c.leg = leg;
+  Vec3<S> velocity = cross_add(free_.angular, r_base, free_.linear);
+  if (leg >= 0) {
+    for (int i = 0; i < 3; ++i) {
+      velocity = mul_add(columns[i], free_.joint[3 * leg + i], velocity);
+    }
+  }
+  const std::array<Vec3<S>, 3> axes{frame.t1, frame.t2, frame.n};
+  // A normal impulse that is given only acts: its row needs no velocity and no Delassus block.
+  const int solved = any(c.hard) ? 3 : 2;
+  for (int r = 0; r < 3; ++r) {
+    fill_row(axes[r], r_base, leg, columns, c.w[r], c.j[r]);
+    if (r == solved) break;
+    c.free[r] = dot(axes[r], velocity);
+    if (leg >= 0) {
+      const Vec3<S> p = dynamics_.leg_inverse(leg) * Vec3<S>{c.j[r][0], c.j[r][1], c.j[r][2]};
+      c.p[r] = {p.x, p.y, p.z};
+    }
+  }
+  const auto block = [&](int a, int b) {
+    S v = c.w[a][0] * c.w[b][0];
+    for (int i = 1; i < 6; ++i) v = fma(c.w[a][i], c.w[b][i], v);
+    if (leg >= 0) {
+      for (int i = 0; i < 3; ++i) v = fma(c.p[a][i], c.j[b][i], v);
+    }
+    return v;
+  };
+  c.g.xx = block(0, 0);
+  c.g.xy = block(0, 1);
+  c.g.yy = block(1, 1);
+  if (solved < 3) return;
+  c.g.xz = block(0, 2);
+  c.g.yz = block(1, 2);
+  c.g.zz = block(2, 2);
+}
+
+template <typename S>
+void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>& foot,
+                               const Terrain<S>& terrain, S dt, RobotState<S>& x,
+                               StepReport<S>& report) noexcept {
+  const S zero = S(0.0), one = S(1.0);
+  const S rate = one / dt;
+  for (int l = 0; l < kNumLegs; ++l) {
+    const LegPose<S>& pose = dynamics_.leg(l);
+    const Vec3<S> centre_base = hip_to_base(model.legs[l], pose, pose.foot);
+    const Vec3<S> centre = x.rigid.position + rotation_ * centre_base;
+    FootContact<S>& contact = x.feet[l];
+    // A contact keeps the patch on which it began.
+    contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
+    const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
+    S height = zero, slope_x = zero, slope_y = zero;
+    const Mask<S> rough = ground.roughness > zero;
+    if (any(rough)) {
+      rough_surface(ground, centre.x, centre.y, height, slope_x, slope_y);
+      height = select(rough, height, zero);
+      slope_x = select(rough, slope_x, zero);
+      slope_y = select(rough, slope_y, zero);
+    }
+    Frame frame{rotation_.r0, rotation_.r1, rotation_.r2};
+    if (any(rough)) {
+      const Frame tilted = surface_frame(slope_x, slope_y);
+      frame = {select(rough, tilted.t1, frame.t1), select(rough, tilted.t2, frame.t2),
+               select(rough, tilted.n, frame.n)};
+    }
+    // Deepest point: a foot radius from the centre against the normal; depth measured along the
+    // normal.
+    const Vec3<S> r_base = mul_add(frame.n, -model.foot_radius_m, centre_base);
+    const S normal_z = dot(frame.n, rotation_.r2);
+    const S penetration = model.foot_radius_m - (centre.z - height) * normal_z;
+    report.foot_centre[l] = centre;
+    report.penetration[l] = penetration;
+    const Columns columns = dynamics_.leg_jacobian(
+        model, l, pose.foot + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n));
+    Vec3<S> v_base = cross_add(x.rigid.angular_velocity, r_base, velocity_);
+    for (int j = 0; j < 3; ++j) v_base = mul_add(columns[j], x.rigid.qd[3 * l + j], v_base);
+    const Vec3<S> velocity = rotation_ * v_base;
+    report.foot_velocity[l] = velocity;
+
+    const S penetration_rate = -dot(frame.n, v_base);
+    const Vec3<S> point = x.rigid.position + rotation_ * r_base;
+    granular_[l] = granular_step(ground, foot, point.x, point.y, penetration, penetration_rate,
+                                 velocity.x, velocity.y, rate, contact);
+    const Mask<S> touching = penetration >= zero;
+    const Mask<S> granular = ground.is_granular == one;
+    const Mask<S> linear = ground.is_linear == one;
+    const S spring =
+        max(fma(ground.stiffness, penetration, ground.damping * penetration_rate), zero);
+    const S normal = select(granular, granular_[l].normal, select(linear, spring, zero));
+    const S bound = select(granular, granular_[l].friction_bound,
+                           select(linear, ground.friction * spring, zero));
+    report.raw_force[l] = select(granular, granular_[l].raw, normal);
+    granular_[l].stroke = select(granular, granular_[l].stroke, zero);
+
+    PointContact<S>& c = points_[num_points_];
+    slots_[num_points_] = l;
+    c.active = touching;
+    if (!any(c.active)) {
+      x.impulse[l] = {zero, zero, zero};
+      continue;
+    }
+    c.hard = ground.is_rigid == one;
+    fill_rows(r_base, l, columns, frame, c);
+    c.friction = ground.friction;
+    c.disc = bound * dt;
+    c.impulse = {x.impulse[l][0], x.impulse[l][1], select(c.hard, x.impulse[l][2], normal * dt)};
+    ++num_points_;
+  }
+}
+
+template <typename S>
+void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain,
+                                     const Vec3<S>& r_base, const Vec3<S>& r_hip, int leg,
+                                     int joints, S radius, bool only_rigid, const Mask<S>& near,
+                                     int slot, RobotState<S>& x, S& touched) noexcept {
+  const S zero = S(0.0), one = S(1.0);
+  const Vec3<S> place = x.rigid.position + rotation_ * r_base;
+  const auto forget = [&] { x.impulse[slot] = {zero, zero, zero}; };
+  // Lanes outside this mask stay outside, whatever rounding says of them further down: one robot
+  // alone stops here.
+  const Mask<S> close = both(near, place.z - radius < terrain.highest);
+  if (!any(close)) return forget();
+  const Ground<S>& ground = terrain.pick(terrain.region_at(place.x), mixed_ground_);
+  S height = zero, slope_x = zero, slope_y = zero;
+  const Mask<S> rough = ground.roughness > zero;
+  if (any(rough)) {
+    rough_surface(ground, place.x, place.y, height, slope_x, slope_y);
+    height = select(rough, height, zero);
+    slope_x = select(rough, slope_x, zero);
+    slope_y = select(rough, slope_y, zero);
+  }
+  const Frame tilted = surface_frame(slope_x, slope_y);
+  const Frame level{rotation_.r0, rotation_.r1, rotation_.r2};
+  const Frame frame{select(rough, tilted.t1, level.t1), select(rough, tilted.t2, level.t2),
+                    select(rough, tilted.n, level.n)};
+  const S penetration = radius - (place.z - height) * dot(frame.n, rotation_.r2);
+  Mask<S> active = both(close, penetration >= zero);
+  if (only_rigid) active = both(active, ground.is_rigid == one);
+  touched = select(active, one, touched);
+  if (!any(active)) return forget();
+  PointContact<S>& c = points_[num_points_];
+  slots_[num_points_] = slot;
+  ++num_points_;
+  const Vec3<S> arm = mul_add(frame.n, -radius, r_base);
+  Columns columns;
+  if (leg >= 0) {
+    const LegPose<S>& pose = dynamics_.leg(leg);
+    columns = dynamics_.leg_jacobian(model, leg,
+                                     r_hip + unrotate_x(pose.s1, pose.c1, (-radius) * frame.n));
+    if (joints < 3) columns[2] = {zero, zero, zero};
+  }
+  c.active = active;
+  c.hard = active;
+  fill_rows(arm, leg, columns, frame, c);
+  c.friction = ground.friction;
+  c.disc = zero;
+  c.impulse = x.impulse[slot];
+}
+
+template <typename S>
+void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain,
+                                      RobotState<S>& x, StepReport<S>& report) noexcept {
+  const S zero = S(0.0);
+  report.base_contact = report.thigh_contact = report.shank_contact = zero;
+  for (int l = 0; l < kNumLegs; ++l) {
+    const LegPose<S>& pose = dynamics_.leg(l);
+    const Vec3<S> knee_base = hip_to_base(model.legs[l], pose, pose.knee);
+    report.knee[l] = x.rigid.position + rotation_ * knee_base;
+    add_hard_point(model, terrain, knee_base, pose.knee, l, 2, model.knee_radius_m, false,
+                   zero == zero, kNumLegs + l, x, report.thigh_contact);
+    // On level ground knee and foot cover the shank; only uneven rigid ground can touch it.
+    const Mask<S> uneven = terrain.highest > zero;
+    if (any(uneven)) {
+      const Vec3<S> middle = S(0.5) * (pose.knee + pose.foot);
+      add_hard_point(model, terrain, hip_to_base(model.legs[l], pose, middle), middle, l, 3,
+                     model.shank_radius_m, true, uneven, 2 * kNumLegs + l, x, report.shank_contact);
+    }
+  }
+  const Vec3<S>& half = model.base_box_half_m;
+  const S reach = fma(abs(rotation_.r2.x), half.x,
+                      fma(abs(rotation_.r2.y), half.y, abs(rotation_.r2.z) * half.z));
+  const S lowest = (x.rigid.position.z + dot(rotation_.r2, model.base_box_centre_m)) - reach;
+  const Mask<S> low = lowest < terrain.highest;
+  if (!any(low)) {
+    for (int i = 0; i < kNumBaseCorners; ++i) x.impulse[3 * kNumLegs + i] = {zero, zero, zero};
+    return;
+  }
+  for (int i = 0; i < kNumBaseCorners; ++i) {
+    const Vec3<S> corner =
+        model.base_box_centre_m +
+        Vec3<S>{(i & 1) ? half.x : -half.x, (i & 2) ? half.y : -half.y, (i & 4) ? half.z : -half.z};
+    add_hard_point(model, terrain, corner, corner, -1, 0, zero, false, low, 3 * kNumLegs + i, x,
+                   report.base_contact);
+  }
+}
+
+template <typename S>
+void RobotStepper<S>::add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept {
+  const S zero = S(0.0);
+  const S rate = S(1.0) / dt;
+  for (int joint = 0; joint < kNumJoints; ++joint) {
+    const int leg = joint / 3, j = joint % 3;
+    const S q = x.rigid.q[joint];
+    const S above = q - model.lower_rad[joint], below = model.upper_rad[joint] - q;
+    const Mask<S> at_lower = above < below;
+    const S gap = select(at_lower, above, below);
+    const S sign = select(at_lower, S(1.0), S(-1.0));
+    const S free = sign * free_.joint[joint];
+    const Mask<S> active = fma(dt, free, gap) < zero;
+    if (!any(active)) continue;
+    stop_joints_[num_stops_] = joint;
+    StopRow<S>& c = stops_[num_stops_++];
+    c.leg = leg;
+    c.active = active;
+    c.j = {zero, zero, zero};
+    c.j[j] = sign;
+    c.w = dynamics_.half_solve((-sign) * dynamics_.y_linear(leg, j),
+                               (-sign) * dynamics_.y_angular(leg, j));
+    const Vec3<S> p = dynamics_.leg_inverse(leg) * Vec3<S>{c.j[0], c.j[1], c.j[2]};
+    c.p = {p.x, p.y, p.z};
+    S g = c.p[j] * sign;
+    for (int i = 0; i < 6; ++i) g = fma(c.w[i], c.w[i], g);
+    c.g = g;
+    // May close the gap within the step; beyond the stop it only may not go further.
+    c.free = fma(max(gap, zero), rate, free);
+    c.impulse = max(sign * x.stop_impulse[joint], zero);
+  }
+}
+
+template <typename S>
+void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foot,
+                           const Terrain<S>& terrain, const StepSettings& settings,
+                           const std::array<S, kNumJoints>& torque_nm, RobotState<S>& x,
+                           StepReport<S>& report) noexcept {
+  const S dt = S(settings.dt_s), zero = S(0.0);
+  rotation_ = rotation_matrix(x.rigid.orientation);
+  dynamics_.update(model, x.rigid);
+  const Motion<S> acceleration = dynamics_.free_acceleration(torque_nm);
+  velocity_ = transposed_times(rotation_, x.rigid.velocity);
+  free_.linear = mul_add(acceleration.linear, dt, velocity_);
+  free_.angular = mul_add(acceleration.angular, dt, x.rigid.angular_velocity);
+  for (int j = 0; j < kNumJoints; ++j) {
+    free_.joint[j] = fma(dt, acceleration.joint[j], x.rigid.qd[j]);
+  }
+
+  num_points_ = num_stops_ = 0;
+  add_feet(model, foot, terrain, dt, x, report);
+  add_body_points(model, terrain, x, report);
+  add_stops(model, dt, x);
+
+  ImpulseSum<S> sum;
+  report.sweeps = solve_contacts<S, kNumPoints, kNumJoints>(
+      points_, num_points_, stops_, num_stops_, S(settings.tolerance_ns), settings.max_sweeps, sum);
+  const S rate = S(1.0) / dt;
+  for (auto& force : report.foot_force) force = {zero, zero, zero};
+  for (int i = 0; i < num_points_; ++i) {
+    x.impulse[slots_[i]] = points_[i].impulse;
+    if (slots_[i] < kNumLegs) {
+      for (int r = 0; r < 3; ++r) report.foot_force[slots_[i]][r] = points_[i].impulse[r] * rate;
+    }
+  }
+  x.stop_impulse.fill(zero);
+  for (int i = 0; i < num_stops_; ++i) {
+    const int joint = stop_joints_[i];
+    // Not the product alone: it is -0 for a lane that has left its upper stop, where one robot
+    // alone has +0.
+    x.stop_impulse[joint] =
+        select(stops_[i].impulse > zero, stops_[i].j[joint % 3] * stops_[i].impulse, zero);
+  }
+
+  // Stroke resistance acts beside the contact problem, on the flank of the foot: a radius outwards
+  // and up from the deepest point, which is level with the centre.
+  for (int l = 0; l < kNumLegs; ++l) {
+    const GranularForce<S>& f = granular_[l];
+    if (!any(f.stroke > zero)) continue;
+    const LegPose<S>& pose = dynamics_.leg(l);
+    const Vec3<S> outward =
+        transposed_times(rotation_, Vec3<S>{f.direction_x, f.direction_y, zero});
+    const Vec3<S> arm =
+        mul_add(outward, model.foot_radius_m, hip_to_base(model.legs[l], pose, pose.foot));
+    const Vec3<S> arm_hip = pose.foot + unrotate_x(pose.s1, pose.c1, model.foot_radius_m * outward);
+    std::array<S, 6> w;
+    std::array<S, 3> j;
+    fill_row(outward, arm, l, dynamics_.leg_jacobian(model, l, arm_hip), w, j);
+    add_impulse(w, j, l, -(f.stroke * dt), sum);
+    report.foot_force[l][0] = fma(-f.stroke, f.direction_x, report.foot_force[l][0]);
+    report.foot_force[l][1] = fma(-f.stroke, f.direction_y, report.foot_force[l][1]);
+  }
+
+  // Velocities, then positions with the new velocities.
+  Vec3<S> linear, angular;
+  dynamics_.back_solve(sum.y, linear, angular);
+  report.base_acceleration = mul_add(linear, rate, acceleration.linear);
+  x.rigid.velocity = x.rigid.velocity + rotation_ * mul_add(acceleration.linear, dt, linear);
+  x.rigid.angular_velocity = free_.angular + angular;
+  for (int l = 0; l < kNumLegs; ++l) {
+    const std::array<S, 3>& u = sum.joint[l];
+    const Vec3<S> z = dynamics_.leg_inverse(l) * Vec3<S>{u[0], u[1], u[2]};
+    const std::array<S, 3> zs{z.x, z.y, z.z};
+    for (int j = 0; j < 3; ++j) {
+      x.rigid.qd[3 * l + j] =
+          free_.joint[3 * l + j] + (zs[j] - (dot(dynamics_.y_linear(l, j), linear) +
+                                             dot(dynamics_.y_angular(l, j), angular)));
+      x.rigid.q[3 * l + j] = fma(dt, x.rigid.qd[3 * l + j], x.rigid.q[3 * l + j]);
+    }
+  }
+  x.rigid.position = mul_add(x.rigid.velocity, dt, x.rigid.position);
+  x.rigid.orientation = integrate(x.rigid.orientation, dt * x.rigid.angular_velocity);
+}
+
+}  // namespace sandrunner::sim

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/loop/replay.h"
+
+#include <gtest/gtest.h>
+
+#include "rt/loop/tick_fields.h"
+#include "tests/rt/support.h"
+
+namespace sandrunner {
+namespace {
+
+/// Ticks of a run of the policy that ships, from lying through a short walk.
+std::vector<TickRecord> recorded_run(const ProcessConfig& config, bool realtime) {
+  std::vector<TickRecord> ticks;
+  Policy policy = load_shipped_policy();
+  const std::atomic<bool> nobody{false};
+  const auto tap = [&](const TickRecord& tick) { ticks.push_back(tick); };
+  const RunPlan plan{.walk_s = 1.0, .start_walking = realtime};
+  if (realtime) {
+    RealtimeHooks hooks;
+    run_realtime(config, &policy, CommandSource("1,0,0.5"), plan, false, nobody, {}, tap, hooks);
+  } else {
+    run_lockstep(config, &policy, CommandSource("1,0,0.5"), plan, false, nobody, {}, tap);
+  }
+  return ticks;
+}
+
+ProcessConfig noisy_config(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> settings = {"sim.noise.joint_position_rad=0.01",
+                                       "sim.noise.angular_velocity_radps=0.05"};
+  settings.insert(settings.end(), more.begin(), more.end());
+  const Policy policy = load_shipped_policy();
+  return config_of("dry-sand", settings, &policy.spec());
+}
+
+std::optional<ReplayDifference> replay(const std::vector<TickRecord>& ticks,
+                                       const ProcessConfig& config, Mode start) {
+  Policy policy = load_shipped_policy();
+  Replay replay(config.controller, start, &policy);
+  for (const TickRecord& tick : ticks) {
+    if (auto difference = replay.check(tick)) return difference;
+  }
+  EXPECT_EQ(replay.ticks(), ticks.size());
+  EXPECT_GT(replay.policy_steps(), 90u);
+  return std::nullopt;
+}
+
+class ReplayTest : public testing::Test {
+ protected:
+  static const std::vector<TickRecord>& ticks() {
+    static const std::vector<TickRecord> kTicks = recorded_run(noisy_config(), false);
+    return kTicks;
+  }
+};
+
+TEST_F(ReplayTest, LockstepRunReplaysBitForBit) {
+  const auto difference = replay(ticks(), noisy_config(), Mode::kPassive);
+  EXPECT_FALSE(difference) << difference->what;
+}
+
+TEST_F(ReplayTest, ThreadedRunReplaysBitForBit) {
+  const ProcessConfig config = noisy_config();
+  const auto difference = replay(recorded_run(config, true), config, Mode::kWalk);
+  EXPECT_FALSE(difference) << difference->tick << ": " << difference->what;
+}
+
+TEST_F(ReplayTest, FlippedInputBitIsFoundByWhatItChanges) {
+  // Words whose every bit decides something while the robot walks.
+  const std::size_t at = 20000;
+  ASSERT_EQ(ticks()[at].output.mode, Mode::kWalk);
+  for (const std::size_t word : {3u, 14u, 56u, 90u, 101u, 165u}) {
+    std::vector<TickRecord> spoilt(ticks().begin(), ticks().end());
+    auto words = std::bit_cast<TickWords>(spoilt[at]);
+    words[word] ^= 1;
+    spoilt[at] = std::bit_cast<TickRecord>(words);
+    const auto difference = replay(spoilt, noisy_config(), Mode::kPassive);
+    ASSERT_TRUE(difference) << tick_word_name(word);
+    EXPECT_GE(difference->tick, at);
+    EXPECT_LE(difference->tick, at + 80) << tick_word_name(word) << " -> " << difference->what;
+  }
+}
+
+TEST_F(ReplayTest, FlippedOutputBitIsNamedInItsTick) {
+  std::vector<TickRecord> spoilt(ticks().begin(), ticks().end());
+  spoilt[100].output.faults ^= 1;
+  const auto difference = replay(spoilt, noisy_config(), Mode::kPassive);
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(difference->tick, 100u);
+  EXPECT_EQ(difference->what, "faults: recorded 1, computed 0");
+}
+
+TEST_F(ReplayTest, AnotherGainIsFoundInTheFirstTickThatUsesIt) {
+  const ProcessConfig other = noisy_config({"controller.walk.kp_nmprad=51"});
+  const auto difference = replay(ticks(), other, Mode::kPassive);
+  ASSERT_TRUE(difference);
+  const auto first_walk = std::find_if(ticks().begin(), ticks().end(), [](const TickRecord& tick) {
+    return tick.output.mode == Mode::kWalk;
+  });
+  EXPECT_EQ(difference->tick, first_walk->input.sensors.tick);
+  EXPECT_EQ(difference->what.substr(0, 20), "command_kp_nmprad[0]") << difference->what;
+}
+
+// Between the tick that releases the policy and the one that brings its answer, too.
+TEST_F(ReplayTest, ContinuesFromTheStateOfAnotherReplay) {
+  const auto released = std::find_if(ticks().begin() + 12000, ticks().end(), [](const auto& tick) {
+    return tick.output.release_policy != 0;
+  });
+  for (auto from = released - 1; from < released + 3; ++from) {
+    Policy policy = load_shipped_policy(), other_policy = load_shipped_policy();
+    Replay first(noisy_config().controller, Mode::kPassive, &policy);
+    for (auto tick = ticks().begin(); tick < from; ++tick) ASSERT_FALSE(first.check(*tick));
+    Replay second(noisy_config().controller, Mode::kPassive, &other_policy);
+    second.restore(read_replay_state(replay_state_bytes(first.state()), "state"));
+    for (auto tick = from; tick < ticks().end(); ++tick) {
+      const auto difference = second.check(*tick);
+      ASSERT_FALSE(difference) << difference->tick << ": " << difference->what;
+    }
+    EXPECT_GT(second.policy_steps(), 20u);
+  }
+}
+
+TEST_F(ReplayTest, MissingTickIsNamed) {
+  std::vector<TickRecord> cut(ticks().begin(), ticks().begin() + 1000);
+  cut.erase(cut.begin() + 500);
+  const auto difference = replay(cut, noisy_config(), Mode::kPassive);
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(difference->tick, 501u);
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bad input: one clear line, exit code 2, before any work.
+#include "policy/policy_file.h"
+#include "policy/safetensors.h"
+#include "tests/rt/program.h"
+#include "sim/robot/embedded.h"
+#include "tests/policy/random_policy.h"
+
+namespace sandrunner {
+namespace {
+
+class BadInputTest : public ProgramTest {
+ protected:
+  BadInputTest() { write_policy_file(folder_.path("good"), random_policy_file()); }
+
+  /// Also asks for results, to see that none begin.
+  void expect_refused(const std::string& arguments, const std::string& cause) {
+    const std::set<std::string> before = files_in("");
+    EXPECT_EQ(run("--out results " + arguments), 2) << arguments;
+    expect_one_line(arguments, cause);
+    EXPECT_EQ(files_in(""), before) << arguments;
+  }
+  void expect_one_line(const std::string& arguments, const std::string& cause) {
+    const std::string line = error();
+    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << arguments << "\n" << line;
+    EXPECT_EQ(line.rfind("sandrunner: ", 0), 0u) << line;
+    EXPECT_NE(line.find(cause), std::string::npos) << "no '" << cause << "' in: " << line;
+    EXPECT_EQ(output(), "") << arguments;
+  }
+  void write(const std::string& name, const std::string& content) {
+    write_file(folder_.path(name), content);
+  }
+};
+
+TEST_F(BadInputTest, Options) {
+  expect_refused("--nosuch", "--nosuch");
+  expect_refused("--terain rigid", "--terain");
+  expect_refused("walk", "walk");
+  expect_refused("--policy", "--policy");
+  expect_refused("--start fly", "fly");
+  expect_refused("--duration -1", "--duration: -1");
+  expect_refused("--duration 0", "--duration: 0");
+  expect_refused("--duration nan", "--duration: nan");
+  expect_refused("--duration inf", "--duration: inf");
+  expect_refused("--duration long", "long");
+  expect_refused("--duration 20s", "20s");
+  expect_refused("--seed 1.5", "1.5");
+  expect_refused("--seed x", "x");
+}
+
+TEST_F(BadInputTest, SeedsThatAreNone) {
+  expect_refused("--seed -1", "-1");
+  expect_refused("--seed 99999999999999999999", "99999999999999999999");
+}
+
+TEST_F(BadInputTest, Commands) {
+  expect_refused("--command 1,2", "'1,2' has 2 numbers, expected 3");
+  expect_refused("--command nan,0,0", "'nan,0,0'");
+  expect_refused("--command fast", "'fast'");
+  expect_refused("--command " + std::string(300, '1') + ",", "--command: '111");
+  expect_refused("--command 100,0,0", "100");
+  write("command.csv", "t_s,vx,vy,wz\n0,1,0,0\n1,oops,0,0\n");
+  expect_refused("--command command.csv", "command.csv:3: '1,oops,0,0'");
+}
+
+TEST_F(BadInputTest, Terrains) {
+  expect_refused("--terrain nosuch", "'nosuch' is neither a preset");
+  write("unknown.toml", "[terrain]\nfriction = 0.5\nslipperiness = 3\n");
+  expect_refused("--terrain unknown.toml", "unknown.toml:3: unknown key 'terrain.slipperiness'");
+  write("negative.toml", "[terrain]\nkind = \"linear\"\nstiffness_npm = -1\n");
+  expect_refused("--terrain negative.toml", "negative.toml:3: terrain.stiffness_npm: found -1");
+  write("nan.toml", "[terrain]\nsigma_flat_npm3 = nan\n");
+  expect_refused("--terrain nan.toml", "nan.toml:2: terrain.sigma_flat_npm3: found nan");
+  write("broken.toml", "[terrain]\nfriction = \n");
+  expect_refused("--terrain broken.toml", "broken.toml:2: not valid TOML");
+  write("patch.toml", "[[terrain.patch]]\nfrom_x_m = 1\npreset = \"mud\"\n");
+  expect_refused("--terrain patch.toml", "preset 'mud'");
+}
+
+TEST_F(BadInputTest, Settings) {
+  expect_refused("--set nonsense", "--set nonsense: expected");
+  expect_refused("--set terrain.nosuch=1", "unknown key 'terrain.nosuch'");
+  expect_refused("--set terrain.stiffness_npm=-1", "found -1");
+  expect_refused("--set controller.gate.tilt_fault_deg=nan", "found nan");
+  expect_refused("--set sim.sensor_delay_ticks=0.5", "found 0.5");
+  expect_refused("--config absent.toml", "absent.toml: cannot be read");
+  expect_refused("--config .", "cannot be read");
+  write("unknown.toml", "[controller]\nspeed = 1\n");
+  expect_refused("--config unknown.toml", "unknown.toml:2: unknown key 'controller.speed'");
+}
+
+TEST_F(BadInputTest, Policies) {
+  const std::string bytes = read_file(folder_.path("good"));
+  expect_refused("--policy absent", "'absent': no such file");
+  expect_refused("--policy .", "'.': not a regular file");
+  for (const std::size_t size : {0u, 7u, 1000u, 300000u}) {
+    write("truncated", bytes.substr(0, size));
+    expect_refused("--policy truncated", "'truncated': ");
+  }
+  write("longer", bytes + "x");
+  expect_refused("--policy longer", "'longer': ");
+  std::string noise(100000, '\0');
+  RandomFloats random(3);
+  for (char& byte : noise) byte = static_cast<char>(random.bits());
+  write("noise", noise);
+  expect_refused("--policy noise", "'noise': ");
+
+  const TensorFile good = read_safetensors(folder_.path("good"));
+  TensorFile file = good;
+  file.tensors.at("golden.action").values[100] += 0.01f;
+  write_safetensors(folder_.path("golden"), file);
+  expect_refused("--policy golden", "golden example fails at step");
+  file = good;
+  file.tensors.at("actor.1.bias").shape = {64};
+  file.tensors.at("actor.1.bias").values.resize(64);
+  write_safetensors(folder_.path("resized"), file);
+  expect_refused("--policy resized", "actor.1.bias");
+
+  // The writer refuses a NaN, so it goes into the bytes: the last four are a tensor's end.
+  write("nan", bytes.substr(0, bytes.size() - 4) + std::string("\x00\x00\xc0\x7f", 4));
+  expect_refused("--policy nan", "'nan': ");
+}
+
+TEST_F(BadInputTest, Robots) {
+  expect_refused("--set robot=absent.toml", "absent.toml: cannot be read");
+  const std::string map(embedded_robot_file("raibo.toml"));
+  const std::string urdf(embedded_robot_file("raibo.urdf"));
+  write("map.toml", map);
+  expect_refused("--set robot=map.toml", "raibo.urdf: cannot be read");
+  write("raibo.urdf", urdf.substr(0, urdf.size() / 2));
+  expect_refused("--set robot=map.toml", "raibo.urdf: not a ");
+  write("raibo.urdf", "no robot at all");
+  expect_refused("--set robot=map.toml", "raibo.urdf: not a ");
+  write("raibo.urdf",
+        "<robot name=\"cart\"><link name=\"cart\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" "
+        "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link></robot>");
+  expect_refused("--set robot=map.toml", "raibo.urdf: has no link 'base'");
+  write("raibo.urdf", urdf);
+  write("map.toml", map + "[wheels]\nradius_m = 0.1\n");
+  expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
+}
+
+TEST_F(BadInputTest, OutputFolders) {
+  write("file", "precious");
+  const std::set<std::string> before = files_in("");
+  for (const char* folder : {"file", "file/results", "/proc/results"}) {
+    EXPECT_EQ(run(std::string("--out ") + folder), 2);
+    expect_one_line(folder, "--out: folder '" + std::string(folder) + "'");
+  }
+  EXPECT_EQ(files_in(""), before);
+  EXPECT_EQ(read_file(folder_.path("file")), "precious");
+}
+
+TEST_F(BadInputTest, NamesWithLineBreaksStillGiveOneLine) {
+  for (const char* option : {"--terrain", "--command", "--policy", "--config", "--set", ""}) {
+    expect_refused(std::string(option) + " 'a\nb'", "a");
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Good runs of the program: what it prints and writes.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "policy/policy_file.h"
+#include "tests/rt/program.h"
+#include "tests/policy/random_policy.h"
+
+namespace sandrunner {
+namespace {
+
+using Json = nlohmann::json;
+
+class CommandLineTest : public ProgramTest {
+ protected:
+  CommandLineTest() { write_policy_file(folder_.path("policy"), random_policy_file()); }
+  Json summary(const std::string& folder) const {
+    return Json::parse(std::ifstream(folder_.path(folder + "/summary.json")));
+  }
+};
+
+TEST_F(CommandLineTest, HelpNamesEveryOption) {
+  EXPECT_EQ(run("--help"), 0);
+  EXPECT_EQ(error(), "");
+  for (const char* text :
+       {"--policy", "--terrain", "--command", "--duration", "--start", "--seed", "--config",
+        "--set", "--out", "--version", "--clock", "rt-report", "dry-sand", "athletic-track"}) {
+    EXPECT_NE(output().find(text), std::string::npos) << text;
+  }
+}
+
+TEST_F(CommandLineTest, VersionIsOneLine) {
+  EXPECT_EQ(run("--version"), 0);
+  EXPECT_EQ(output(), "sandrunner " SANDRUNNER_VERSION "\n");
+}
+
+TEST_F(CommandLineTest, WithoutArgumentsTheRobotEndsOnItsFeet) {
+  EXPECT_EQ(run(""), 0);
+  EXPECT_EQ(error(), "");
+  EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
+  EXPECT_EQ(files_in(""), std::set<std::string>{"policy"});
+}
+
+TEST_F(CommandLineTest, RunWritesItsResults) {
+  const int code = run("--policy policy --start walk --duration 0.5 --seed 3 --out deep/results");
+  ASSERT_TRUE(code == 0 || code == 1) << error();
+  EXPECT_EQ(error(), "");
+  EXPECT_EQ(files_in("deep/results"), (std::set<std::string>{"summary.json", "config.toml",
+                                                             "run.csv", "run.png", "strip.png"}));
+  for (const char* name : {"run.png", "strip.png"}) {
+    EXPECT_EQ(read_file(folder_.path("deep/results/") + name).substr(0, 8), "\x89PNG\r\n\x1a\n");
+  }
+  const std::string csv = read_file(folder_.path("deep/results/run.csv"));
+  EXPECT_EQ(csv.substr(0, csv.find(',')), "t_s");
+  const Json j = summary("deep/results");
+  EXPECT_EQ(j.at("survived").get<bool>(), code == 0);
+  EXPECT_EQ(j.at("state_hash"), printed_hash());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n') - 1,
+            static_cast<int>(100.0 * j.at("duration_s").get<double>() + (code == 0 ? 0.0 : 51.0)));
+}
+
+TEST_F(CommandLineTest, StandardErrorThatNobodyTakesEndsNothing) {
+  // After a hang-up the terminal refuses what is written to it; /dev/full does so too.
+  EXPECT_EQ(WEXITSTATUS(std::system("'" SANDRUNNER_PROGRAM "' --nosuch 2>/dev/full")), 2);
+}
+
+TEST_F(CommandLineTest, SummaryHasEveryKey) {
+  const int code = run("--policy policy --start walk --duration 0.4 --command 1,0,0.25 --out .");
+  const Json j = summary(".");
+  const std::set<std::string> numbers = {"duration_s",
+                                         "mean_yaw_rate_radps",
+                                         "foot_clearance_iqr_mm",
+                                         "mechanical_power_w",
+                                         "torque_squared_nm2",
+                                         "realtime_factor",
+                                         "seed",
+                                         "joint_limit_steps",
+                                         "speed_limit_steps"};
+  std::set<std::string> keys = {
+      "survived",  "fall_time_s", "fall_reason",      "command",           "policy",
+      "terrain",   "version",     "interrupted",      "mean_velocity_mps", "sinkage_mm",
+      "estimator", "state_hash",  "cost_of_transport"};
+  keys.insert(numbers.begin(), numbers.end());
+  std::set<std::string> found;
+  for (const auto& [key, value] : j.items()) found.insert(key);
+  EXPECT_EQ(found, keys);
+
+  for (const std::string& key : numbers) EXPECT_TRUE(j.at(key).is_number()) << key;
+  EXPECT_EQ(j.at("command"), "1,0,0.25");
+  EXPECT_EQ(j.at("policy"), "random");
+  EXPECT_EQ(j.at("terrain"), "dry-sand");
+  EXPECT_EQ(j.at("version"), SANDRUNNER_VERSION);
+  EXPECT_EQ(j.at("seed"), 0);
+  EXPECT_EQ(j.at("interrupted"), false);
+  EXPECT_EQ(j.at("survived"), code == 0);
+  EXPECT_EQ(j.at("fall_reason").is_null(), code == 0);
+  EXPECT_EQ(j.at("fall_time_s").is_null(), code == 0);
+  EXPECT_LE(j.at("duration_s").get<double>(), 0.4);
+  ASSERT_EQ(j.at("mean_velocity_mps").size(), 2u);
+  for (const Json& v : j.at("mean_velocity_mps")) EXPECT_LT(std::abs(v.get<double>()), 5.0);
+  EXPECT_GE(j.at("sinkage_mm").at("max").get<double>(),
+            j.at("sinkage_mm").at("mean").get<double>());
+  EXPECT_GE(j.at("sinkage_mm").at("mean").get<double>(), 0.0);
+  EXPECT_GT(j.at("torque_squared_nm2").get<double>(), 0.0);
+  EXPECT_GT(j.at("realtime_factor").get<double>(), 0.0);
+  EXPECT_TRUE(j.at("cost_of_transport").is_null() || j.at("cost_of_transport").is_number());
+  for (const char* key : {"velocity_rmse_mps", "body_height_rmse_m", "foot_height_rmse_m"}) {
+    EXPECT_GT(j.at("estimator").at(key).get<double>(), 0.0) << key;
+  }
+  EXPECT_EQ(j.at("state_hash").get<std::string>().size(), 16u);
+  EXPECT_EQ(j.at("state_hash").get<std::string>().find_first_not_of("0123456789abcdef"),
+            std::string::npos);
+}
+
+TEST_F(CommandLineTest, StateHashDependsOnTheRunAndNotOnItsOutput) {
+  const std::string walk = "--policy policy --start walk --duration 0.3 ";
+  run(walk);
+  const std::string hash = printed_hash();
+  run(walk);
+  EXPECT_EQ(printed_hash(), hash);
+  run(walk + "--out results");
+  EXPECT_EQ(printed_hash(), hash);
+  run(walk + "--terrain rigid --config results/config.toml");  // over another preset
+  EXPECT_EQ(printed_hash(), hash);
+  run(walk + "--seed 1");
+  EXPECT_NE(printed_hash(), hash);
+  run(walk + "--set terrain.friction=0.79");
+  EXPECT_NE(printed_hash(), hash);
+  run(walk + "--command 1.49,0,0");
+  EXPECT_NE(printed_hash(), hash);
+}
+
+TEST_F(CommandLineTest, LaterSettingsWin) {
+  write_file(folder_.path("a.toml"),
+             "controller.stand.extend_s = 1.1\ncontroller.stand.fold_s = 1.1");
+  write_file(folder_.path("b.toml"), "controller.stand.extend_s = 1.2");
+  run("--config a.toml --config b.toml --set controller.stand.kp_nmprad=110 --set "
+      "controller.stand.kp_nmprad=120 --terrain rigid --policy policy --duration 0.1 --out .");
+  const std::string config = read_file(folder_.path("config.toml"));
+  for (const char* line : {"controller.stand.fold_s = 1.1\n", "controller.stand.extend_s = 1.2\n",
+                           "controller.stand.kp_nmprad = 120.0\n", "terrain.kind = \"rigid\"\n"}) {
+    EXPECT_NE(config.find(line), std::string::npos) << line << config;
+  }
+}
+
+TEST_F(CommandLineTest, FallIsExitCodeOne) {
+  EXPECT_EQ(run("--policy policy --start walk --set controller.walk.kp_nmprad=0 --out results"), 1);
+  EXPECT_NE(output().find("FAILED: thigh_contact after 0."), std::string::npos) << output();
+  const Json j = summary("results");
+  EXPECT_EQ(j.at("survived"), false);
+  EXPECT_EQ(j.at("fall_reason"), "thigh_contact");
+  EXPECT_EQ(j.at("fall_time_s"), j.at("duration_s"));
+}
+
+class InterruptTest : public CommandLineTest {
+ protected:
+  /// Starts a long run, sends the signal once it goes on, and returns the exit code.
+  int interrupt(std::vector<std::string> arguments, int signal_number,
+                const std::function<void()>& in_child = {}) {
+    const std::string out = folder_.path("results");
+    for (const char* more : {"--duration", "80000", "--terrain", "rigid", "--out"}) {
+      arguments.emplace_back(more);
+    }
+    arguments.push_back(out);
+    std::vector<char*> argv = {const_cast<char*>(SANDRUNNER_PROGRAM)};
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const std::string printed = captured_.path("out");
+    const pid_t child = fork();
+    if (child == 0) {
+      const int file = open(printed.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+      dup2(file, STDOUT_FILENO);
+      for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
+      if (in_child) in_child();
+      execv(SANDRUNNER_PROGRAM, argv.data());
+      _exit(127);
+    }
+    // The folder is made right before the run; until then a signal just kills.
+    for (int n = 0; n < 2000 && !std::filesystem::exists(out); ++n) sleep_ms(5);
+    sleep_ms(100);
+    kill(child, signal_number);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  /// Writes a policy that holds the nominal pose, so that the robot is still up when the signal
+  /// comes.
+  std::string calm_policy() const {
+    PolicyFile file = random_policy_file();
+    file.spec.nominal_position_rad = {0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672,
+                                      0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672};
+    file.spec.action_scale_rad = 1e-6;
+    file.spec.kp_nmprad = 300.0;
+    file.spec.kd_nmsprad = 3.0;
+    write_policy_file(folder_.path("calm"), file);
+    return folder_.path("calm");
+  }
+  static void sleep_ms(int duration) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(duration));
+  }
+};
+
+TEST_F(InterruptTest, WalkEndsInDampingWithItsResults) {
+  const std::string calm = calm_policy();
+  for (const std::string clock : {"lockstep", "realtime"})
+    for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+      EXPECT_EQ(interrupt({"--policy", calm, "--start", "walk", "--clock", clock}, signal_number),
+                0);
+      const Json j = summary("results");
+      EXPECT_EQ(j.at("interrupted"), true);
+      EXPECT_EQ(j.at("survived"), true) << j;
+      EXPECT_NE(output().find("interrupted, ended in damping"), std::string::npos) << output();
+      const std::string csv = read_file(folder_.path("results/run.csv"));
+      const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
+      EXPECT_NE(last.find(",damping,"), std::string::npos) << last;
+      std::filesystem::remove_all(folder_.path("results"));
+    }
+}
+
+TEST_F(InterruptTest, KilledRunLeavesNoHalfFile) {
+  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGKILL), -SIGKILL);
+  EXPECT_EQ(files_in("results"), std::set<std::string>{});
+}
+
+TEST_F(InterruptTest, ClosedStandardOutputLosesNoResults) {
+  const auto close_output = [] {
+    int ends[2];
+    if (pipe(ends) != 0) _exit(126);
+    close(ends[0]);
+    dup2(ends[1], STDOUT_FILENO);
+  };
+  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGINT, close_output), 3);
+  EXPECT_EQ(summary("results").at("interrupted"), true);
+  EXPECT_EQ(files_in("results").size(), 5u);
+}
+
+TEST_F(InterruptTest, FullDiskLeavesNoHalfFile) {
+  // As if the disk had room for two thousand bytes a file.
+  const auto limit = [] {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit bytes{2000, 2000};
+    setrlimit(RLIMIT_FSIZE, &bytes);
+  };
+  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGINT, limit), 2);
+  for (const std::string& name : files_in("results")) {
+    EXPECT_EQ(name.find(".part"), std::string::npos) << name;
+    EXPECT_NE(name, "run.csv");
+  }
+  // What became of the robot is told all the same.
+  EXPECT_NE(output().find("interrupted, ended in damping"), std::string::npos) << output();
+}
+
+}  // namespace
+}  // namespace sandrunner

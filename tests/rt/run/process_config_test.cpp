@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/run/process_config.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "sim/robot/embedded.h"
+#include "tests/rt/support.h"
+#include "tests/support/temporary_folder.h"
+
+namespace sandrunner {
+namespace {
+
+TEST(ProcessConfigTest, LaterLayersWin) {
+  const TemporaryFolder folder;
+  write_file(folder.path("terrain.toml"), R"([terrain]
+    kind = "granular"
+    sigma_flat_npm3 = 2e6
+    friction = 0.5
+    drag = 11.0
+    packing = 0.51)");
+  write_file(folder.path("first.toml"), "terrain.friction = 0.4\nterrain.drag = 12.0\n");
+  write_file(folder.path("second.toml"), "terrain.drag = 13.0\ncontroller.stand.kp_nmprad = 77.0");
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, "wet-sand");  // sigma_flat 10e6, sigma_cone 0.6e6, friction 0.8
+  sim::add_terrain_layer(tree, folder.path("terrain.toml"));
+  tree.add_file(folder.path("first.toml"));
+  tree.add_file(folder.path("second.toml"));
+  tree.set("terrain.packing=0.52");
+  tree.set("terrain.packing=0.53");
+  const ProcessConfig config = read_process_config(tree, nullptr);
+  const sim::GroundParameters& ground = config.simulator.terrain.patches.front().ground;
+  EXPECT_EQ(ground.sigma_cone_npm3, 0.6e6);  // preset
+  EXPECT_EQ(ground.sigma_flat_npm3, 2e6);    // terrain file
+  EXPECT_EQ(ground.friction, 0.4);           // --config
+  EXPECT_EQ(ground.drag, 13.0);              // the later --config
+  EXPECT_EQ(ground.packing, 0.53);           // the later --set
+  EXPECT_EQ(config.controller.stand.kp_nmprad, 77.0);
+}
+
+TEST(ProcessConfigTest, SettingsReachSimulatorControllerAndGate) {
+  const ProcessConfig config =
+      config_of("rigid", {"sim.sensor_delay_ticks=5", "sim.noise.joint_velocity_radps=0.25",
+                          "sim.torque_speed_line=true", "policy.latency_ticks=20",
+                          "controller.walk.kd_nmsprad=0.7", "controller.damping.kd_nmsprad=3",
+                          "controller.gate.tilt_fault_deg=50",
+                          "controller.gate.joints_fault_ticks=9", "summary.motor_constant=2.5"});
+  EXPECT_EQ(config.simulator.sensor_delay_ticks, 5);
+  EXPECT_EQ(config.simulator.noise.joint_velocity_radps, 0.25);
+  EXPECT_TRUE(config.simulator.torque_speed_line);
+  EXPECT_EQ(config.controller.walk.latency_ticks, 20u);
+  EXPECT_EQ(config.controller.walk.kd_nmsprad, 0.7);
+  EXPECT_EQ(config.controller.damping.kd_nmsprad, 3.0);
+  EXPECT_EQ(config.controller.gate.tilt_fault_deg, 50.0);
+  EXPECT_EQ(config.controller.gate.joints_fault_ticks, 9u);
+  EXPECT_EQ(config.motor_constant, 2.5);
+}
+
+TEST(ProcessConfigTest, PolicyGivesTheDefaultsOfTheWalk) {
+  PolicySpec spec = random_policy_file().spec;
+  spec.kp_nmprad = 41.0;
+  spec.kd_nmsprad = 0.6;
+  spec.torque_limit_nm = 55.0;
+  spec.yaw_command_clip_mps2 = 2.2;
+  ProcessConfig config = config_of("rigid", {}, &spec);
+  EXPECT_EQ(config.controller.walk.kp_nmprad, 41.0);
+  EXPECT_EQ(config.controller.walk.kd_nmsprad, 0.6);
+  EXPECT_EQ(config.controller.shaping.centripetal_limit_mps2, 2.2);
+  for (const double limit : config.robot.model.torque_limit_nm) EXPECT_EQ(limit, 55.0);
+  // Its own standing gains are not the policy's, and settings win over the policy.
+  EXPECT_EQ(config.controller.stand.kp_nmprad, 100.0);
+  config = config_of("rigid", {"controller.walk.kp_nmprad=30"}, &spec);
+  EXPECT_EQ(config.controller.walk.kp_nmprad, 30.0);
+  EXPECT_EQ(config.controller.walk.kd_nmsprad, 0.6);
+  // A policy cannot raise what the drives can do.
+  spec.torque_limit_nm = 500.0;
+  for (const double limit : config_of("rigid", {}, &spec).robot.model.torque_limit_nm) {
+    EXPECT_EQ(limit, 63.45);
+  }
+}
+
+TEST(ProcessConfigTest, RobotGivesTheLimitsOfTheGate) {
+  const GateConfig raibo = config_of("rigid").controller.gate;
+  EXPECT_EQ(raibo.joint_lower_rad[0], -1.5708);
+  EXPECT_EQ(raibo.joint_upper_rad[8], -0.0262);
+  EXPECT_EQ(raibo.speed_limit_radps, all_joints(25.7));
+  EXPECT_EQ(raibo.torque_limit_nm, all_joints(63.45));
+
+  std::string urdf(embedded_robot_file("raibo.urdf"));
+  const auto replace_all = [&](const std::string& from, const std::string& to) {
+    for (auto at = urdf.find(from); at != std::string::npos; at = urdf.find(from, at)) {
+      urdf.replace(at, from.size(), to);
+      at += to.size();
+    }
+  };
+  replace_all("effort=\"63.45\" velocity=\"25.7\"", "effort=\"44\" velocity=\"21\"");
+  replace_all("lower=\"-2.4696\"", "lower=\"-2.2\"");
+  std::string map(embedded_robot_file("raibo.toml"));
+  map.replace(map.find("nominal_rad = [0.0, 0.559836"), 28, "nominal_rad = [0.0, 0.6");
+  const TemporaryFolder folder;
+  write_file(folder.path("raibo.urdf"), urdf);
+  write_file(folder.path("other.toml"), map);
+  const ProcessConfig config = config_of("rigid", {"robot=" + folder.path("other.toml")});
+  EXPECT_EQ(config.controller.gate.joint_lower_rad[5], -2.2);
+  EXPECT_EQ(config.controller.gate.speed_limit_radps, all_joints(21.0));
+  EXPECT_EQ(config.controller.gate.torque_limit_nm, all_joints(44.0));
+  EXPECT_EQ(config.controller.stand.nominal_rad[10], 0.6);
+}
+
+TEST(ProcessConfigTest, ValueThatIsNoneIsRefused) {
+  const struct {
+    const char* assignment;
+    const char* expected;
+  } cases[] = {
+      {"terrain.stiffness_npm=-1", "terrain.stiffness_npm: found -1"},
+      {"terrain.sigma_flat_npm3=-1e6", "terrain.sigma_flat_npm3: found -1000000.0"},
+      {"terrain.friction=nan", "terrain.friction: found nan"},
+      {"terrain.friction=inf", "terrain.friction: found inf"},
+      {"terrain.friction=\"a\"", "found \"a\", expected a finite number"},
+      {"terrain.friction=[1]", "found an array of 1"},
+      {"terrain.effects.filter=1", "found 1, expected true or false"},
+      {"terrain.kind=mud", "found \"mud\", expected one of"},
+      {"terrain.foot.shape=square", "found \"square\""},
+      {"sim.sensor_delay_ticks=64", "found 64"},
+      {"sim.sensor_delay_ticks=1.5", "found 1.5, expected a whole number"},
+      {"sim.noise.orientation_rad=-0.1", "found -0.1"},
+      {"sim.solver_tolerance_ns=0", "found 0"},
+      {"policy.latency_ticks=0", "found 0"},
+      {"policy.latency_ticks=40", "found 40"},
+      {"controller.walk.kp_nmprad=-1", "found -1"},
+      {"controller.gate.tilt_fault_deg=nan", "found nan"},
+      {"controller.gate.policy_fault_ticks=1", "found 1"},
+      {"controller.gate.joints_fault_ticks=-1", "found -1"},
+      {"summary.motor_constant=0", "found 0"},
+      {"robot=7", "found 7, expected a string"},
+  };
+  for (const auto& c : cases) {
+    const std::string assignment = c.assignment;
+    const std::string origin = "--set " + assignment.substr(0, assignment.find('='));
+    expect_refused([&] { config_of("rigid", {assignment}); }, {origin + ": ", c.expected});
+  }
+}
+
+TEST(ProcessConfigTest, UnknownKeyIsRefusedWithItsPlace) {
+  expect_refused([] { config_of("rigid", {"terrain.nosuch=1"}); },
+                 {"unknown key 'terrain.nosuch'"});
+  expect_refused([] { config_of("rigid", {"controller.walk.kp=1"}); },
+                 {"unknown key 'controller.walk.kp'"});
+  expect_refused([] { config_of("rigid", {"controller.gate.tilt_fault_degs=1"}); },
+                 {"'controller.gate.tilt_fault_deg'"});  // the hint
+  const TemporaryFolder folder;
+  write_file(folder.path("my.toml"), "[sim]\nseed = 3\n");
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, "rigid");
+  tree.add_file(folder.path("my.toml"));
+  expect_refused([&] { read_process_config(tree, nullptr); },
+                 {folder.path("my.toml") + ":2: unknown key 'sim.seed'"});
+}
+
+TEST(ProcessConfigTest, EffectiveSettingsReadBackToThemselves) {
+  const TemporaryFolder folder;
+  write_file(folder.path("terrain.toml"), R"([terrain]
+    name = "mixed"
+    cone_angle_deg = 57.3
+    [[terrain.patch]]
+    from_x_m = 1.0
+    preset = "rigid"
+    [[terrain.patch]]
+    from_x_m = 2.5
+    sigma_flat_npm3 = 3e6)");
+  const PolicySpec spec = random_policy_file().spec;
+  for (const std::string& terrain : {std::string("grass"), folder.path("terrain.toml")}) {
+    const ProcessConfig config = config_of(
+        terrain, {"sim.noise.joint_position_rad=0.1", "controller.stand.fold_s=0.7"}, &spec);
+    // As the program reads it: over a preset; and alone, without the policy.
+    ConfigTree over_preset, alone;
+    sim::add_terrain_layer(over_preset, "wet-sand");
+    over_preset.add_text(config.effective, "config.toml");
+    alone.add_text(config.effective, "config.toml");
+    EXPECT_EQ(read_process_config(over_preset, &spec).effective, config.effective);
+    const ProcessConfig again = read_process_config(alone, nullptr);
+    EXPECT_EQ(again.effective, config.effective);
+    EXPECT_EQ(again.controller.walk.kp_nmprad, spec.kp_nmprad);
+    EXPECT_EQ(again.controller.stand.fold_s, 0.7);
+    ASSERT_EQ(again.simulator.terrain.patches.size(), config.simulator.terrain.patches.size());
+    for (std::size_t i = 0; i < again.simulator.terrain.patches.size(); ++i) {
+      const sim::TerrainPatch& patch = again.simulator.terrain.patches[i];
+      const sim::TerrainPatch& before = config.simulator.terrain.patches[i];
+      EXPECT_EQ(patch.from_x_m, before.from_x_m);
+      EXPECT_EQ(patch.ground.kind, before.ground.kind);
+      EXPECT_EQ(patch.ground.sigma_flat_npm3, before.ground.sigma_flat_npm3);
+      EXPECT_EQ(patch.ground.cone_angle_rad, before.ground.cone_angle_rad);
+    }
+  }
+}
+
+TEST(ProcessConfigTest, RobotThatIsNoneIsRefused) {
+  const TemporaryFolder folder;
+  const std::string map(embedded_robot_file("raibo.toml"));
+  const std::string urdf(embedded_robot_file("raibo.urdf"));
+  write_file(folder.path("map.toml"), map);
+  const auto load = [&] { config_of("rigid", {"robot=" + folder.path("map.toml")}); };
+  expect_refused([] { config_of("rigid", {"robot=absent.toml"}); },
+                 {"absent.toml: cannot be read"});
+  expect_refused(load, {folder.path("raibo.urdf") + ": cannot be read"});
+  for (const std::string& broken : {std::string(), std::string("garbage"), urdf.substr(0, 3000),
+                                    std::string("<robot name=\"a\"></robot>")}) {
+    write_file(folder.path("raibo.urdf"), broken);
+    expect_refused(load, {folder.path("raibo.urdf") + ": not a "});
+  }
+  write_file(
+      folder.path("raibo.urdf"),
+      "<robot name=\"cart\"><link name=\"cart\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" "
+      "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link></robot>");
+  expect_refused(load, {folder.path("raibo.urdf") + ": has no link 'base'"});
+  write_file(folder.path("raibo.urdf"), urdf);
+  write_file(folder.path("map.toml"), "wheels = 4\n" + map);
+  expect_refused(load, {folder.path("map.toml") + ":1: unknown key 'wheels'"});
+}
+
+}  // namespace
+}  // namespace sandrunner

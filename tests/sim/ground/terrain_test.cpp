@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Terrain as a person writes it: presets, patches, and what is refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "rt/base/errors.h"
+#include "sim/ground/terrain_description.h"
+#include "sim/simulator.h"
+#include "tests/sim/support.h"
+
+namespace sandrunner::sim {
+namespace {
+
+TerrainDescription read(const std::string& toml) {
+  ConfigTree config;
+  config.add_text(toml, "my.toml");
+  const TerrainDescription t = read_terrain(config);
+  config.reject_unknown();
+  return t;
+}
+
+std::string refusal(const std::string& toml) {
+  try {
+    read(toml);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "(accepted)";
+}
+void expect_refused(const std::string& toml, const std::string& key) {
+  const std::string what = refusal(toml);
+  EXPECT_NE(what.find(key), std::string::npos) << what;
+  EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+}
+
+TEST(TerrainTest, PresetsHaveTheirFigures) {
+  const auto preset = [](const std::string& name) {
+    ConfigTree config;
+    add_terrain_layer(config, name);
+    const TerrainDescription t = read_terrain(config);
+    config.reject_unknown();
+    EXPECT_EQ(t.name, name);
+    return t;
+  };
+  for (const std::string& name : terrain_preset_names()) preset(name);
+  const GroundParameters sand = preset("dry-sand").patches[0].ground;
+  EXPECT_EQ(sand.kind, GroundKind::kGranular);
+  EXPECT_EQ(sand.sigma_flat_npm3, 1.0e6);
+  EXPECT_EQ(sand.sigma_cone_npm3, 0.2e6);
+  EXPECT_EQ(sand.friction, 0.8);
+  // The rest: defaults of the authors' code.
+  EXPECT_EQ(sand.recruitment, 2.0);
+  EXPECT_NEAR(sand.cone_angle_rad, 3.14159265358979323846 / 3.0, 1e-15);
+  EXPECT_EQ(sand.mass_scaling, 2.7);
+  EXPECT_EQ(sand.packing, 0.57);
+  EXPECT_EQ(sand.grain_density_kgpm3, 1000.0);
+  EXPECT_EQ(sand.drag, 17.2);
+  EXPECT_EQ(sand.plastic_tolerance_m, 1e-4);
+  EXPECT_EQ(sand.stroke_stiffness_npm, 160.0);
+  EXPECT_EQ(sand.stroke_damping_nspm, 1.0);
+  EXPECT_EQ(sand.crater_radius_m, 0.05);
+  EXPECT_EQ(preset("rigid").patches[0].ground.kind, GroundKind::kRigid);
+  EXPECT_EQ(preset("rigid").patches[0].ground.friction, 0.8);
+  const TerrainDescription t = preset("dry-sand");
+  EXPECT_EQ(t.foot_shape, FootShape::kTyre);
+  EXPECT_EQ(t.hydraulic_factor, 0.0);  // 4 for a tyre
+}
+
+TEST(TerrainTest, PatchesTakeTheFirstGroundOrAPresetWithDifferences) {
+  const TerrainDescription t = read(R"(
+    [terrain]
+    friction = 0.5
+    sigma_flat_npm3 = 2e6
+    effects.filter = false
+    [[terrain.patch]]
+    from_x_m = 1.0
+    sigma_flat_npm3 = 3e6
+    [[terrain.patch]]
+    from_x_m = 2.5
+    preset = "rigid"
+    friction = 0.4
+  )");
+  ASSERT_EQ(t.patches.size(), 3u);
+  EXPECT_EQ(t.patches[0].ground.sigma_flat_npm3, 2e6);
+  EXPECT_EQ(t.patches[1].from_x_m, 1.0);
+  EXPECT_EQ(t.patches[1].ground.sigma_flat_npm3, 3e6);
+  EXPECT_EQ(t.patches[1].ground.friction, 0.5);
+  EXPECT_FALSE(t.patches[1].ground.filter);
+  EXPECT_EQ(t.patches[2].ground.kind, GroundKind::kRigid);
+  EXPECT_EQ(t.patches[2].ground.friction, 0.4);
+  EXPECT_TRUE(t.patches[2].ground.filter);
+  const Robot robot = load_raibo();
+  const Terrain<double> terrain = make_terrain(t, make_foot_profile(t, robot.model), robot.model);
+  EXPECT_EQ(terrain.region_at(-50.0), 0.0);
+  EXPECT_EQ(terrain.region_at(0.999), 0.0);
+  EXPECT_EQ(terrain.region_at(1.0), 1.0);
+  EXPECT_EQ(terrain.region_at(2.5), 2.0);
+  EXPECT_EQ(terrain.region_at(1e6), 2.0);
+}
+
+TEST(TerrainTest, RefusesBadValuesInOneLine) {
+  expect_refused("[terrain]\nstifness_npm = 3.0", "stifness_npm");
+  expect_refused("[terrain]\nkind = \"linear\"\nstiffness_npm = -5.0", "stiffness_npm");
+  expect_refused("[terrain]\nsigma_flat_npm3 = -1e6", "sigma_flat_npm3");
+  expect_refused("[terrain]\nsigma_cone_npm3 = nan", "sigma_cone_npm3");
+  expect_refused("[terrain]\nfriction = inf", "friction");
+  expect_refused("[terrain]\nfriction = \"high\"", "friction");
+  expect_refused("[terrain]\nkind = \"mud\"", "kind");
+  expect_refused("[terrain]\neffects.filter = 1", "filter");
+  expect_refused("[terrain]\nfoot.shape = \"ball\"", "shape");
+  expect_refused("[terrain]\nroughness_m = -0.01", "roughness_m");
+  expect_refused("[terrain]\n[terrain.effects]\nfiltre = true", "filtre");
+  expect_refused("[terrain\n", "my.toml");
+  expect_refused("[[terrain.patch]]\nfrom_x_m = 2.0\n[[terrain.patch]]\nfrom_x_m = 1.0",
+                 "from_x_m");
+  expect_refused("[[terrain.patch]]\nfrom_x_m = 2.0\n[[terrain.patch]]\nfrom_x_m = 2.0",
+                 "from_x_m");
+  expect_refused("[[terrain.patch]]\nfrom_x_m = nan", "from_x_m");
+  expect_refused("[[terrain.patch]]\nfrom_x_m = 1.0\npreset = \"lava\"", "lava");
+  expect_refused("[[terrain.patch]]\nfrom_x_m = 1.0\nfrictoin = 0.2", "frictoin");
+  std::string many;
+  for (int i = 0; i < kMaxRegions; ++i)
+    many += "[[terrain.patch]]\nfrom_x_m = " + std::to_string(i) + ".0\n";
+  expect_refused(many, "patch");
+  ConfigTree config;
+  EXPECT_THROW(add_terrain_layer(config, "no-such-terrain"), InputError);
+}
+
+TEST(TerrainTest, SimulatorTableRefusesBadValues) {
+  const auto refused = [](const std::string& toml) {
+    ConfigTree config;
+    config.add_text(toml, "my.toml");
+    try {
+      read_simulator_config(config);
+      config.reject_unknown();
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refused("[sim]\nsensor_delay_ticks = 63\n[sim.noise]\njoint_position_rad = 0.01"));
+  EXPECT_TRUE(refused("[sim]\nsensor_delay_ticks = 64"));
+  EXPECT_TRUE(refused("[sim]\nsensor_delay_ticks = -1"));
+  EXPECT_TRUE(refused("[sim]\nactuator_delay_ticks = 1.5"));
+  EXPECT_TRUE(refused("[sim.noise]\njoint_position_rad = -0.01"));
+  EXPECT_TRUE(refused("[sim]\nsensor_delay = 1"));
+}
+
+TEST(RoughSurfaceTest, HasItsDeviationBoundAndGradient) {
+  GroundParameters p = ground_of_kind(GroundKind::kRigid);
+  p.roughness_m = 0.02;
+  p.roughness_wavelength_m = 0.5;
+  const Robot robot = load_raibo();
+  const TerrainDescription description = one_patch(p);
+  const Terrain<double> terrain =
+      make_terrain(description, make_foot_profile(description, robot.model), robot.model);
+  const Ground<double>& g = terrain.ground[0];
+  Draw draw(1);
+  double sum = 0.0, square = 0.0;
+  const int n = 100000;
+  for (int i = 0; i < n; ++i) {
+    const double x = draw(-50.0, 50.0), y = draw(-50.0, 50.0), e = 1e-6;
+    double h, dx, dy, a, b, unused;
+    rough_surface(g, x, y, h, dx, dy);
+    sum += h;
+    square += h * h;
+    ASSERT_LE(std::fabs(h), terrain.highest);
+    if (i % 100 != 0) continue;
+    rough_surface(g, x + e, y, a, unused, unused);
+    rough_surface(g, x - e, y, b, unused, unused);
+    EXPECT_NEAR(dx, (a - b) / (2 * e), 1e-8);
+    rough_surface(g, x, y + e, a, unused, unused);
+    rough_surface(g, x, y - e, b, unused, unused);
+    EXPECT_NEAR(dy, (a - b) / (2 * e), 1e-8);
+  }
+  EXPECT_NEAR(sum / n, 0.0, 1e-3);
+  EXPECT_NEAR(std::sqrt(square / n), 0.02, 0.001);
+}
+
+}  // namespace
+}  // namespace sandrunner::sim

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loading of robots: the one that ships, the published description, and everything that must be
+// refused in one line.
+#include "sim/robot/robot_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "rt/base/errors.h"
+#include "sim/robot/embedded.h"
+#include "tests/sim/support.h"
+
+namespace sandrunner::sim {
+namespace {
+
+std::string shipped_urdf() { return std::string(embedded_robot_file("raibo.urdf")); }
+std::string shipped_map() { return std::string(embedded_robot_file("raibo.toml")); }
+
+/// `text` with the first `from` after the first `near` replaced.
+std::string edited(std::string text, const std::string& near, const std::string& from,
+                   const std::string& to) {
+  const auto start = text.find(near);
+  EXPECT_NE(start, std::string::npos) << near;
+  const auto at = text.find(from, start);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// The one line with which a robot is refused; nothing else may be printed.
+std::string refusal(const std::string& urdf, const std::string& map = shipped_map()) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  std::string what = "(accepted)";
+  try {
+    parse_robot(map, "my.toml", urdf, "my.urdf");
+  } catch (const InputError& error) {
+    what = error.what();
+  }
+  const std::string printed =
+      testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout();
+  EXPECT_EQ(printed, "") << what;
+  EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+  return what;
+}
+void expect_refused(const std::string& urdf, const std::string& element,
+                    const std::string& map = shipped_map()) {
+  const std::string what = refusal(urdf, map);
+  EXPECT_NE(what.find("my.urdf"), std::string::npos) << what;
+  EXPECT_NE(what.find(element), std::string::npos) << what << "\nexpected it to name " << element;
+}
+
+TEST(RobotModelTest, ShippedRobotHasTheReferenceFigures) {
+  const Robot robot = load_raibo();
+  const RobotModel<double>& m = robot.model;
+  EXPECT_EQ(robot.name, "raibo");
+  EXPECT_NEAR(m.mass(), 26.817, 1e-3);
+  EXPECT_NEAR(m.base.mass, 12.3716776, 1e-9);
+  EXPECT_EQ(m.foot_radius_m, 0.0295);
+  EXPECT_EQ(m.foot_width_m, 0.025);
+  EXPECT_EQ(robot.nominal_height_m, 0.4725);
+  for (int j = 0; j < kNumJoints; ++j) {
+    EXPECT_EQ(m.rotor_inertia[j], 0.005741839);
+    EXPECT_EQ(m.torque_limit_nm[j], 63.45);
+    EXPECT_EQ(m.speed_limit_radps[j], 25.7);
+  }
+  for (int l = 0; l < kNumLegs; ++l) {
+    const LegModel<double>& leg = m.legs[l];
+    const double front = l < 2 ? 1.0 : -1.0, left = l % 2 == 0 ? 1.0 : -1.0;
+    EXPECT_EQ(leg.haa.x, front * 0.3072);
+    EXPECT_EQ(leg.haa.y, left * 0.08);
+    EXPECT_EQ(leg.haa.z, -0.03625);
+    EXPECT_EQ(leg.hfe.y, left * 0.0889);
+    EXPECT_NEAR(leg.shank.mass, 0.29554748 + 0.06096633, 1e-9);
+    EXPECT_EQ(m.lower_rad[3 * l + 2], -2.4696);
+    EXPECT_EQ(m.upper_rad[3 * l + 2], -0.0262);
+    // Nominal pose: feet under the HFE axes, soles on the ground.
+    const LegPose<double> pose = leg_pose(
+        leg, robot.nominal_rad[3 * l], robot.nominal_rad[3 * l + 1], robot.nominal_rad[3 * l + 2]);
+    const Vec3<double> foot = hip_to_base(leg, pose, pose.foot);
+    EXPECT_NEAR(foot.x, front * 0.3072, 1e-6);
+    EXPECT_NEAR(foot.y, left * 0.1689, 1e-12);
+    EXPECT_NEAR(robot.nominal_height_m + foot.z - m.foot_radius_m, 0.0, 5e-5);
+  }
+}
+
+TEST(RobotModelTest, ShippedRobotIsSymmetric) {
+  // Mirrored left to right: mass matrices of mirrored poses agree under the mirror.
+  const RobotModel<double> m = load_raibo().model;
+  for (const int front : {0, 2}) {
+    const LegModel<double>&a = m.legs[front], &b = m.legs[front + 1];
+    for (const auto& [p, q] :
+         {std::pair{a.hip, b.hip}, std::pair{a.thigh, b.thigh}, std::pair{a.shank, b.shank}}) {
+      EXPECT_EQ(p.mass, q.mass);
+      EXPECT_NEAR(p.com.x, q.com.x, 1e-15);
+      EXPECT_NEAR(p.com.y, -q.com.y, 1e-15);
+      EXPECT_NEAR(p.com.z, q.com.z, 1e-15);
+      EXPECT_NEAR(p.inertia.xx, q.inertia.xx, 1e-15);
+      EXPECT_NEAR(p.inertia.xy, -q.inertia.xy, 1e-15);
+      EXPECT_NEAR(p.inertia.xz, q.inertia.xz, 1e-15);
+      EXPECT_NEAR(p.inertia.yz, -q.inertia.yz, 1e-15);
+    }
+  }
+}
+
+TEST(RobotModelTest, LyingPoseTouchesTheGroundWithItsLowestPart) {
+  const Robot robot = load_raibo();
+  EXPECT_GE(robot.lying_height_m, 0.03625 + 0.06 - 1e-12);
+  EXPECT_LT(robot.lying_height_m, 0.3);
+}
+
+TEST(RobotModelTest, PublishedDescriptionLoadsWithTheSameFigures) {
+  const std::string path = SANDRUNNER_SHARED_DIR "/reference-policy/raibot.urdf";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+  std::ostringstream stream;
+  stream << std::ifstream(path).rdbuf();
+  // Two slips of that file that urdfdom refuses: a blank behind numbers, and <dynamics> without
+  // damping or friction.
+  std::string text = stream.str();
+  for (auto at = text.find("<dynamics"); at != std::string::npos; at = text.find("<dynamics", at)) {
+    text.erase(at, text.find("/>", at) + 2 - at);
+  }
+  for (auto at = text.find("8 \""); at != std::string::npos; at = text.find("8 \"", at))
+    text.erase(at + 1, 1);
+  const Robot published = parse_robot(shipped_map(), "raibo.toml", text, path);
+  const Robot ours = load_raibo();
+  EXPECT_NEAR(published.model.mass(), ours.model.mass(), 0.01 * ours.model.mass());
+  EXPECT_NEAR(published.model.base.mass, ours.model.base.mass, 0.01 * ours.model.base.mass);
+  EXPECT_EQ(published.model.foot_radius_m, ours.model.foot_radius_m);
+  for (int l = 0; l < kNumLegs; ++l) {
+    const LegModel<double>&a = published.model.legs[l], &b = ours.model.legs[l];
+    EXPECT_NEAR(a.hip.mass, b.hip.mass, 0.01 * b.hip.mass);
+    EXPECT_NEAR(a.thigh.mass, b.thigh.mass, 0.01 * b.thigh.mass);
+    EXPECT_NEAR(a.shank.mass, b.shank.mass, 0.01 * b.shank.mass);
+    EXPECT_NEAR(a.haa.x, b.haa.x, 1e-9);
+    EXPECT_NEAR(a.hfe.y, b.hfe.y, 1e-9);
+    EXPECT_NEAR(a.kfe.z, b.kfe.z, 1e-9);
+    EXPECT_NEAR(a.foot.z, b.foot.z, 1e-9);
+  }
+}
+
+TEST(RobotModelTest, RefusesWhatIsNoUrdf) {
+  for (const std::string& text : {std::string(), std::string("hello"), std::string("<html></html>"),
+                                  std::string("<robot name='x'>"), std::string("<robot name='x'/>"),
+                                  shipped_urdf().substr(0, 3000)}) {
+    expect_refused(text, "URDF");
+  }
+}
+
+TEST(RobotModelTest, RefusesMissingAndForeignParts) {
+  const std::string urdf = shipped_urdf();
+  // A link the map names and the URDF lacks.
+  expect_refused(urdf, "LF_CALF", edited(shipped_map(), "shank =", "{leg}_SHANK", "{leg}_CALF"));
+  expect_refused(urdf, "trunk", edited(shipped_map(), "base =", "\"base\"", "\"trunk\""));
+  expect_refused(urdf, "FL_HAA", edited(shipped_map(), "left_front", "\"LF\"", "\"FL\""));
+  // Joints between other links.
+  expect_refused(
+      edited(urdf, "joint name=\"RF_HFE\"", "parent link=\"RF_HIP\"", "parent link=\"LF_HIP\""),
+      "RF_HFE");
+  // One moving joint more: an arm.
+  expect_refused(
+      edited(
+          urdf, "</robot>", "</robot>",
+          "<link name=\"arm\"/><joint name=\"shoulder\" type=\"continuous\"><parent link=\"base\"/>"
+          "<child link=\"arm\"/><axis xyz=\"0 0 1\"/></joint></robot>"),
+      "13 moving joints");
+  expect_refused(edited(urdf, "joint name=\"LH_S2F\"", "fixed", "floating"), "moving joints");
+}
+
+TEST(RobotModelTest, RefusesAMassThatItWouldLeaveOut) {
+  const std::string fixed =
+      "<joint name=\"mount\" type=\"fixed\"><parent link=\"base\"/><child link=\"battery\"/>"
+      "<origin xyz=\"0 0 0.1\" rpy=\"0 0 0\"/></joint></robot>";
+  const std::string inertial =
+      "<inertial><mass value=\"5\"/><inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" "
+      "iyz=\"0\" izz=\"0.1\"/></inertial>";
+  const std::string urdf = shipped_urdf();
+  expect_refused(edited(urdf, "</robot>", "</robot>",
+                        "<link name=\"battery\">" + inertial + "</link>" + fixed),
+                 "battery");
+  // A link without one is a frame.
+  EXPECT_NO_THROW(parse_robot(
+      shipped_map(), "map",
+      edited(urdf, "</robot>", "</robot>", "<link name=\"battery\"/>" + fixed), "urdf"));
+}
+
+TEST(RobotModelTest, RefusesOtherAxesAndRotatedJoints) {
+  const std::string urdf = shipped_urdf();
+  expect_refused(edited(urdf, "joint name=\"LF_HAA\"", "axis xyz=\"1 0 0\"", "axis xyz=\"0 1 0\""),
+                 "LF_HAA");
+  expect_refused(edited(urdf, "joint name=\"RH_HFE\"", "axis xyz=\"0 1 0\"", "axis xyz=\"0 -1 0\""),
+                 "RH_HFE");
+  expect_refused(edited(urdf, "joint name=\"LF_KFE\"", "rpy=\"0 0 0\"", "rpy=\"0 0.1 0\""),
+                 "LF_KFE");
+  expect_refused(edited(urdf, "joint name=\"LF_S2F\"", "rpy=\"0 0 0\"", "rpy=\"0 0 0.3\""),
+                 "LF_S2F");
+  expect_refused(edited(urdf, "joint name=\"LF_KFE\"", "revolute", "prismatic"), "LF_KFE");
+}
+
+TEST(RobotModelTest, RefusesImpossibleMasses) {
+  const std::string urdf = shipped_urdf();
+  expect_refused(
+      edited(urdf, "link name=\"RF_THIGH\"", "mass value=\"1.96391657\"", "mass value=\"-1\""),
+      "RF_THIGH");
+  expect_refused(
+      edited(urdf, "link name=\"RF_THIGH\"", "mass value=\"1.96391657\"", "mass value=\"0\""),
+      "RF_THIGH");
+  expect_refused(edited(urdf, "link name=\"LH_HIP\"", "iyy=\"0.00159759\"", "iyy=\"-0.001\""),
+                 "LH_HIP");
+  expect_refused(edited(urdf, "link name=\"LH_HIP\"", "ixy=\"0.00038663\"", "ixy=\"0.9\""),
+                 "LH_HIP");
+}
+
+TEST(RobotModelTest, RefusesNumbersThatAreNotFinite) {
+  const std::string urdf = shipped_urdf();
+  for (const std::string& bad :
+       {std::string("nan"), std::string("inf"), std::string("1e999"), std::string("x")}) {
+    SCOPED_TRACE(bad);
+    EXPECT_NE(refusal(edited(urdf, "link name=\"RF_THIGH\"", "1.96391657", bad)).find("my.urdf"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(urdf, "link name=\"RF_THIGH\"", "0.03252796", bad)).find("my.urdf"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(urdf, "joint name=\"RF_KFE\"", "-0.24", bad)).find("my.urdf"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(urdf, "joint name=\"RF_KFE\"", "63.45", bad)).find("my.urdf"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(urdf, "joint name=\"RF_KFE\"", "-2.4696", bad)).find("my.urdf"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(urdf, "link name=\"RF_FOOT\"", "0.0295", bad)).find("my.urdf"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(urdf, "link name=\"base\"", "0.7104", bad)).find("my.urdf"),
+              std::string::npos);
+  }
+}
+
+TEST(RobotModelTest, RefusesMissingLimitsAndShapes) {
+  const std::string urdf = shipped_urdf();
+  const std::string limit =
+      "<limit lower=\"-2.4696\" upper=\"-0.0262\" effort=\"63.45\" velocity=\"25.7\"/>";
+  expect_refused(edited(urdf, "joint name=\"RF_KFE\"", limit, ""), "RF_KFE");
+  expect_refused(edited(urdf, "joint name=\"RF_KFE\"", "lower=\"-2.4696\"", "lower=\"1\""),
+                 "RF_KFE");
+  expect_refused(edited(urdf, "joint name=\"RF_KFE\"", "effort=\"63.45\"", "effort=\"0\""),
+                 "RF_KFE");
+  expect_refused(
+      edited(urdf, "link name=\"RF_FOOT\"", "<cylinder radius=\"0.0295\" length=\"0.025\"/>",
+             "<box size=\"0.1 0.1 0.1\"/>"),
+      "RF_FOOT");
+  expect_refused(edited(urdf, "link name=\"base\"", "<box size=\"0.7104 0.276 0.12\"/>",
+                        "<sphere radius=\"0.1\"/>"),
+                 "base");
+}
+
+TEST(RobotModelTest, RefusesUnknownAndWrongKeysOfTheMap) {
+  const auto what = [](const std::string& map) { return refusal(shipped_urdf(), map); };
+  for (const auto& [map, key] :
+       {std::pair{shipped_map() + "\nheight = 3\n", std::string("height")},
+        std::pair{edited(shipped_map(), "rotor", "0.005741839", "-1"),
+                  std::string("rotor_inertia_kgm2")},
+        std::pair{edited(shipped_map(), "nominal_rad", "[0.0, 0.559836, -1.119672]", "[0.0, 0.5]"),
+                  std::string("nominal_rad")},
+        std::pair{edited(shipped_map(), "rotor", "0.005741839", "nan"),
+                  std::string("rotor_inertia_kgm2")}}) {
+    EXPECT_NE(what(map).find("my.toml"), std::string::npos) << what(map);
+    EXPECT_NE(what(map).find(key), std::string::npos) << what(map);
+  }
+  EXPECT_THROW(load_robot("/nonexistent/robot.toml"), InputError);
+}
+
+TEST(RobotModelTest, MergesFixedFootAndRotatedInertialFrames) {
+  // The same body written in a turned inertial frame is the same body.
+  const std::string urdf = shipped_urdf();
+  const std::string turned = edited(
+      edited(urdf, "link name=\"LF_THIGH\"", "rpy=\"0 0 0\"", "rpy=\"0 0 1.5707963267948966\""),
+      "link name=\"LF_THIGH\"",
+      "ixx=\"0.01250320\" ixy=\"-0.00019782\" ixz=\"0.00056475\" iyy=\"0.01152322\" "
+      "iyz=\"-0.00237505\"",
+      "ixx=\"0.01152322\" ixy=\"0.00019782\" ixz=\"-0.00237505\" iyy=\"0.01250320\" "
+      "iyz=\"-0.00056475\"");
+  const Body<double> a = parse_robot(shipped_map(), "m", turned, "u").model.legs[0].thigh,
+                     b = load_raibo().model.legs[0].thigh;
+  EXPECT_NEAR(a.inertia.xx, b.inertia.xx, 1e-12);
+  EXPECT_NEAR(a.inertia.xy, b.inertia.xy, 1e-12);
+  EXPECT_NEAR(a.inertia.xz, b.inertia.xz, 1e-12);
+  EXPECT_NEAR(a.inertia.yy, b.inertia.yy, 1e-12);
+  EXPECT_NEAR(a.inertia.yz, b.inertia.yz, 1e-12);
+  // Shank and foot as one: mass, centre of mass, and inertia by the parallel axis theorem.
+  const Body<double> shank = load_raibo().model.legs[0].shank;
+  const double ms = 0.29554748, mf = 0.06096633, cs = -0.07226528, cf = -0.24 - 0.00171611;
+  EXPECT_NEAR(shank.com.z, (ms * cs + mf * cf) / (ms + mf), 1e-12);
+  EXPECT_NEAR(
+      shank.inertia.yy,
+      0.00273312 + 0.00001600 +
+          ms * mf / (ms + mf) * ((cs - cf) * (cs - cf) + std::pow(0.00130151 + 0.00051991, 2)),
+      1e-12);
+}
+
+}  // namespace
+}  // namespace sandrunner::sim

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program sandrunner-policy, as a user runs it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "policy/policy_file.h"
+#include "policy/safetensors.h"
+#include "tests/policy/random_policy.h"
+#include "tests/support/temporary_folder.h"
+
+namespace sandrunner {
+namespace {
+
+class CommandTest : public testing::Test {
+ protected:
+  /// Runs the program in the folder and returns its exit code.
+  int run(const std::string& arguments) {
+    const std::string command = "cd '" + folder_.path("") +
+                                "' && '" SANDRUNNER_POLICY_PROGRAM "' " + arguments + " >out 2>err";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  void expect_bad_input(const std::string& arguments, const std::string& cause) {
+    EXPECT_EQ(run(arguments), 2) << arguments;
+    const std::string error = read_file(folder_.path("err"));
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_NE(error.find(cause), std::string::npos) << error;
+    EXPECT_EQ(read_file(folder_.path("out")), "") << arguments;
+  }
+
+  std::string output() { return read_file(folder_.path("out")); }
+
+  /// Weights as others publish them.
+  void write_bare_weights(const std::string& name) {
+    const std::string path = folder_.path(name);
+    write_policy_file(path, random_policy_file());
+    TensorFile content = read_safetensors(path);
+    content.metadata = {{"license", "MIT"}};
+    std::erase_if(content.tensors, [](const auto& t) { return t.first.starts_with("golden."); });
+    write_safetensors(path, content);
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(CommandTest, ImportsBareWeightsWithTheConventionsOfRaibo) {
+  write_bare_weights("weights.safetensors");
+  ASSERT_EQ(run("import weights.safetensors --out policy.safetensors"), 0);
+  const PolicyFile file = read_policy_file(folder_.path("policy.safetensors"));
+  EXPECT_EQ(file.spec.name, "weights");
+  EXPECT_EQ(file.spec.nominal_position_rad[10], 0.559836);
+  EXPECT_EQ(file.spec.nominal_position_rad[11], -1.119672);
+  EXPECT_EQ(file.spec.action_scale_rad, 0.3);
+  EXPECT_EQ(file.spec.kp_nmprad, 50.0);
+  EXPECT_EQ(file.spec.kd_nmsprad, 0.5);
+  EXPECT_EQ(file.spec.torque_limit_nm, 63.45);
+  EXPECT_EQ(file.parameters.observation_clip, 10.0f);
+  EXPECT_EQ(file.spec.provenance.at("license"), "MIT");
+  EXPECT_EQ(file.spec.provenance.at("imported_from"), "weights.safetensors");
+  EXPECT_EQ(file.parameters.encoder_weight_hh, random_policy_file().parameters.encoder_weight_hh);
+}
+
+TEST_F(CommandTest, ImportsThePublishedNetwork) {
+  const std::string weights = SANDRUNNER_SHARED_DIR "/reference-policy/reference.safetensors";
+  if (!std::filesystem::exists(weights)) GTEST_SKIP() << "no reference policy at " << weights;
+  ASSERT_EQ(run("import '" + weights + "' --out policy.safetensors --name published"), 0);
+  ASSERT_EQ(run("info policy.safetensors"), 0);
+  EXPECT_NE(output().find("published"), std::string::npos) << output();
+  EXPECT_NE(output().find("104340 parameters"), std::string::npos) << output();
+  EXPECT_NE(output().find("50 steps pass"), std::string::npos) << output();
+}
+
+TEST_F(CommandTest, InfoShowsWhatTheFileHolds) {
+  write_policy_file(folder_.path("policy"), random_policy_file());
+  ASSERT_EQ(run("info policy"), 0);
+  for (const char* text : {"random", "LSTM 30-64", "64-128-128-8", "75-256-128-12", "Kp 40 N m/rad",
+                           "Kd 0.75", "+-3", "50 steps pass"}) {
+    EXPECT_NE(output().find(text), std::string::npos) << text << " not in\n" << output();
+  }
+}
+
+TEST_F(CommandTest, HelpAndVersionSucceed) {
+  EXPECT_EQ(run("--help"), 0);
+  EXPECT_NE(output().find("import"), std::string::npos);
+  EXPECT_EQ(run("import --help"), 0);
+  EXPECT_EQ(run("--version"), 0);
+  EXPECT_EQ(output().rfind("sandrunner-policy ", 0), 0u);
+}
+
+TEST_F(CommandTest, BadInputIsOneLineAndExitCodeTwo) {
+  write_bare_weights("weights");
+  write_file(folder_.path("garbage"), "garbage");
+  expect_bad_input("", "subcommand is required");
+  expect_bad_input("convert x", "subcommand is required");
+  expect_bad_input("import weights", "--out");
+  expect_bad_input("info", "FILE");
+  expect_bad_input("info weights weights", "not expected");
+  expect_bad_input("info absent", "'absent': no such file");
+  expect_bad_input("info garbage", "'garbage': 7 bytes are too few");
+  expect_bad_input("info weights", "not a policy file");
+  expect_bad_input("import garbage --out policy", "'garbage': ");
+  expect_bad_input("import weights --out absent/policy", "'absent/policy': cannot be written");
+  expect_bad_input("import weights --out .", "'.': cannot be written");
+  expect_bad_input("import weights --out policy --name \"$(printf '\\377')\"", "UTF-8");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("policy")));
+}
+
+TEST_F(CommandTest, RefusedImportLeavesTheTargetAsItWas) {
+  write_file(folder_.path("garbage"), "garbage");
+  write_file(folder_.path("policy"), "precious");
+  expect_bad_input("import garbage --out policy", "'garbage': ");
+  EXPECT_EQ(read_file(folder_.path("policy")), "precious");
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The script from_npz.py, as a user runs it on weights saved by numpy.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "policy/policy_file.h"
+#include "tests/policy/random_policy.h"
+#include "tests/support/temporary_folder.h"
+
+namespace sandrunner {
+namespace {
+
+// Saves the network of a policy file as PyTorch users do, the LSTM under PyTorch's names.
+constexpr char kSave[] = R"(
+import json, struct, sys
+import numpy as np
+data = open('policy.safetensors', 'rb').read()
+size = struct.unpack('<Q', data[:8])[0]
+header = json.loads(data[8:8 + size])
+arrays = {}
+for name, entry in header.items():
+    if name == '__metadata__' or name.startswith('golden.'): continue
+    begin, end = entry['data_offsets']
+    values = np.frombuffer(data[8 + size + begin:8 + size + end], '<f4').reshape(entry['shape'])
+    if name.startswith('encoder.'): name = name.replace('encoder.', 'lstm.') + '_l0'
+    arrays[name] = values.astype(np.float64)
+for change in sys.argv[1:]: exec(change)
+np.savez('policy.npz', **arrays)
+)";
+
+class FromNpzTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_policy_file(folder_.path("policy.safetensors"), random_policy_file());
+    write_file(folder_.path("save.py"), kSave);
+    std::string names;
+    for (const char* part : {"weight_ih", "weight_hh", "bias_ih", "bias_hh"}) {
+      names += std::string("encoder.") + part + " lstm." + part + "_l0\n";
+    }
+    write_file(folder_.path("names.txt"), names);
+  }
+
+  /// Runs Debian's Python, the one that python3-numpy belongs to, in the folder.
+  int python(const std::string& arguments) {
+    const std::string command =
+        "cd '" + folder_.path("") + "' && /usr/bin/python3 " + arguments + " >out 2>err";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int convert(const std::string& options) {
+    return python("'" SANDRUNNER_FROM_NPZ "' policy.npz --out new.safetensors " + options);
+  }
+  std::string error() { return read_file(folder_.path("err")); }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(FromNpzTest, WritesAPolicyFileThatPassesItsGoldenExample) {
+  ASSERT_EQ(python("save.py"), 0) << error();
+  ASSERT_EQ(convert("--map names.txt --name mine --set kp_nmprad=40 --set observation_clip=3"), 0)
+      << error();
+  PolicyFile before = read_policy_file(folder_.path("policy.safetensors"));
+  PolicyFile after = read_policy_file(folder_.path("new.safetensors"));  // runs the example
+  EXPECT_EQ(after.spec.name, "mine");
+  EXPECT_EQ(after.spec.kp_nmprad, 40.0);
+  const auto expected = tensors_of(before.parameters);
+  const auto found = tensors_of(after.parameters);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(*found[i].values, *expected[i].values) << found[i].name;
+  }
+}
+
+TEST_F(FromNpzTest, BadWeightsAreOneLineAndNoFile) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"del arrays['actor.1.bias']", "no tensor 'actor.1.bias'"},
+      {"arrays['actor.1.bias'] = np.zeros(7)", "shape [7], expected [128]"},
+      {"arrays['actor.1.bias'] = np.full(128, np.nan)", "not finite"},
+      {"arrays['actor.1.bias'] = np.full(128, 'a')", "'actor.1.bias' is not of numbers"},
+      {"arrays['estimate.variance'] = np.full(8, -1.0)", "a variance below 0"},
+  };
+  for (const auto& [change, cause] : cases) {
+    ASSERT_EQ(python(std::string("save.py \"") + change + "\""), 0) << error();
+    EXPECT_EQ(convert("--map names.txt"), 2) << change;
+    const std::string line = error();
+    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
+    EXPECT_NE(line.find(cause), std::string::npos) << line;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("new.safetensors"))) << change;
+  }
+}
+
+TEST_F(FromNpzTest, BadOptionsAndFilesAreOneLineAndNoFile) {
+  ASSERT_EQ(python("save.py"), 0) << error();
+  const auto expect_refused = [&](const std::string& options, const std::string& cause) {
+    EXPECT_EQ(convert(options), 2) << options;
+    const std::string line = error();
+    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
+    EXPECT_NE(line.find(cause), std::string::npos) << line;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("new.safetensors"))) << options;
+  };
+  for (const char* bad : {"kp_nmprad=4O", "kd_nmsprad=-1", "action_scale_rad=0",
+                          "torque_limit_nm=", "observation_clip=nan", "action_clip=1_0"}) {
+    expect_refused(std::string("--map names.txt --set ") + bad, bad);
+  }
+  write_file(folder_.path("latin"), "actor.1.bias \xe9\n");
+  expect_refused("--map latin", "latin: not a text file");
+  const std::string whole = read_file(folder_.path("policy.npz"));
+  write_file(folder_.path("policy.npz"), whole.substr(0, whole.size() / 2));
+  expect_refused("--map names.txt", "policy.npz: not an npz of arrays");
+}
+
+}  // namespace
+}  // namespace sandrunner
