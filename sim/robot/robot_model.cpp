@@ -206,7 +206,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   const UrdfReader urdf(urdf_text, urdf_name);
   Robot robot;
   RobotModel<double>& m = robot.model;
-  robot.name = map.text("name", "robot");
+  robot.description.name = map.text("name", "robot");
   map.text("urdf", "");
   const std::string base = map.text("links.base", "base");
   const std::array<std::string, kNumLegs> leg_names{
@@ -243,6 +243,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
     Vec origins[3];
     for (int j = 0; j < 3; ++j) {
       const std::string joint_name = with_leg(joint_names[j], leg_names[l]);
+      robot.description.joint_names[3 * l + j] = joint_name;
       const std::string child = with_leg(link_names[j], leg_names[l]);
       const urdf::Joint& joint = urdf.joint(joint_name, parent, child);
       const Vec axis = to_vec(joint.axis);
@@ -300,7 +301,8 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   robot.nominal_height_m =
       nominal_height > 0.0 ? nominal_height : standing_height(m, robot.nominal_rad);
   robot.lying_height_m = standing_height(m, robot.lying_rad);
-  robot.description = urdf_text;
+  robot.description.urdf = urdf_text;
+  robot.description.leg_names = leg_names;
   return robot;
 }
 

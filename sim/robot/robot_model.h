@@ -9,6 +9,7 @@
 #include <string>
 
 #include "rt/core/messages.h"
+#include "rt/core/robot_description.h"
 #include "sim/lanes/vec.h"
 
 namespace sandrunner::sim {
@@ -56,13 +57,12 @@ struct RobotModel {
 
 /// A RobotModel with what controller and program must know beside it.
 struct Robot {
-  std::string name;
+  RobotDescription description;
   RobotModel<double> model;
   JointArray<double> nominal_rad{};  ///< pose of `--start walk`
   double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching
   JointArray<double> lying_rad{};    ///< pose in which it lies on its belly
   double lying_height_m = 0.0;
-  std::string description;  ///< URDF text, as read
 };
 
 /// The robot that ships (sim/robot/raibo.urdf and raibo.toml, embedded in the program).

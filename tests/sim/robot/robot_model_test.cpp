@@ -57,7 +57,7 @@ void expect_refused(const std::string& urdf, const std::string& element,
 TEST(RobotModelTest, ShippedRobotHasTheReferenceFigures) {
   const Robot robot = load_raibo();
   const RobotModel<double>& m = robot.model;
-  EXPECT_EQ(robot.name, "raibo");
+  EXPECT_EQ(robot.description.name, "raibo");
   EXPECT_NEAR(m.mass(), 26.817, 1e-3);
   EXPECT_NEAR(m.base.mass, 12.3716776, 1e-9);
   EXPECT_EQ(m.foot_radius_m, 0.0295);

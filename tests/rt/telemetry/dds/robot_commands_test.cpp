@@ -43,7 +43,7 @@ class RobotCommandsTest : public testing::Test {
         participant_(config_.dds),
         op_(config_.dds.stale_ticks()),
         inbox_(participant_, config_.dds, true, op_),
-        telemetry_(participant_, config_.dds, config_.robot.description, &inbox_),
+        telemetry_(participant_, config_.dds, config_.robot.description.urdf, &inbox_),
         peer_(config_.dds) {}
 
   /// In Walk from the first tick on, for this long; `at` is called every few milliseconds.
