@@ -56,7 +56,6 @@ void Simulator::disturb(double height_above_m) {
     }
     x.position.z = height_above_m - lowest;
   }
-  update_truth();
 }
 
 void Simulator::reset_standing() {
@@ -76,7 +75,8 @@ void Simulator::reset_lying() {
 SensorFrame Simulator::sample() const noexcept {
   const RigidState<double>& x = state_.robot.rigid;
   SensorFrame f;
-  f.tick = f.joints.tick = f.imu.tick = state_.tick;
+  f.tick = f.imu.tick = state_.tick;
+  f.joints.tick.fill(state_.tick);
   f.joints.position_rad = x.q;
   f.joints.velocity_radps = x.qd;
   f.joints.torque_nm = state_.torque_nm;
@@ -111,7 +111,8 @@ void Simulator::read(SensorFrame& frame) noexcept {
   // Delayed values do not look old to the controller: the delay lies in the sensor, which stamps on
   // arrival.
   frame = state_.sensors[(state_.tick - std::min(delay, state_.tick)) % kMaxDelayTicks];
-  frame.tick = frame.joints.tick = frame.imu.tick = state_.tick;
+  frame.tick = frame.imu.tick = state_.tick;
+  frame.joints.tick.fill(state_.tick);
 }
 
 void Simulator::write(const SafeCommand& command) noexcept {
@@ -135,12 +136,11 @@ void Simulator::write(const SafeCommand& command) noexcept {
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
   stepper_.step(model_, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,
-                truth_.report);
+                report_);
   // Specific force at the base origin, body frame.
-  const Vec3<double> felt = mul_add(before.r2, kGravity_mps2, truth_.report.base_acceleration);
+  const Vec3<double> felt = mul_add(before.r2, kGravity_mps2, report_.base_acceleration);
   state_.linear_acceleration_mps2 = {felt.x, felt.y, felt.z};
   ++state_.tick;
-  update_truth();
 }
 
 void Simulator::skip(std::uint64_t ticks, const SafeCommand& held) noexcept {
@@ -152,13 +152,32 @@ void Simulator::skip(std::uint64_t ticks, const SafeCommand& held) noexcept {
   }
 }
 
-void Simulator::update_truth() noexcept {
-  truth_.state = ground_truth(model_, state_.robot, terrain_);
+bool Simulator::truth(RobotTruth& truth) const noexcept {
+  const RigidState<double>& x = state_.robot.rigid;
+  const auto array = [](const Vec3<double>& v) { return Vector3{v.x, v.y, v.z}; };
+  truth.position_m = array(x.position);
+  truth.orientation_wxyz = {x.orientation.w, x.orientation.x, x.orientation.y, x.orientation.z};
+  truth.velocity_mps = array(x.velocity);
+  truth.angular_velocity_radps = array(x.angular_velocity);
+  truth.joint_position_rad = x.q;
+  truth.joint_velocity_radps = x.qd;
+  truth.joint_torque_nm = state_.torque_nm;
+  truth.state = ground_truth(model_, state_.robot, terrain_);
+  for (int l = 0; l < kNumLegs; ++l) {
+    const Vec3<double>& centre = report_.foot_centre[l];
+    truth.foot_centre_m[l] = array(centre);
+    truth.foot_penetration_m[l] = report_.penetration[l];
+    const SurfaceAxes<double> axes = surface_axes(terrain_, centre.x, centre.y);
+    const auto& force = report_.foot_force[l];
+    truth.foot_force_n[l] = array(force[0] * axes.t1 + force[1] * axes.t2 + force[2] * axes.n);
+  }
+  truth.base_contact = report_.base_contact > 0.0 ? 1 : 0;
+  truth.thigh_contact = report_.thigh_contact > 0.0 ? 1 : 0;
+  return true;
 }
 
 void Simulator::restore(const SimulatorState& state) noexcept {
   state_ = state;
-  update_truth();
 }
 
 void Simulator::add_to(StateHash& hash) const noexcept {

@@ -48,13 +48,6 @@ struct SimulatorState {
 };
 static_assert(std::is_trivially_copyable_v<SimulatorState>);
 
-/// What really happens, for statistics, pictures and comparison with the estimate; the controller
-/// never sees it.
-struct SimulatorTruth {
-  StepReport<double> report;  ///< of the last step
-  StateEstimate state;        ///< the estimate's quantities as they are
-};
-
 class Simulator final : public RobotIo {
  public:
   Simulator(const Robot& robot, const SimulatorConfig& config);
@@ -73,13 +66,14 @@ class Simulator final : public RobotIo {
   /// Simulates the missed ticks, so that simulated time stays on the grid.
   void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override;
   void shut_down() noexcept override {}
+  bool truth(RobotTruth& truth) const noexcept override;
 
   const SimulatorState& state() const noexcept { return state_; }
   void restore(const SimulatorState& state) noexcept;
   /// Adds what decides the future to `hash`.
   void add_to(StateHash& hash) const noexcept;
 
-  const SimulatorTruth& truth() const noexcept { return truth_; }
+  const StepReport<double>& report() const noexcept { return report_; }  ///< of the last step
   const RobotModel<double>& model() const noexcept { return model_; }
   const Terrain<double>& terrain() const noexcept { return terrain_; }
   const RobotStepper<double>& stepper() const noexcept { return stepper_; }
@@ -89,7 +83,6 @@ class Simulator final : public RobotIo {
  private:
   void disturb(double height_above_m);
   SensorFrame sample() const noexcept;
-  void update_truth() noexcept;
 
   Robot robot_;
   RobotModel<double> model_;
@@ -98,7 +91,7 @@ class Simulator final : public RobotIo {
   Terrain<double> terrain_;
   RobotStepper<double> stepper_;
   SimulatorState state_;
-  SimulatorTruth truth_;
+  StepReport<double> report_;
 };
 
 /// Reads the table [sim] of `config` and its terrain. Throws InputError.

@@ -121,6 +121,8 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
                          .imu = sensors.imu};
   output.mode = state_.mode;
   output.faults = state_.gate.faults;
+  output.first_fault = state_.gate.first_fault;
+  output.fault_joints = state_.gate.fault_joints;
 }
 
 Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tick) noexcept {
@@ -167,7 +169,6 @@ void Controller::enter(Mode mode, const SensorFrame& sensors) noexcept {
   const Mode from = state_.entered != 0 ? state_.mode : Mode::kPassive;
   state_.mode = mode;
   state_.entered = 1;
-  state_.mode_start_tick = tick;
 
   switch (mode) {
     case Mode::kPassive:

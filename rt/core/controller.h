@@ -75,7 +75,6 @@ struct ControllerConfig {
 struct ControllerState {
   Mode mode = Mode::kPassive;
   std::uint64_t entered = 0;          ///< 1 once the first step has entered `mode`
-  std::uint64_t mode_start_tick = 0;  ///< when `mode` was entered
   std::uint64_t request_id = 0;       ///< latest request that was considered
   std::uint64_t disable_tick = 0;     ///< Fault: when the drives go off
 
@@ -102,7 +101,7 @@ struct ControllerState {
   GateState gate;
 };
 static_assert(std::is_trivially_copyable_v<ControllerState>);
-static_assert(sizeof(ControllerState) == 8 * (19 + 3 * kNumJoints) + sizeof(GateState),
+static_assert(sizeof(ControllerState) == 8 * (18 + 3 * kNumJoints) + sizeof(GateState),
               "no padding");
 
 struct ControllerInput {
@@ -118,7 +117,9 @@ struct ControllerOutput {
   /// on `policy_input`. Else 0.
   std::uint64_t release_policy = 0;
   Mode mode = Mode::kPassive;
-  std::uint64_t faults = 0;  ///< latched bits of Fault
+  std::uint64_t faults = 0;          ///< latched bits of Fault
+  Fault first_fault = Fault::kNone;  ///< that began the latest latch
+  std::uint64_t fault_joints = 0;    ///< that it is about, bit j for joint j
 };
 static_assert(std::is_trivially_copyable_v<ControllerInput>);
 static_assert(std::is_trivially_copyable_v<ControllerOutput>);

@@ -38,13 +38,16 @@ template <typename T>
 using JointArray = std::array<T, kNumJoints>;
 using Vector3 = std::array<double, 3>;
 
-/// Joint encoders and drives. `tick` is the control tick at which the values were sampled; its
-/// distance to the present tick is the age that the safety gate judges.
+/// Joint encoders and drives.
 struct JointState {
   JointArray<double> position_rad{};
   JointArray<double> velocity_radps{};
   JointArray<double> torque_nm{};
-  std::uint64_t tick = 0;
+  /// What each drive reports of its own condition, in its maker's code; 0: no fault.
+  JointArray<std::uint64_t> drive_fault{};
+  /// Control tick at which each joint's values were sampled; its distance to the present tick is
+  /// the age that the safety gate judges.
+  JointArray<std::uint64_t> tick{};
 };
 
 /// Inertial measurement unit with its own attitude filter.

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "rt/core/messages.h"
+#include "rt/core/robot_truth.h"
 
 namespace sandrunner {
 
@@ -49,6 +50,10 @@ class RobotIo {
 
   /// The loop ends: drives off. Called once, after the last write().
   virtual void shut_down() noexcept = 0;
+
+  /// What really is, after the last write(). False where nobody knows (a real robot): `truth` is
+  /// then as it was.
+  virtual bool truth([[maybe_unused]] RobotTruth& truth) const noexcept { return false; }
 };
 
 }  // namespace sandrunner

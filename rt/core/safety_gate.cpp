@@ -17,9 +17,16 @@ bool all_finite(const Array& values) noexcept {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-bool all_finite(const JointState& joints) noexcept {
-  return all_finite(joints.position_rad) && all_finite(joints.velocity_radps) &&
-         all_finite(joints.torque_nm);
+/// Joints with a value that is not finite, as bits.
+std::uint64_t non_finite(const JointState& joints) noexcept {
+  std::uint64_t found = 0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const bool finite = std::isfinite(joints.position_rad[j]) &&
+                        std::isfinite(joints.velocity_radps[j]) &&
+                        std::isfinite(joints.torque_nm[j]);
+    if (!finite) found |= std::uint64_t{1} << j;
+  }
+  return found;
 }
 
 bool all_finite(const JointCommand& command) noexcept {
@@ -61,14 +68,16 @@ bool carries_itself(Mode mode) noexcept {
   return mode == Mode::kStandUp || mode == Mode::kStand || mode == Mode::kWalk;
 }
 
-/// Adds `found` to the latch, and remembers what began it.
-void latch(std::uint64_t found, GateState& state) noexcept {
+/// Adds `found` and the joints it is about to the latch, and remembers what began it.
+void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept {
   if (found == 0) return;
   if (state.faults == 0) {
+    state.fault_joints = 0;
     state.first_fault = static_cast<Fault>(std::uint64_t{1} << std::countr_zero(found));
     state.first_fault_tick = state.tick;
   }
   state.faults |= found;
+  state.fault_joints |= joints;
 }
 
 /// Clamps all values; whether one had to be.
@@ -113,6 +122,8 @@ const char* fault_name(Fault fault) noexcept {
       return "joint_torque";
     case Fault::kTilt:
       return "tilt";
+    case Fault::kDriveFault:
+      return "drive_fault";
   }
   return "unknown";
 }
@@ -147,7 +158,8 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
   state.tick = sensors.tick;
   std::uint64_t found = 0;
 
-  const bool joints_usable = all_finite(sensors.joints);
+  std::uint64_t at_fault = non_finite(sensors.joints);
+  const bool joints_usable = at_fault == 0;
   if (!joints_usable) found |= bit(Fault::kNonFiniteJoint);
   const bool imu_usable = usable(sensors.imu);
   if (!imu_usable) found |= bit(Fault::kNonFiniteImu);
@@ -159,45 +171,61 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
     found |= bit(Fault::kNonFiniteCommand);
   }
 
-  const std::uint64_t joints_age = age(sensors.tick, sensors.joints.tick);
+  bool late = false;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const std::uint64_t joint = std::uint64_t{1} << j;
+    const std::uint64_t joint_age = age(sensors.tick, sensors.joints.tick[j]);
+    late = late || joint_age > config_.joints_limit_ticks;
+    if (joint_age > config_.joints_fault_ticks) {
+      found |= bit(Fault::kJointsStale);
+      at_fault |= joint;
+    }
+    if (sensors.joints.drive_fault[j] != 0) {
+      found |= bit(Fault::kDriveFault);
+      at_fault |= joint;
+    }
+  }
+  if (late) ++state.counters.joints_late;
   const std::uint64_t imu_age = age(sensors.tick, sensors.imu.tick);
-  if (joints_age > config_.joints_limit_ticks) ++state.joints_late_ticks;
-  if (imu_age > config_.imu_limit_ticks) ++state.imu_late_ticks;
-  if (joints_age > config_.joints_fault_ticks) found |= bit(Fault::kJointsStale);
+  if (imu_age > config_.imu_limit_ticks) ++state.counters.imu_late;
   if (imu_age > config_.imu_fault_ticks) found |= bit(Fault::kImuStale);
   if (input.policy_age_ticks > config_.policy_fault_ticks) found |= bit(Fault::kPolicyStale);
 
   if (mode == Mode::kPassive) {
     state.torque_over_ticks.fill(0);
   } else if (joints_usable) {
-    found |= judge_joints(sensors.joints, state);
+    found |= judge_joints(sensors.joints, state, at_fault);
   }
   if (carries_itself(mode) && imu_usable) found |= judge_tilt(sensors.imu, state);
 
-  latch(found, state);
+  latch(found, at_fault, state);
   return found;
 }
 
-std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& state) const noexcept {
+std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& state,
+                                       std::uint64_t& at_fault) const noexcept {
   std::uint64_t found = 0;
   bool past_stop = false;
   bool too_fast = false;
   for (int j = 0; j < kNumJoints; ++j) {
+    std::uint64_t faults = 0;
     const double excess_rad = std::max(joints.position_rad[j] - config_.joint_upper_rad[j],
                                        config_.joint_lower_rad[j] - joints.position_rad[j]);
     past_stop = past_stop || excess_rad > 0.0;
-    if (excess_rad > config_.joint_fault_rad) found |= bit(Fault::kJointPosition);
+    if (excess_rad > config_.joint_fault_rad) faults |= bit(Fault::kJointPosition);
 
     const double speed_radps = std::fabs(joints.velocity_radps[j]);
     too_fast = too_fast || speed_radps > config_.speed_limit_radps[j];
-    if (speed_radps > config_.speed_fault_radps) found |= bit(Fault::kJointSpeed);
+    if (speed_radps > config_.speed_fault_radps) faults |= bit(Fault::kJointSpeed);
 
     std::uint64_t& over_ticks = state.torque_over_ticks[j];
     over_ticks = std::fabs(joints.torque_nm[j]) > torque_fault_nm_[j] ? over_ticks + 1 : 0;
-    if (over_ticks >= torque_fault_ticks_) found |= bit(Fault::kJointTorque);
+    if (over_ticks >= torque_fault_ticks_) faults |= bit(Fault::kJointTorque);
+    if (faults != 0) at_fault |= std::uint64_t{1} << j;
+    found |= faults;
   }
-  if (past_stop) ++state.joint_limit_ticks;
-  if (too_fast) ++state.speed_limit_ticks;
+  if (past_stop) ++state.counters.joint_past_stop;
+  if (too_fast) ++state.counters.joint_too_fast;
   return found;
 }
 
@@ -205,25 +233,25 @@ std::uint64_t SafetyGate::judge_tilt(const ImuSample& imu, GateState& state) con
   // Cosine of the tilt: z component of the body's z axis, for a quaternion of any norm.
   const auto& [w, x, y, z] = imu.orientation_wxyz;
   const double cosine = (w * w - x * x - y * y + z * z) / squared_norm(imu.orientation_wxyz);
-  if (cosine < tilt_limit_cos_) ++state.tilt_limit_ticks;
+  if (cosine < tilt_limit_cos_) ++state.counters.tilted;
   return cosine < tilt_fault_cos_ ? bit(Fault::kTilt) : 0;
 }
 
 SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled,
                              GateState& state) const noexcept {
   if (!enabled) return SafeCommand{};
-  if (!all_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), state);
+  if (!all_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), 0, state);
   if (state.faults != 0) return SafeCommand{damping_, true};
 
   JointCommand allowed = wanted;
   if (clamp_all(allowed.position_rad, lower_.position_rad, upper_.position_rad)) {
-    ++state.position_clamp_ticks;
+    ++state.counters.position_clamped;
   }
   if (clamp_all(allowed.velocity_radps, lower_.velocity_radps, upper_.velocity_radps)) {
-    ++state.velocity_clamp_ticks;
+    ++state.counters.velocity_clamped;
   }
   if (clamp_all(allowed.feedforward_nm, lower_.feedforward_nm, upper_.feedforward_nm)) {
-    ++state.torque_clamp_ticks;
+    ++state.counters.torque_clamped;
   }
   return SafeCommand{allowed, true};
 }

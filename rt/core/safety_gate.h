@@ -29,8 +29,9 @@ enum class Fault : std::uint64_t {
   kJointSpeed = 1u << 9,
   kJointTorque = 1u << 10,
   kTilt = 1u << 11,
+  kDriveFault = 1u << 12,  ///< a drive reports a fault of its own (JointState::drive_fault)
 };
-inline constexpr int kNumFaults = 12;
+inline constexpr int kNumFaults = 13;
 
 /// Stable name of one fault: "non_finite_joint", "joints_stale", "joint_position", "tilt", ...;
 /// "none".
@@ -71,25 +72,47 @@ struct GateConfig {
       120;  ///< since the input of the policy output in use was sampled
 };
 
+/// Ticks since the start in which ...
+struct GateCounters {
+  std::uint64_t joint_past_stop = 0;   ///< a joint was past its stop
+  std::uint64_t joint_too_fast = 0;    ///< a joint was above the speed limit
+  std::uint64_t tilted = 0;            ///< the body was tilted past the limit
+  std::uint64_t joints_late = 0;       ///< a joint's values were older than their limit
+  std::uint64_t imu_late = 0;          ///< the IMU sample was older than its limit
+  std::uint64_t position_clamped = 0;  ///< a commanded position was clamped
+  std::uint64_t velocity_clamped = 0;  ///< a commanded velocity was clamped
+  std::uint64_t torque_clamped = 0;    ///< a feed-forward torque was clamped
+};
+
+/// Names of the counters, for all who show them.
+struct GateCounterName {
+  const char* name;
+  std::uint64_t GateCounters::*ticks;
+};
+inline constexpr std::array kGateCounters = {
+    GateCounterName{"joint_past_stop", &GateCounters::joint_past_stop},
+    GateCounterName{"joint_too_fast", &GateCounters::joint_too_fast},
+    GateCounterName{"tilted", &GateCounters::tilted},
+    GateCounterName{"joints_late", &GateCounters::joints_late},
+    GateCounterName{"imu_late", &GateCounters::imu_late},
+    GateCounterName{"position_clamped", &GateCounters::position_clamped},
+    GateCounterName{"velocity_clamped", &GateCounters::velocity_clamped},
+    GateCounterName{"torque_clamped", &GateCounters::torque_clamped}};
+static_assert(sizeof(GateCounters) == 8 * kGateCounters.size(), "every counter has a name");
+
 /// Memory of the gate: what is latched, and counts since the start. All members 64 bits wide.
 struct GateState {
   std::uint64_t faults = 0;          ///< latched bits of Fault
   Fault first_fault = Fault::kNone;  ///< that began the latest latch; kept over a reset
   std::uint64_t first_fault_tick = 0;
+  /// Joints that a latched fault is about, bit j for joint j; kept over a reset.
+  std::uint64_t fault_joints = 0;
   std::uint64_t tick = 0;                         ///< of the latest judgement
   JointArray<std::uint64_t> torque_over_ticks{};  ///< samples in a row above the fault torque
-  // Ticks in which ...
-  std::uint64_t joint_limit_ticks = 0;     ///< a joint was past its stop
-  std::uint64_t speed_limit_ticks = 0;     ///< a joint was above the speed limit
-  std::uint64_t tilt_limit_ticks = 0;      ///< the body was tilted past the limit
-  std::uint64_t joints_late_ticks = 0;     ///< the joint values were older than their limit
-  std::uint64_t imu_late_ticks = 0;        ///< the IMU sample was older than its limit
-  std::uint64_t position_clamp_ticks = 0;  ///< a commanded position was clamped
-  std::uint64_t velocity_clamp_ticks = 0;  ///< a commanded velocity was clamped
-  std::uint64_t torque_clamp_ticks = 0;    ///< a feed-forward torque was clamped
+  GateCounters counters;
 };
 static_assert(std::is_trivially_copyable_v<GateState>);
-static_assert(sizeof(GateState) == 8 * (12 + kNumJoints), "no padding");
+static_assert(sizeof(GateState) == 8 * (5 + kNumJoints) + sizeof(GateCounters), "no padding");
 
 /// What the gate judges in one tick.
 struct GateInput {
@@ -107,8 +130,9 @@ class SafetyGate {
   SafetyGate(const GateConfig& config, double damping_kd_nmsprad);
 
   /// Counts excesses over limits, latches faults, returns the bits of the faults that hold in this
-  /// tick. Finiteness and ages are judged always; position, speed and torque not in Passive, where
-  /// a robot may lie as it likes; tilt only in StandUp, Stand and Walk.
+  /// tick. Finiteness, ages and the drives' own faults are judged always; position, speed and
+  /// torque not in Passive, where a robot may lie as it likes; tilt only in StandUp, Stand and
+  /// Walk.
   std::uint64_t judge(const GateInput& input, Mode mode, GateState& state) const noexcept;
 
   /// Makes the command that may reach the motors: `wanted` with its positions, velocities and
@@ -120,7 +144,8 @@ class SafetyGate {
   void clear(GateState& state) const noexcept;
 
  private:
-  std::uint64_t judge_joints(const JointState& joints, GateState& state) const noexcept;
+  std::uint64_t judge_joints(const JointState& joints, GateState& state,
+                             std::uint64_t& at_fault) const noexcept;
   std::uint64_t judge_tilt(const ImuSample& imu, GateState& state) const noexcept;
 
   GateConfig config_;

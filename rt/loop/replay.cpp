@@ -19,15 +19,9 @@ constexpr std::string_view kStateMagic = "SRSTATE1";
 constexpr std::size_t kStateHead_bytes = 16;
 
 std::string value_of(std::size_t word, std::uint64_t bits) {
-  for (const TickField& field : kTickFields) {
-    const auto words = static_cast<std::size_t>(field.words);
-    if (word < words) {
-      return field.kind == 'd' ? fmt::format("{:.17g} ({:016x})", std::bit_cast<double>(bits), bits)
-                               : fmt::format("{}", bits);
-    }
-    word -= words;
-  }
-  return "?";
+  return tick_field_of(word).kind == 'd'
+             ? fmt::format("{:.17g} ({:016x})", std::bit_cast<double>(bits), bits)
+             : fmt::format("{}", bits);
 }
 
 // Compares the words [from, from + count) of two records.

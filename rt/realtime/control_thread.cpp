@@ -8,12 +8,10 @@
 
 namespace sandrunner {
 
-ControlThread::ControlThread(RobotIo& io, const sim::Simulator* simulator,
-                             const ControllerConfig& config, Mode start, OperatorInput& op,
-                             PolicyExchange& exchange, TickRing& ring,
+ControlThread::ControlThread(RobotIo& io, const ControllerConfig& config, Mode start,
+                             OperatorInput& op, PolicyExchange& exchange, TickRing& ring,
                              const std::atomic<bool>& interrupt)
     : io_(io),
-      simulator_(simulator),
       controller_(config, start),
       operator_(op),
       exchange_(exchange),
@@ -44,14 +42,14 @@ bool ControlThread::tick(std::uint64_t skipped, std::int64_t late_ns) noexcept {
   }
   TickRecord* const claimed = ring_.claim();
   TickRecord& record = claimed ? *claimed : spare_;
-  if (simulator_) note_before(*simulator_, record);
+  record.has_truth = io_.truth(record.truth) ? 1 : 0;
+  record.before = {record.truth.joint_velocity_radps, record.truth.state};
 
   const std::int64_t before_read = monotonic_ns();
   io_.read(input_.sensors);
   const std::int64_t before_control = monotonic_ns();
   input_.policy = exchange_.output.read();
   input_.command = operator_.command(input_.sensors.tick);
-  const GateState gate_before = controller_.state().gate;
   controller_.step(input_, output_);
   if (output_.release_policy != 0) {
     exchange_.input.write(output_.policy_input);
@@ -64,21 +62,23 @@ bool ControlThread::tick(std::uint64_t skipped, std::int64_t late_ns) noexcept {
   TickFacts facts{.ticks = 1 + skipped,
                   .mode = output_.mode,
                   .faults = output_.faults,
-                  .first_fault = controller_.state().gate.first_fault,
+                  .first_fault = output_.first_fault,
                   .interrupted = interrupt_.load(std::memory_order_relaxed)};
-  if (simulator_) note_contacts(*simulator_, facts);
+  if (io_.truth(record.truth)) {
+    facts.base_contact = record.truth.base_contact != 0;
+    facts.thigh_contact = record.truth.thigh_contact != 0;
+  }
   const OperatorVerdict verdict = operator_.advance(facts);
 
   record.input = input_;
   record.output = output_;
   record.counts = verdict.counts ? 1 : 0;
   record.skipped = skipped;
-  note_gate(gate_before, controller_.state().gate, record);
+  record.counters = controller_.state().gate.counters;
   record.timing = {.late_ns = late_ns,
                    .read_ns = before_control - before_read,
                    .control_ns = before_write - before_control,
                    .write_ns = after_write - before_write};
-  if (simulator_) note_after(*simulator_, record);
   if (claimed) ring_.publish();
 
   ++d.ticks;

@@ -43,11 +43,9 @@ struct LoopHooks {
 /// The 4 kHz loop: read, control, write, record, on the grid of slots, until the operator ends it.
 class ControlThread {
  public:
-  /// `simulator` is the robot behind `io` if that is simulated, else null: what really happened is
-  /// then recorded too. Everything must outlive the loop.
-  ControlThread(RobotIo& io, const sim::Simulator* simulator, const ControllerConfig& config,
-                Mode start, OperatorInput& op, PolicyExchange& exchange, TickRing& ring,
-                const std::atomic<bool>& interrupt);
+  /// Everything must outlive the loop.
+  ControlThread(RobotIo& io, const ControllerConfig& config, Mode start, OperatorInput& op,
+                PolicyExchange& exchange, TickRing& ring, const std::atomic<bool>& interrupt);
 
   /// Runs from slot 0 at `start_ns` (CLOCK_MONOTONIC) on. Real-time safe but for its return.
   void run(std::int64_t start_ns, const LoopHooks& hooks) noexcept;
@@ -59,7 +57,6 @@ class ControlThread {
   bool tick(std::uint64_t skipped, std::int64_t late_ns) noexcept;
 
   RobotIo& io_;
-  const sim::Simulator* simulator_;
   Controller controller_;
   OperatorInput& operator_;
   PolicyExchange& exchange_;

@@ -10,38 +10,43 @@ namespace {
 constexpr std::uint64_t kProgress_ticks = kControlHz / 2;
 
 RunSample make_sample(const sim::Simulator& simulator, const TickRecord& tick) {
-  const SimulatedTick& now = tick.simulated;
-  const sim::RigidState<double>& x = now.robot;
+  const RobotTruth& now = tick.truth;
   const auto array = [](const sim::Vec3<double>& v) { return Vector3{v.x, v.y, v.z}; };
   RunSample s;
   s.t_s = static_cast<double>(tick.input.sensors.tick) * kControlPeriod_s;
   s.mode = tick.output.mode;
   s.command = tick.output.policy_input.command;
-  s.base_position_m = array(x.position);
-  s.orientation_wxyz = {x.orientation.w, x.orientation.x, x.orientation.y, x.orientation.z};
-  const sim::Mat3<double> r = sim::rotation_matrix(x.orientation);
+  s.base_position_m = now.position_m;
+  s.orientation_wxyz = now.orientation_wxyz;
+  const auto& q = now.orientation_wxyz;
+  const auto& v = now.velocity_mps;
+  const sim::Vec3<double> position{now.position_m[0], now.position_m[1], now.position_m[2]};
+  const sim::Mat3<double> r =
+      sim::rotation_matrix(sim::Quaternion<double>{q[0], q[1], q[2], q[3]});
   const double forward = std::sqrt(r.r0.x * r.r0.x + r.r1.x * r.r1.x);
-  s.vx_mps = (r.r0.x * x.velocity.x + r.r1.x * x.velocity.y) / forward;
-  s.vy_mps = (r.r0.x * x.velocity.y - r.r1.x * x.velocity.x) / forward;
-  s.yaw_rate_radps = dot(r.r2, x.angular_velocity);
-  s.joint_position_rad = x.q;
-  s.joint_velocity_radps = x.qd;
-  s.joint_torque_nm = now.torque_nm;
+  s.vx_mps = (r.r0.x * v[0] + r.r1.x * v[1]) / forward;
+  s.vy_mps = (r.r0.x * v[1] - r.r1.x * v[0]) / forward;
+  const auto& w = now.angular_velocity_radps;
+  s.yaw_rate_radps = dot(r.r2, sim::Vec3<double>{w[0], w[1], w[2]});
+  s.joint_position_rad = now.joint_position_rad;
+  s.joint_velocity_radps = now.joint_velocity_radps;
+  s.joint_torque_nm = now.joint_torque_nm;
   for (int l = 0; l < kNumLegs; ++l) {
     const sim::LegModel<double>& leg = simulator.model().legs[l];
-    const sim::LegPose<double> p = sim::leg_pose(leg, x.q[3 * l], x.q[3 * l + 1], x.q[3 * l + 2]);
+    const auto& joints = now.joint_position_rad;
+    const sim::LegPose<double> p = sim::leg_pose(leg, joints[3 * l], joints[3 * l + 1], joints[3 * l + 2]);
     const auto world = [&](const sim::Vec3<double>& hip) {
-      return array(x.position + r * sim::hip_to_base(leg, p, hip));
+      return array(position + r * sim::hip_to_base(leg, p, hip));
     };
     s.hip_position_m[l] = world(leg.hfe);
     s.knee_position_m[l] = world(p.knee);
     s.foot_position_m[l] = world(p.foot);
-    s.penetration_m[l] = now.penetration_m[l];
+    s.penetration_m[l] = now.foot_penetration_m[l];
     s.ground_height_m[l] =
         simulator.surface_height(s.foot_position_m[l][0], s.foot_position_m[l][1]);
-    s.contact[l] = now.penetration_m[l] >= 0.0;
+    s.contact[l] = now.foot_penetration_m[l] >= 0.0;
   }
-  s.truth = now.truth_before;
+  s.truth = tick.before.state;
   return s;
 }
 
@@ -82,13 +87,11 @@ void RunObserver::add(const TickRecord& tick) {
     record_.samples.back().has_estimate = true;
     record_.samples.back().estimate = policy.estimate;
   }
-  if (tick.counts != 0) {
-    statistics_.add(tick, comparable ? &released_truth_ : nullptr);
-  }
+  statistics_.add(tick, comparable ? &released_truth_ : nullptr);
   if (tick.output.release_policy != 0) {
     released_ = true;
     released_tick_ = tick.input.sensors.tick;
-    released_truth_ = tick.simulated.truth_before;
+    released_truth_ = tick.before.state;
   }
   const std::uint64_t number = tick.input.sensors.tick;
   const bool show = number % kProgress_ticks == 0 && progress_;

@@ -17,24 +17,30 @@ double square(double v) { return v * v; }
 }  // namespace
 
 void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
+  const GateCounters before = counters_;
+  counters_ = tick.counters;
+  if (tick.counts == 0) return;
   if (periods_.empty() || periods_.back().ticks == kTicksPerPolicyStep) periods_.emplace_back();
   Period& p = periods_.back();
   ++p.ticks;
-  const SimulatedTick& robot = tick.simulated;
-  const sim::RigidState<double>& x = robot.robot;
-  const sim::Mat3<double> r = sim::rotation_matrix(x.orientation);
+  const RobotTruth& robot = tick.truth;
+  const auto& q = robot.orientation_wxyz;
+  const sim::Mat3<double> r =
+      sim::rotation_matrix(sim::Quaternion<double>{q[0], q[1], q[2], q[3]});
   const double forward = std::sqrt(r.r0.x * r.r0.x + r.r1.x * r.r1.x);
   const double c = r.r0.x / forward, s = r.r1.x / forward;
-  p.vx += c * x.velocity.x + s * x.velocity.y;
-  p.vy += c * x.velocity.y - s * x.velocity.x;
-  p.yaw_rate += dot(r.r2, x.angular_velocity);
+  const auto& v = robot.velocity_mps;
+  p.vx += c * v[0] + s * v[1];
+  p.vy += c * v[1] - s * v[0];
+  const auto& w = robot.angular_velocity_radps;
+  p.yaw_rate += dot(r.r2, sim::Vec3<double>{w[0], w[1], w[2]});
   for (int j = 0; j < kNumJoints; ++j) {
-    p.power += robot.torque_nm[j] * robot.joint_velocity_before_radps[j];
-    p.torque_squared += square(robot.torque_nm[j]);
+    p.power += robot.joint_torque_nm[j] * tick.before.joint_velocity_radps[j];
+    p.torque_squared += square(robot.joint_torque_nm[j]);
   }
   p.command = tick.output.policy_input.command;
-  p.past_stop += static_cast<int>(tick.joint_past_stop);
-  p.too_fast += static_cast<int>(tick.joint_too_fast);
+  p.past_stop += static_cast<int>(counters_.joint_past_stop - before.joint_past_stop);
+  p.too_fast += static_cast<int>(counters_.joint_too_fast - before.joint_too_fast);
   if (truth) {
     const StateEstimate& estimate = tick.input.policy.estimate;
     ++p.estimates;
@@ -48,7 +54,7 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
   }
   if (p.ticks == kTicksPerPolicyStep) {
     for (int l = 0; l < kNumLegs; ++l) {
-      p.foot_height[l] = robot.truth.foot_height_m[l] - x.position.z;
+      p.foot_height[l] = robot.state.foot_height_m[l] - robot.position_m[2];
     }
   }
   follow_stances(tick);
@@ -57,14 +63,14 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
 void RunStatistics::follow_stances(const TickRecord& tick) {
   for (int l = 0; l < kNumLegs; ++l) {
     Stance& stance = stances_[l];
-    const double depth = tick.simulated.penetration_m[l];
+    const double depth = tick.truth.foot_penetration_m[l];
     if (!stance.open && depth >= 0.0) stance = {.open = true};
     if (!stance.open) continue;
     ++stance.ticks;
     if (depth > stance.depth) {
       stance.depth = depth;
-      stance.x = tick.simulated.foot_centre[l].x;
-      stance.y = tick.simulated.foot_centre[l].y;
+      stance.x = tick.truth.foot_centre_m[l][0];
+      stance.y = tick.truth.foot_centre_m[l][1];
     }
     if (depth > -kLift_m) continue;
     stance.open = false;

@@ -39,10 +39,10 @@ struct RunFigures {
   std::int64_t speed_limit_steps = 0;  ///< ticks with a joint above its speed limit
 };
 
-/// Collects figures tick by tick while the robot walks, and footprints.
+/// Collects figures from the ticks that count, and footprints.
 class RunStatistics {
  public:
-  /// `truth`: what the estimate that came with this tick should be; null: none came.
+  /// Every tick, in order. `truth`: what the estimate that came with this tick should be; null: none came.
   void add(const TickRecord& tick, const StateEstimate* truth);
   /// Figures so far. `mass_kg`, `motor_constant` (N m/sqrt(W)): for the cost of transport.
   RunFigures figures(double mass_kg, double motor_constant) const;
@@ -71,6 +71,7 @@ class RunStatistics {
   };
   void follow_stances(const TickRecord& tick);
 
+  GateCounters counters_;  // of the last tick
   std::vector<Period> periods_;
   std::array<Stance, kNumLegs> stances_;
   std::vector<EndedStance> ended_;

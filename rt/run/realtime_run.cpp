@@ -78,7 +78,7 @@ RunResult run_realtime(const ProcessConfig& config, Policy* policy, const Comman
   const auto exchange = std::make_unique<PolicyExchange>();
   const auto ring = std::make_unique<TickRing>();
   std::atomic<bool> end{false};
-  ControlThread control(simulator, &simulator, config.controller,
+  ControlThread control(simulator, config.controller,
                         plan.start_walking ? Mode::kWalk : Mode::kPassive,
                         hooks.op ? *hooks.op : script, *exchange, *ring, end);
   std::optional<PolicyThread> policy_thread;

@@ -23,21 +23,22 @@ RunResult run_lockstep(const ProcessConfig& config, Policy* policy, const Comman
   TickRecord record;
   bool running = true;
   while (running) {
-    note_before(simulator, record);
-    const GateState gate_before = loop.controller().state().gate;
+    record.has_truth = simulator.truth(record.truth) ? 1 : 0;
+    record.before = {record.truth.joint_velocity_radps, record.truth.state};
     loop.tick(script.command(simulator.state().tick));
     TickFacts facts{.mode = loop.output().mode,
                     .faults = loop.output().faults,
-                    .first_fault = loop.controller().state().gate.first_fault,
+                    .first_fault = loop.output().first_fault,
                     .interrupted = interrupt.load(std::memory_order_relaxed)};
-    note_contacts(simulator, facts);
+    simulator.truth(record.truth);
+    facts.base_contact = record.truth.base_contact != 0;
+    facts.thigh_contact = record.truth.thigh_contact != 0;
     const OperatorVerdict verdict = script.advance(facts);
     running = verdict.running;
     record.input = loop.input();
     record.output = loop.output();
     record.counts = verdict.counts ? 1 : 0;
-    note_gate(gate_before, loop.controller().state().gate, record);
-    note_after(simulator, record);
+    record.counters = loop.controller().state().gate.counters;
     observer.add(record);
     if (tap) tap(record);
   }

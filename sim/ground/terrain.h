@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "sim/ground/ground.h"
+#include "sim/lanes/vec.h"
 
 namespace sandrunner::sim {
 
@@ -82,6 +83,30 @@ S surface_height(const Terrain<S>& terrain, S x, S y) noexcept {
   S height, slope_x, slope_y;
   rough_surface(ground, x, y, height, slope_x, slope_y);
   return height;
+}
+
+/// Axes of the contact frame on a surface z = h(x, y): n its normal, t1 the tangent nearest to world
+/// x, t2 = n x t1; all in the world frame.
+template <typename S>
+struct SurfaceAxes {
+  Vec3<S> t1, t2, n;
+};
+template <typename S>
+SurfaceAxes<S> surface_axes(S slope_x, S slope_y) noexcept {
+  const S one = S(1.0);
+  const S n = one / sqrt(fma(slope_x, slope_x, fma(slope_y, slope_y, one)));
+  const Vec3<S> normal{-(slope_x * n), -(slope_y * n), n};
+  const S t = one / sqrt(fma(slope_x, slope_x, one));
+  const Vec3<S> tangent{t, S(0.0), slope_x * t};
+  return {tangent, cross(normal, tangent), normal};
+}
+/// Those of the terrain at (x, y), world, m; the world's own axes where it is even.
+template <typename S>
+SurfaceAxes<S> surface_axes(const Terrain<S>& terrain, S x, S y) noexcept {
+  const Ground<S>& ground = terrain.ground[static_cast<std::size_t>(terrain.region_at(x))];
+  S height, slope_x = S(0.0), slope_y = S(0.0);
+  if (ground.roughness > S(0.0)) rough_surface(ground, x, y, height, slope_x, slope_y);
+  return surface_axes(slope_x, slope_y);
 }
 
 }  // namespace sandrunner::sim

@@ -9,15 +9,9 @@ namespace sandrunner::sim {
 template <typename S>
 typename RobotStepper<S>::Frame RobotStepper<S>::surface_frame(S slope_x,
                                                                S slope_y) const noexcept {
-  // Normal of z = h(x, y), and the tangent nearest to world x.
-  const S one = S(1.0);
-  const S n = one / sqrt(fma(slope_x, slope_x, fma(slope_y, slope_y, one)));
-  const Vec3<S> normal{-(slope_x * n), -(slope_y * n), n};
-  const S t = one / sqrt(fma(slope_x, slope_x, one));
-  const Vec3<S> tangent{t, S(0.0), slope_x * t};
-  const Vec3<S> other = cross(normal, tangent);
-  return {transposed_times(rotation_, tangent), transposed_times(rotation_, other),
-          transposed_times(rotation_, normal)};
+  const SurfaceAxes<S> axes = surface_axes(slope_x, slope_y);
+  return {transposed_times(rotation_, axes.t1), transposed_times(rotation_, axes.t2),
+          transposed_times(rotation_, axes.n)};
 }
 
 template <typename S>

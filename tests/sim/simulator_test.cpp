@@ -315,7 +315,9 @@ TEST(SimulatorTest, TruthHoldsTheEstimatedQuantities) {
   run(simulator, robot, 600);
   const SimulatorState& s = simulator.state();
   const RigidState<double>& x = s.robot.rigid;
-  const StateEstimate& truth = simulator.truth().state;
+  RobotTruth whole;
+  simulator.truth(whole);
+  const StateEstimate& truth = whole.state;
   double deepest = 0.0;
   for (const FootContact<double>& foot : s.robot.feet) {
     if (foot.active > 0.0) deepest = std::fmax(deepest, foot.memory_depth);
@@ -327,7 +329,9 @@ TEST(SimulatorTest, TruthHoldsTheEstimatedQuantities) {
   uneven.terrain.patches.front().ground.roughness_m = 0.05;
   const Simulator on_hills(robot, uneven);
   EXPECT_GT(std::fabs(on_hills.surface_height(0.0, 0.0)), 0.001);
-  EXPECT_EQ(on_hills.truth().state.body_height_m,
+  RobotTruth on_hills_truth;
+  on_hills.truth(on_hills_truth);
+  EXPECT_EQ(on_hills_truth.state.body_height_m,
             on_hills.state().robot.rigid.position.z - on_hills.surface_height(0.0, 0.0));
   const Vec3<double> v = transposed_times(rotation_matrix(x.orientation), x.velocity);
   EXPECT_NEAR(truth.velocity_mps[0], v.x, 1e-12);

@@ -47,7 +47,8 @@ Durations time_handovers() {
       if (TickRecord* const record = ring->claim()) {
         record->input = input;
         record->output = output;
-        record->counts = record->joint_past_stop = record->joint_too_fast = record->skipped = 0;
+        record->counts = record->skipped = record->has_truth = 0;
+        record->counters = {};
         record->timing = {};
         ring->publish();
       }

@@ -42,8 +42,7 @@ void Diagnostics::add(const TickRecord& tick) noexcept {
   tick_ = tick.input.sensors.tick;
   ++ticks_;
   skipped_ += tick.skipped;
-  past_stop_ticks_ += tick.joint_past_stop;
-  too_fast_ticks_ += tick.joint_too_fast;
+  counters_ = tick.counters;
   late_.add(tick.timing.late_ns);
   read_.add(tick.timing.read_ns);
   control_.add(tick.timing.control_ns);
@@ -52,7 +51,7 @@ void Diagnostics::add(const TickRecord& tick) noexcept {
 
 Diagnostics::Values Diagnostics::values(const CommandCounts& commands,
                                         std::uint64_t failed_writes) const {
-  return {{"mode", mode_name(mode_)},
+  Values values = {{"mode", mode_name(mode_)},
           {"faults", fault_names(faults_)},
           {"tick", std::to_string(tick_)},
           {"ticks_done", std::to_string(ticks_)},
@@ -61,8 +60,6 @@ Diagnostics::Values Diagnostics::values(const CommandCounts& commands,
           {"read_us", histogram_text(read_)},
           {"control_us", histogram_text(control_)},
           {"write_us", histogram_text(write_)},
-          {"ticks_joint_past_stop", std::to_string(past_stop_ticks_)},
-          {"ticks_joint_too_fast", std::to_string(too_fast_ticks_)},
           {"commands_accepted", std::to_string(commands.accepted)},
           {"commands_not_finite", std::to_string(commands.not_finite)},
           {"commands_absurd", std::to_string(commands.absurd)},
@@ -70,6 +67,11 @@ Diagnostics::Values Diagnostics::values(const CommandCounts& commands,
           {"requests_accepted", std::to_string(commands.requests_accepted)},
           {"requests_refused", std::to_string(commands.requests_refused)},
           {"messages_not_written", std::to_string(failed_writes)}};
+  for (const GateCounterName& counter : kGateCounters) {
+    values.emplace_back(fmt::format("ticks_{}", counter.name),
+                        std::to_string(counters_.*counter.ticks));
+  }
+  return values;
 }
 
 bool Diagnostics::publish(std::int64_t stamp_ns, const CommandCounts& commands,

@@ -33,7 +33,7 @@ class Diagnostics {
   dds_entity_t writer_;
   Mode mode_ = Mode::kPassive;
   std::uint64_t faults_ = 0, tick_ = 0, ticks_ = 0, skipped_ = 0, skipped_before_ = 0;
-  std::uint64_t past_stop_ticks_ = 0, too_fast_ticks_ = 0;
+  GateCounters counters_;
   LogHistogram late_, read_, control_, write_;
 };
 

@@ -23,7 +23,7 @@ class FakeRobot : public RobotIo {
   }
 
   void read(SensorFrame& frame) noexcept override {
-    now.joints.tick = now.tick;
+    now.joints.tick.fill(now.tick);
     now.imu.tick = now.tick;
     frame = now;
   }

@@ -67,7 +67,7 @@ TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
   EXPECT_EQ(passed.joints().kp_nmprad, wanted.kp_nmprad);
   EXPECT_EQ(passed.joints().kd_nmsprad, wanted.kd_nmsprad);
   EXPECT_EQ(passed.joints().feedforward_nm, wanted.feedforward_nm);
-  EXPECT_EQ(state.position_clamp_ticks + state.velocity_clamp_ticks + state.torque_clamp_ticks, 0u);
+  EXPECT_EQ(state.counters.position_clamped + state.counters.velocity_clamped + state.counters.torque_clamped, 0u);
 }
 
 TEST_F(SafetyGateTest, ClampsAndCountsCommandedPositions) {
@@ -76,7 +76,7 @@ TEST_F(SafetyGateTest, ClampsAndCountsCommandedPositions) {
   const SafeCommand passed = gate.pass(wanted, true, state);
   EXPECT_EQ(passed.joints().position_rad[2], -0.0262 + 1.0);
   EXPECT_EQ(passed.joints().position_rad[5], -2.4696 - 1.0);
-  EXPECT_EQ(state.position_clamp_ticks, 1u);  // ticks, not joints
+  EXPECT_EQ(state.counters.position_clamped, 1u);  // ticks, not joints
 }
 
 TEST_F(SafetyGateTest, ClampsAndCountsCommandedVelocitiesAndTorques) {
@@ -85,8 +85,8 @@ TEST_F(SafetyGateTest, ClampsAndCountsCommandedVelocitiesAndTorques) {
   const SafeCommand passed = gate.pass(wanted, true, state);
   EXPECT_EQ(passed.joints().velocity_radps[0], 25.7);
   EXPECT_EQ(passed.joints().feedforward_nm[11], -63.45);
-  EXPECT_EQ(state.velocity_clamp_ticks, 1u);
-  EXPECT_EQ(state.torque_clamp_ticks, 1u);
+  EXPECT_EQ(state.counters.velocity_clamped, 1u);
+  EXPECT_EQ(state.counters.torque_clamped, 1u);
 }
 
 TEST_F(SafetyGateTest, CommandThatIsNotFiniteBecomesDampingAndLatches) {
@@ -126,11 +126,11 @@ TEST_F(SafetyGateTest, LimitsAreCountedWithoutAFault) {
   sensors.joints.tick = 40 - 8;
   sensors.imu.tick = 0;
   EXPECT_EQ(judge(Mode::kWalk), 0u);
-  EXPECT_EQ(state.joint_limit_ticks, 1u);
-  EXPECT_EQ(state.speed_limit_ticks, 1u);
-  EXPECT_EQ(state.tilt_limit_ticks, 1u);
-  EXPECT_EQ(state.joints_late_ticks, 1u);
-  EXPECT_EQ(state.imu_late_ticks, 1u);
+  EXPECT_EQ(state.counters.joint_past_stop, 1u);
+  EXPECT_EQ(state.counters.joint_too_fast, 1u);
+  EXPECT_EQ(state.counters.tilted, 1u);
+  EXPECT_EQ(state.counters.joints_late, 1u);
+  EXPECT_EQ(state.counters.imu_late, 1u);
   EXPECT_EQ(state.faults, 0u);
 }
 
@@ -142,8 +142,8 @@ TEST_F(SafetyGateTest, NothingIsCountedWithinLimits) {
   sensors.joints.tick = 8;
   sensors.imu.tick = 2;
   EXPECT_EQ(judge(Mode::kWalk), 0u);
-  EXPECT_EQ(state.joint_limit_ticks + state.speed_limit_ticks + state.tilt_limit_ticks +
-                state.joints_late_ticks + state.imu_late_ticks,
+  EXPECT_EQ(state.counters.joint_past_stop + state.counters.joint_too_fast + state.counters.tilted +
+                state.counters.joints_late + state.counters.imu_late,
             0u);
 }
 
@@ -193,10 +193,10 @@ TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
   EXPECT_EQ(passed.joints().feedforward_nm[1], 50.0);
   sensors.joints.velocity_radps[3] = sensors.joints.velocity_radps[5] = 11.0;
   other.judge({sensors, command}, Mode::kWalk, state);
-  EXPECT_EQ(state.speed_limit_ticks, 0u);
+  EXPECT_EQ(state.counters.joint_too_fast, 0u);
   sensors.joints.velocity_radps[4] = 11.0;
   other.judge({sensors, command}, Mode::kWalk, state);
-  EXPECT_EQ(state.speed_limit_ticks, 1u);
+  EXPECT_EQ(state.counters.joint_too_fast, 1u);
   sensors.joints.torque_nm[1] = sensors.joints.torque_nm[3] = 40.0;
   for (int n = 0; n < 40; ++n) {
     EXPECT_EQ(other.judge({sensors, command}, Mode::kWalk, state), 0u);

@@ -164,7 +164,7 @@ TEST(WalkTest, WildTargetIsClampedAndCounted) {
   loop.tick();
   loop.tick();
   EXPECT_EQ(loop.output.command.joints().position_rad[2], -0.0262 + 1.0);
-  EXPECT_EQ(loop.controller.state().gate.position_clamp_ticks, 1u);
+  EXPECT_EQ(loop.controller.state().gate.counters.position_clamped, 1u);
 }
 
 TEST(WalkTest, CommandStepPassesThroughByDefault) {

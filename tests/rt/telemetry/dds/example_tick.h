@@ -18,7 +18,8 @@ inline constexpr std::int64_t kExampleStart_ns = 1'700'000'000'900'000'000;
 inline TickRecord example_tick(std::uint64_t tick) {
   TickRecord r{};
   SensorFrame& s = r.input.sensors;
-  s.tick = s.joints.tick = s.imu.tick = tick;
+  s.tick = s.imu.tick = tick;
+  s.joints.tick.fill(tick);
   JointCommand wanted;
   for (int j = 0; j < kNumJoints; ++j) {
     s.joints.position_rad[j] = 0.1 * j + 1e-6 * static_cast<double>(tick);
