@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sandrunner: the control process. This file parses, wires and reports; what happens in between is
-// run.cpp.
+// in run/.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -25,16 +25,20 @@
 #include "rt/run/process_config.h"
 #include "rt/run/recording.h"
 #include "rt/run/run.h"
+#include "rt/run/scene.h"
 #include "rt/run/signals.h"
 #include "rt/telemetry/start_time.h"
+#include "sim/ground/terrain_description.h"
+#include "sim/simulator.h"
 
 namespace {
 
 using namespace sandrunner;
 
 void show_progress(const RunSample& s) {
-  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {:6.2f} m/s  x {:7.2f} m ", s.t_s,
-                                mode_name(s.mode), s.vx_mps, s.base_position_m[0]));
+  const std::string where =
+      s.has_truth ? fmt::format("{:6.2f} m/s  x {:7.2f} m ", s.vx_mps, s.base_position_m[0]) : "";
+  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", s.t_s, mode_name(s.mode), where));
 }
 
 std::string recording_line(const RecordingResult& r, const std::string& dir) {
@@ -46,18 +50,60 @@ std::string recording_line(const RecordingResult& r, const std::string& dir) {
 }
 
 // Writes the files of --out; returns the line that names them. Throws InputError.
-std::string write_results(const RunResult& result, const Options& options,
-                          const std::string& command, const ProcessConfig& config,
-                          const std::string& policy_name) {
-  const std::string dir = options.out_dir + "/";
-  write_text(summary_json(result, options, command, policy_name), dir + "summary.json");
-  write_text(config.effective, dir + "config.toml");
+std::string write_results(const RunResult& result, const RunInfo& info,
+                          const std::string& effective, const std::string& folder) {
+  const std::string dir = folder + "/";
+  write_text(summary_json(result, info), dir + "summary.json");
+  write_text(effective, dir + "config.toml");
   write_csv(result.record, dir + "run.csv");
   draw_run_plot(result.record, dir + "run.png");
-  draw_run_strip(result.record, dir + "strip.png");
-  return fmt::format(
-      "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png, {0}strip.png\n", dir);
+  std::string line =
+      fmt::format("wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png", dir);
+  if (result.record.has_truth()) {
+    draw_run_strip(result.record, dir + "strip.png");
+    line += fmt::format(", {}strip.png", dir);
+  }
+  return line + "\n";
 }
+
+ProcessConfig read_config(const Options& options, const PolicySpec& spec) {
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, options.terrain);
+  for (const std::string& file : options.config_files) tree.add_file(file);
+  for (const std::string& assignment : options.assignments) tree.set(assignment);
+  if (options.live) tree.set("dds.enabled=true");
+  if (!options.dds_security_dir.empty()) {
+    tree.set_text("dds.security_dir", options.dds_security_dir, "--dds-security");
+  }
+  ProcessConfig config = read_process_config(tree, &spec);
+  config.simulator.seed = options.seed;
+  return config;
+}
+
+// Everything that listens to the ticks of a run, in ordinary threads.
+struct Listeners {
+  std::optional<DdsBridge> dds;
+  std::unique_ptr<Recorder> recorder;
+  std::unique_ptr<BlackBox> black_box;
+
+  TickTap tap() {
+    if (!recorder && !black_box && !dds) return {};
+    return [this, begun = false](const TickRecord& tick) mutable {
+      if (!begun) begin(start_time_ns(tick));
+      begun = true;
+      if (recorder) recorder->add(tick);
+      if (black_box) black_box->add(tick);
+      if (dds) dds->add(tick);
+    };
+  }
+
+ private:
+  void begin(std::int64_t start_ns) {
+    if (recorder) recorder->begin(start_ns);
+    if (black_box) black_box->begin(start_ns);
+    if (dds) dds->begin(start_ns);
+  }
+};
 
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
@@ -67,75 +113,61 @@ int run(int argc, char** argv) {
     return kExitOk;
   }
   const CommandSource command(options->live ? "0,0,0" : options->command);
-  const std::string command_text = options->live ? "dds" : command.text();
   const std::string policy_text = options->policy_path.empty()
                                       ? std::string(shipped_policy_text())
                                       : read_safetensors_bytes(options->policy_path);
   Policy policy =
       load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
                                                                  : options->policy_path);
-  ConfigTree tree;
-  sim::add_terrain_layer(tree, options->terrain);
-  for (const std::string& file : options->config_files) tree.add_file(file);
-  for (const std::string& assignment : options->assignments) tree.set(assignment);
-  if (options->live) tree.set("dds.enabled=true");
-  if (!options->dds_security_dir.empty()) {
-    tree.set_text("dds.security_dir", options->dds_security_dir, "--dds-security");
-  }
-  ProcessConfig config = read_process_config(tree, &policy.spec());
-  config.simulator.seed = options->seed;
+  const ProcessConfig config = read_config(*options, policy.spec());
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");
 
   flush_denormals_to_zero();
   const SignalWatch signals;
-  std::optional<DdsBridge> dds;
-  if (config.dds.enabled) dds.emplace(config, options->live);
-  const std::unique_ptr<Recorder> recorder = make_recorder(*options, config, policy_text);
-  const std::unique_ptr<BlackBox> black_box = make_black_box(*options, config, policy_text, policy);
-  TickTap tap;
-  bool begun = false;
-  if (recorder || black_box || dds) {
-    tap = [&](const TickRecord& tick) {
-      if (!begun) {
-        begun = true;
-        const std::int64_t start_ns = start_time_ns(tick);
-        if (recorder) recorder->begin(start_ns);
-        if (black_box) black_box->begin(start_ns);
-        if (dds) dds->begin(start_ns);
-      }
-      if (recorder) recorder->add(tick);
-      if (black_box) black_box->add(tick);
-      if (dds) dds->add(tick);
-    };
-  }
+  Listeners listeners;
+  if (config.dds.enabled) listeners.dds.emplace(config, options->live);
+  listeners.recorder = make_recorder(*options, config, policy_text);
+  listeners.black_box = make_black_box(*options, config, policy_text, policy);
+  sim::Simulator simulator(config.robot, config.simulator);
+  if (!options->start_walking) simulator.reset_lying();
+
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const RunPlan plan{.walk_s = options->duration_s, .start_walking = options->start_walking};
-  const auto progress = terminal ? show_progress : std::function<void(const RunSample&)>();
-  RealtimeHooks hooks;
-  if (dds) hooks.op = dds->op();
+  const RunParts parts{
+      .robot = simulator,
+      .controller = config.controller,
+      .policy = &policy,
+      .command = command,
+      .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
+      .live = listeners.dds ? listeners.dds->op() : nullptr,
+      .scene = scene_of(config, policy.spec().name),
+      .keep_record = out,
+      .progress = terminal ? show_progress : std::function<void(const RunSample&)>(),
+      .tap = listeners.tap(),
+      .interrupt = signals.interrupted()};
+  SystemClock clock;
   const RunResult result =
-      options->realtime
-          ? run_realtime(config, &policy, command, plan, out, signals.interrupted(), progress, tap,
-                         hooks)
-          : run_lockstep(config, &policy, command, plan, out, signals.interrupted(), progress, tap);
+      options->realtime ? run_in_realtime(parts, config.realtime, clock) : run_in_lockstep(parts);
   if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
 
-  const RecordingResult recorded = recorder ? recorder->close() : RecordingResult();
-  const BlackBoxResult kept = black_box ? black_box->close() : BlackBoxResult();
+  const RecordingResult recorded =
+      listeners.recorder ? listeners.recorder->close() : RecordingResult();
+  const BlackBoxResult kept = listeners.black_box ? listeners.black_box->close() : BlackBoxResult();
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
+  const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name, options->terrain,
+                     options->seed};
   std::string written;
   std::optional<InputError> not_written;
   try {
-    if (out) written = write_results(result, *options, command_text, config, policy.spec().name);
+    if (out) written = write_results(result, info, config.effective, options->out_dir);
   } catch (const InputError& error) {
     not_written = error;
   }
-  if (recorder) written += recording_line(recorded, options->record_dir);
-  if (black_box) written += black_box_lines(kept);
-  fmt::print("{}{}", summary_table(result, command_text), written);
+  if (listeners.recorder) written += recording_line(recorded, options->record_dir);
+  if (listeners.black_box) written += black_box_lines(kept);
+  fmt::print("{}{}", summary_table(result, info), written);
   if (not_written) throw *not_written;
   return result.survived ? kExitOk : kExitRobotFailed;
 }

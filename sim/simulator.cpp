@@ -101,18 +101,18 @@ SensorFrame Simulator::sample() const noexcept {
   return f;
 }
 
-void Simulator::read(SensorFrame& frame) noexcept {
+void Simulator::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   const auto delay = static_cast<std::uint64_t>(config_.sensor_delay_ticks);
   if (delay == 0) {
     frame = sample();
-    return;
+  } else {
+    state_.sensors[state_.tick % kMaxDelayTicks] = sample();
+    frame = state_.sensors[(state_.tick - std::min(delay, state_.tick)) % kMaxDelayTicks];
   }
-  state_.sensors[state_.tick % kMaxDelayTicks] = sample();
   // Delayed values do not look old to the controller: the delay lies in the sensor, which stamps on
   // arrival.
-  frame = state_.sensors[(state_.tick - std::min(delay, state_.tick)) % kMaxDelayTicks];
-  frame.tick = frame.imu.tick = state_.tick;
-  frame.joints.tick.fill(state_.tick);
+  frame.tick = frame.imu.tick = tick;
+  frame.joints.tick.fill(tick);
 }
 
 void Simulator::write(const SafeCommand& command) noexcept {
@@ -135,8 +135,7 @@ void Simulator::write(const SafeCommand& command) noexcept {
             : 0.0;
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
-  stepper_.step(model_, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,
-                report_);
+  stepper_.step(model_, foot_, terrain_, config_.step, state_.torque_nm, state_.robot, report_);
   // Specific force at the base origin, body frame.
   const Vec3<double> felt = mul_add(before.r2, kGravity_mps2, report_.base_acceleration);
   state_.linear_acceleration_mps2 = {felt.x, felt.y, felt.z};
@@ -176,9 +175,7 @@ bool Simulator::truth(RobotTruth& truth) const noexcept {
   return true;
 }
 
-void Simulator::restore(const SimulatorState& state) noexcept {
-  state_ = state;
-}
+void Simulator::restore(const SimulatorState& state) noexcept { state_ = state; }
 
 void Simulator::add_to(StateHash& hash) const noexcept {
   hash.add(state_.tick);

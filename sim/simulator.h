@@ -60,7 +60,7 @@ class Simulator final : public RobotIo {
   /// On its belly in the lying pose, at rest (disturbed likewise, but kept on the ground).
   void reset_lying();
 
-  void read(SensorFrame& frame) noexcept override;
+  void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
   /// Takes the command and advances the robot by one tick.
   void write(const SafeCommand& command) noexcept override;
   /// Simulates the missed ticks, so that simulated time stays on the grid.
@@ -70,8 +70,7 @@ class Simulator final : public RobotIo {
 
   const SimulatorState& state() const noexcept { return state_; }
   void restore(const SimulatorState& state) noexcept;
-  /// Adds what decides the future to `hash`.
-  void add_to(StateHash& hash) const noexcept;
+  void add_to(StateHash& hash) const noexcept override;
 
   const StepReport<double>& report() const noexcept { return report_; }  ///< of the last step
   const RobotModel<double>& model() const noexcept { return model_; }

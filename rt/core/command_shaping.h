@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "rt/core/joint_pd.h"
+#include "rt/core/messages.h"
 
 namespace sandrunner {
 
 /// Centripetal acceleration that the paper's authors allow a commanded turn: 0.3 g.
-inline constexpr double kCentripetalLimit_mps2 = 0.3 * 9.81;
+inline constexpr double kCentripetalLimit_mps2 = 0.3 * kGravity_mps2;
 
 /// Yaw rate held to `centripetal_limit_mps2` / |v_xy|; without a speed it passes unchanged.
 /// Source: the authors' published controller.

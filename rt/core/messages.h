@@ -25,6 +25,8 @@ inline constexpr int kPolicyHz = 100;
 inline constexpr int kTicksPerPolicyStep = kControlHz / kPolicyHz;
 inline constexpr double kControlPeriod_s = 1.0 / kControlHz;
 
+inline constexpr double kGravity_mps2 = 9.81;
+
 /// Numbers of the network's input and estimate (paper, "Controller structure").
 inline constexpr int kObservationSize = 33;
 inline constexpr int kEstimateSize = 8;

@@ -6,6 +6,7 @@
 
 #include "rt/core/messages.h"
 #include "rt/core/robot_truth.h"
+#include "rt/core/state_hash.h"
 
 namespace sandrunner {
 
@@ -30,22 +31,21 @@ class SafeCommand {
 static_assert(std::is_trivially_copyable_v<SafeCommand>);
 static_assert(sizeof(SafeCommand) == sizeof(JointCommand) + 8, "no padding");
 
-/// The robot as the control loop sees it: real drives and IMU, or the simulator. Called once each
-/// per tick from the control thread: `io.read(in); controller.step(in, out);
-/// io.write(out.command)`.
+/// The robot as the control loop sees it: real drives and IMU, or the simulator. Called from the
+/// control thread, in each tick: `read`, `Controller::step`, `write`. Time comes from the loop:
+/// tick n is due n x 0.25 ms after the start.
 class RobotIo {
  public:
   virtual ~RobotIo() = default;
 
-  /// Delivers the newest sensor values and the present tick. What did not arrive keeps its old
-  /// value and tick.
-  virtual void read(SensorFrame& frame) noexcept = 0;
+  /// Delivers the newest sensor values in tick `tick` (`frame.tick`). What did not arrive keeps its
+  /// old value and tick.
+  virtual void read(std::uint64_t tick, SensorFrame& frame) noexcept = 0;
 
   /// Sends the command. It holds until the next one.
   virtual void write(const SafeCommand& command) noexcept = 0;
 
-  /// The loop missed `ticks` ticks, through which `held`, the last command, has been in force. The
-  /// next read() delivers the tick after them.
+  /// The loop missed `ticks` ticks, through which `held`, the last command, has been in force.
   virtual void skip(std::uint64_t ticks, const SafeCommand& held) noexcept = 0;
 
   /// The loop ends: drives off. Called once, after the last write().
@@ -54,6 +54,9 @@ class RobotIo {
   /// What really is, after the last write(). False where nobody knows (a real robot): `truth` is
   /// then as it was.
   virtual bool truth([[maybe_unused]] RobotTruth& truth) const noexcept { return false; }
+
+  /// Adds all that decides what the robot will do to `hash`; nothing where that is not known.
+  virtual void add_to([[maybe_unused]] StateHash& hash) const noexcept {}
 };
 
 }  // namespace sandrunner

@@ -1,44 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/loop/lockstep.h"
 
-#include "estimator/observation.h"
+#include <chrono>
 
 namespace sandrunner {
 
-void step_policy(Policy& policy, const PolicyInput& input, PolicyOutput& newest) noexcept {
-  if (newest.sequence == 0 || newest.episode != input.episode) policy.reset();
-  const PolicyStep step = policy.step(make_observation(input));
-  newest.input_tick = input.tick;
-  newest.episode = input.episode;
-  ++newest.sequence;
-  newest.target_rad = step.target_rad;
-  newest.estimate = step.estimate;
-}
-
 void Lockstep::tick(const OperatorCommand& command) noexcept {
-  io_.read(input_.sensors);
-  input_.policy = newest_;
-  input_.command = command;
-  controller_.step(input_, output_);
-  io_.write(output_.command);
-  // The controller decides from which tick on the answer counts (latency_ticks).
-  if (policy_ran()) step_policy(*policy_, output_.policy_input, newest_);
+  loop_.tick({.number = next_tick_++}, command, record_);
 }
 
-LockstepState Lockstep::state() const noexcept {
+bool Lockstep::tick(OperatorInput& op, bool interrupted) noexcept {
+  return loop_.tick({.number = next_tick_++}, op, interrupted, record_);
+}
+
+LockstepState Lockstep::state() noexcept {
   LockstepState s;
-  s.policy_output = newest_;
-  s.controller = controller_.state();
-  if (policy_) s.network = policy_->state();
+  s.policy_output = policy_.newest();
+  s.controller = loop_.controller().state();
+  if (policy_.policy()) s.network = policy_.policy()->state();
   return s;
 }
 
-void Lockstep::restore(const LockstepState& state) noexcept {
-  newest_ = state.policy_output;
-  controller_.restore(state.controller);
-  if (policy_) policy_->set_state(state.network);
+void Lockstep::restore(const LockstepState& state, std::uint64_t next_tick) noexcept {
+  policy_.restore(state.policy_output, state.network);
+  loop_.restore(state.controller);
+  next_tick_ = next_tick;
 }
 
-void Lockstep::add_to(StateHash& hash) const noexcept { hash.add(state()); }
+LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
+                     OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap) {
+  Lockstep loop(robot, config, start, policy);
+  const auto begin = std::chrono::steady_clock::now();
+  bool running = true;
+  while (running) {
+    running = loop.tick(op, interrupt.load(std::memory_order_relaxed));
+    tap(loop.record());
+  }
+  robot.shut_down();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+
+  LoopEnd end;
+  end.time_s = static_cast<double>(loop.next_tick()) * kControlPeriod_s;
+  end.realtime_factor = end.time_s / wall.count();
+  StateHash hash;
+  robot.add_to(hash);
+  loop.add_to(hash);
+  end.state_hash = hash.value();
+  end.gate = loop.controller().state().gate;
+  return end;
+}
 
 }  // namespace sandrunner

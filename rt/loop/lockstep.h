@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <atomic>
+#include <functional>
 #include <type_traits>
 
 #include "policy/policy.h"
-#include "rt/core/controller.h"
-#include "rt/core/robot_io.h"
 #include "rt/core/state_hash.h"
+#include "rt/loop/control_loop.h"
 
 namespace sandrunner {
 
-/// All that the loop around the steps carries over; with the states of simulator, controller and
-/// network, a snapshot.
+/// All that the loop around the steps carries over; with the robot's own state, a snapshot.
 struct LockstepState {
   PolicyOutput policy_output;  ///< newest
   ControllerState controller;
@@ -20,40 +19,50 @@ struct LockstepState {
 };
 static_assert(std::is_trivially_copyable_v<LockstepState>);
 
-/// Control loop in one thread on simulated time: read, control, write, and the policy in the tick
-/// that releases it. Bit-identical from run to run, and as fast as the machine goes.
+/// The control loop in one thread on simulated time: one slot after the other, and the policy in
+/// the tick that releases it. Bit-identical from run to run, and as fast as the machine goes.
 class Lockstep {
  public:
   /// `policy` may be null: then Walk holds the nominal pose until its output counts as stale.
-  Lockstep(RobotIo& io, const ControllerConfig& config, Mode start, Policy* policy)
-      : io_(io), controller_(config, start), policy_(policy) {}
+  Lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy)
+      : policy_(policy), loop_(robot, config, start, policy_, clock_) {}
 
-  /// One control tick under the operator's latest command.
+  /// The next tick under the operator's latest command.
   void tick(const OperatorCommand& command) noexcept;
+  /// The same under an operator; false: that was the last tick.
+  bool tick(OperatorInput& op, bool interrupted) noexcept;
 
-  const ControllerInput& input() const noexcept { return input_; }
-  const ControllerOutput& output() const noexcept { return output_; }
-  /// True if the last tick ran the policy; policy_output() is then its answer to that tick.
-  bool policy_ran() const noexcept { return output_.release_policy != 0 && policy_ != nullptr; }
-  const PolicyOutput& policy_output() const noexcept { return newest_; }
-  const Controller& controller() const noexcept { return controller_; }
+  /// The tick done last.
+  const TickRecord& record() const noexcept { return record_; }
+  std::uint64_t next_tick() const noexcept { return next_tick_; }
+  const Controller& controller() const noexcept { return loop_.controller(); }
 
-  LockstepState state() const noexcept;
-  void restore(const LockstepState& state) noexcept;
+  LockstepState state() noexcept;
+  void restore(const LockstepState& state, std::uint64_t next_tick) noexcept;
   /// Adds controller, network and the exchange between them to `hash`.
-  void add_to(StateHash& hash) const noexcept;
+  void add_to(StateHash& hash) noexcept { hash.add(state()); }
 
  private:
-  RobotIo& io_;
-  Controller controller_;
-  Policy* policy_;
-  PolicyOutput newest_;
-  ControllerInput input_;
-  ControllerOutput output_;
+  InlinePolicy policy_;
+  ManualClock clock_;
+  ControlLoop loop_;
+  TickRecord record_;
+  std::uint64_t next_tick_ = 0;
 };
 
-/// One step of `policy` on a released input, with its memory cleared at the start of an episode.
-/// `newest` is the previous answer and becomes the new one. Real-time safe.
-void step_policy(Policy& policy, const PolicyInput& input, PolicyOutput& newest) noexcept;
+/// Gets every tick of a run, in an ordinary thread: figures, recorders, telemetry.
+using TickTap = std::function<void(const TickRecord&)>;
+
+/// How a loop ended.
+struct LoopEnd {
+  double time_s = 0.0;           ///< of the robot, from the first slot on
+  double realtime_factor = 0.0;  ///< that over the wall clock's
+  std::uint64_t state_hash = 0;  ///< of robot (if simulated), controller and policy
+  GateState gate;
+};
+
+/// Ticks until `op` or `interrupt` ends it, then the drives are off.
+LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
+                     OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap);
 
 }  // namespace sandrunner

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "rt/base/errors.h"
-#include "rt/loop/lockstep.h"
+#include "rt/loop/policy_link.h"
 #include "rt/loop/tick_fields.h"
 
 namespace sandrunner {

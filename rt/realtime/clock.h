@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <ctime>
 
+#include "rt/loop/clock.h"
+
 namespace sandrunner {
 
 /// CLOCK_MONOTONIC in nanoseconds. No system call: the kernel maps it into the process.
@@ -20,5 +22,12 @@ inline void sleep_until(std::int64_t time_ns) noexcept {
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
   }
 }
+
+/// CLOCK_MONOTONIC. Has no state: any number of threads may share one.
+class SystemClock : public Clock {
+ public:
+  std::int64_t now_ns() noexcept override { return monotonic_ns(); }
+  void sleep_until(std::int64_t time_ns) noexcept override { sandrunner::sleep_until(time_ns); }
+};
 
 }  // namespace sandrunner

@@ -4,23 +4,14 @@
 #include <atomic>
 #include <cstdint>
 
-#include "rt/core/controller.h"
 #include "rt/core/log_histogram.h"
 #include "rt/core/spsc_ring.h"
-#include "rt/core/triple_buffer.h"
-#include "rt/loop/operator_input.h"
-#include "rt/loop/tick_record.h"
+#include "rt/loop/control_loop.h"
 
 namespace sandrunner {
 
 /// Half a second of ticks on their way to ordinary threads.
 using TickRing = SpscRing<TickRecord, 2048>;
-
-/// What passes between the two real-time threads.
-struct PolicyExchange {
-  TripleBuffer<PolicyInput> input;    ///< control to policy
-  TripleBuffer<PolicyOutput> output;  ///< policy to control
-};
 
 /// Counts and durations of the control thread. Its own while it runs.
 struct ControlDeadlines {
@@ -33,37 +24,34 @@ struct ControlDeadlines {
   LogHistogram busy;  ///< the whole tick, to the end of its record
 };
 
-/// Called at the two ends of a real-time loop, from its thread; for tests that watch what happens
-/// in between. Null: nothing.
-struct LoopHooks {
-  void (*entered)() noexcept = nullptr;
-  void (*left)() noexcept = nullptr;
-};
-
-/// The 4 kHz loop: read, control, write, record, on the grid of slots, until the operator ends it.
+/// When the control loop runs on a clock: on the grid of slots at 4 kHz, until the operator ends
+/// it.
 class ControlThread {
  public:
-  /// Everything must outlive the loop.
-  ControlThread(RobotIo& io, const ControllerConfig& config, Mode start, OperatorInput& op,
-                PolicyExchange& exchange, TickRing& ring, const std::atomic<bool>& interrupt);
+  /// `clock`: that of `loop`. Everything must outlive the thread.
+  ControlThread(RobotIo& robot, ControlLoop& loop, OperatorInput& op, TickRing& ring, Clock& clock,
+                const std::atomic<bool>& interrupt)
+      : robot_(robot),
+        loop_(loop),
+        operator_(op),
+        ring_(ring),
+        clock_(clock),
+        interrupt_(interrupt) {}
 
-  /// Runs from slot 0 at `start_ns` (CLOCK_MONOTONIC) on. Real-time safe but for its return.
-  void run(std::int64_t start_ns, const LoopHooks& hooks) noexcept;
+  /// Runs from slot 0 at `start_ns` on, then switches the drives off. Real-time safe.
+  void run(std::int64_t start_ns) noexcept;
 
   const ControlDeadlines& deadlines() const noexcept { return deadlines_; }
-  const Controller& controller() const noexcept { return controller_; }
 
  private:
-  bool tick(std::uint64_t skipped, std::int64_t late_ns) noexcept;
+  bool tick(const SlotGrid::Slot& slot) noexcept;
 
-  RobotIo& io_;
-  Controller controller_;
+  RobotIo& robot_;
+  ControlLoop& loop_;
   OperatorInput& operator_;
-  PolicyExchange& exchange_;
   TickRing& ring_;
+  Clock& clock_;
   const std::atomic<bool>& interrupt_;
-  ControllerInput input_;
-  ControllerOutput output_;
   TickRecord spare_;  // where a tick is recorded that finds the ring full
   ControlDeadlines deadlines_;
 };

@@ -5,9 +5,22 @@
 #include <cstdint>
 
 #include "policy/policy.h"
-#include "rt/realtime/control_thread.h"
+#include "rt/core/log_histogram.h"
+#include "rt/core/triple_buffer.h"
+#include "rt/loop/clock.h"
+#include "rt/loop/policy_link.h"
 
 namespace sandrunner {
+
+/// What passes between the two real-time threads; the control thread's end is a PolicyLink.
+class PolicyExchange final : public PolicyLink {
+ public:
+  const PolicyOutput& newest() noexcept override { return output.read(); }
+  void release(const PolicyInput& released) noexcept override { input.write(released); }
+
+  TripleBuffer<PolicyInput> input;    ///< control to policy
+  TripleBuffer<PolicyOutput> output;  ///< policy to control
+};
 
 /// Counts and durations of the policy thread. Its own while it runs.
 struct PolicyDeadlines {
@@ -22,24 +35,23 @@ struct PolicyDeadlines {
 /// call: 60 us after the release is due, then ever more rarely.
 class PolicyThread {
  public:
-  PolicyThread(Policy& policy, PolicyExchange& exchange);
+  PolicyThread(Policy& policy, PolicyExchange& exchange, Clock& clock)
+      : policy_(policy), exchange_(exchange), clock_(clock) {}
 
   /// Runs until stop(). `start_ns`: that of the control thread.
-  void run(std::int64_t start_ns, const LoopHooks& hooks) noexcept;
+  void run(std::int64_t start_ns) noexcept;
   /// From any thread; the loop ends within a period.
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
-  /// From any thread: for tests, the loop sleeps instead of answering while this is set.
-  void stall(bool stalled) noexcept { stalled_.store(stalled, std::memory_order_relaxed); }
 
   const PolicyDeadlines& deadlines() const noexcept { return deadlines_; }
-  const PolicyOutput& newest() const noexcept { return newest_; }
 
  private:
   bool answer(std::int64_t slot_ns) noexcept;
 
   Policy& policy_;
   PolicyExchange& exchange_;
-  std::atomic<bool> stop_{false}, stalled_{false};
+  Clock& clock_;
+  std::atomic<bool> stop_{false};
   std::uint64_t seen_ = 0;  // sequence of the last input
   PolicyOutput newest_;
   PolicyDeadlines deadlines_;

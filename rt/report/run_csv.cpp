@@ -18,23 +18,27 @@ namespace {
 
 /// Calls `column(name, value)` for every column of a sample: names and values cannot part.
 template <typename Column>
-void for_each_column(const RunSample& s, const Column& column) {
+void for_each_column(const RunSample& s, const RunScene& scene, const Column& add) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto column = [&](std::string name, double value) { add(std::move(name), value); };
+  // What only the truth tells.
+  const auto truth = [&](std::string name, double value) {
+    add(std::move(name), s.has_truth ? value : kUnknown);
+  };
   const auto vector = [&](const std::string& name, const std::string& unit, const Vector3& v) {
-    for (std::size_t i = 0; i < 3; ++i) column(name + "_" + "xyz"[i] + unit, v[i]);
+    for (std::size_t i = 0; i < 3; ++i) truth(name + "_" + "xyz"[i] + unit, v[i]);
   };
   const auto joints = [&](const std::string& name, const JointArray<double>& values) {
-    for (std::size_t i = 0; i < kNumJoints; ++i) column(kJointNames[i] + name, values[i]);
+    for (std::size_t i = 0; i < kNumJoints; ++i) column(scene.joint_names[i] + name, values[i]);
   };
   const auto estimate = [&](const std::string& name, const StateEstimate& e, bool exists) {
-    const auto known = [&](double value) {
-      return exists ? value : std::numeric_limits<double>::quiet_NaN();
-    };
+    const auto known = [&](double value) { return exists ? value : kUnknown; };
     column(name + "_body_height_m", known(e.body_height_m));
     for (std::size_t i = 0; i < 3; ++i) {
       column(name + "_velocity_" + "xyz"[i] + "_mps", known(e.velocity_mps[i]));
     }
     for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-      column(name + "_" + kLegNames[leg] + "_foot_height_m", known(e.foot_height_m[leg]));
+      column(name + "_" + scene.leg_names[leg] + "_foot_height_m", known(e.foot_height_m[leg]));
     }
   };
 
@@ -45,30 +49,31 @@ void for_each_column(const RunSample& s, const Column& column) {
   for (std::size_t i = 0; i < 4; ++i) {
     column(std::string("orientation_") + "wxyz"[i], s.orientation_wxyz[i]);
   }
-  column("vx_mps", s.vx_mps);
-  column("vy_mps", s.vy_mps);
+  truth("vx_mps", s.vx_mps);
+  truth("vy_mps", s.vy_mps);
   column("yaw_rate_radps", s.yaw_rate_radps);
   joints("_position_rad", s.joint_position_rad);
   joints("_velocity_radps", s.joint_velocity_radps);
   joints("_torque_nm", s.joint_torque_nm);
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    const std::string name = kLegNames[leg];
+    const std::string name = scene.leg_names[leg];
     vector(name + "_hip", "_m", s.hip_position_m[leg]);
     vector(name + "_knee", "_m", s.knee_position_m[leg]);
     vector(name + "_foot", "_m", s.foot_position_m[leg]);
-    column(name + "_penetration_m", s.penetration_m[leg]);
-    column(name + "_ground_height_m", s.ground_height_m[leg]);
-    column(name + "_contact", s.contact[leg] ? 1.0 : 0.0);
+    truth(name + "_penetration_m", s.penetration_m[leg]);
+    truth(name + "_ground_height_m", s.ground_height_m[leg]);
+    truth(name + "_contact", s.contact[leg] ? 1.0 : 0.0);
   }
   estimate("estimate", s.estimate, s.has_estimate);
-  estimate("truth", s.truth, true);
+  estimate("truth", s.truth, s.has_truth);
 }
 
 }  // namespace
 
-std::vector<std::string> csv_columns() {
+std::vector<std::string> csv_columns(const RunScene& scene) {
   std::vector<std::string> names = {"t_s", "mode"};
-  for_each_column(RunSample{}, [&](std::string name, double) { names.push_back(std::move(name)); });
+  for_each_column(RunSample{}, scene,
+                  [&](std::string name, double) { names.push_back(std::move(name)); });
   return names;
 }
 
@@ -76,12 +81,12 @@ void write_csv(const RunRecord& record, const std::string& path) {
   const std::string part = path + ".part";
   errno = 0;
   std::ofstream file(part, std::ios::binary);
-  file << fmt::format("{}\n", fmt::join(csv_columns(), ","));
+  file << fmt::format("{}\n", fmt::join(csv_columns(record.scene), ","));
   std::string row;
   for (const RunSample& sample : record.samples) {
     row.clear();
     fmt::format_to(std::back_inserter(row), "{:.9g},{}", sample.t_s, mode_name(sample.mode));
-    for_each_column(sample, [&](const std::string&, double value) {
+    for_each_column(sample, record.scene, [&](const std::string&, double value) {
       fmt::format_to(std::back_inserter(row), ",{:.9g}", value);
     });
     file << row << '\n';

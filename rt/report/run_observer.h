@@ -6,7 +6,6 @@
 #include "rt/loop/tick_record.h"
 #include "rt/report/run_record.h"
 #include "rt/report/run_statistics.h"
-#include "rt/run/process_config.h"
 
 namespace sandrunner {
 
@@ -15,9 +14,7 @@ namespace sandrunner {
 class RunObserver {
  public:
   /// `progress` (may be empty) is called every half second of the robot's time.
-  RunObserver(const ProcessConfig& config, const sim::Simulator& simulator,
-              const std::string& policy_name, bool keep_record,
-              std::function<void(const RunSample&)> progress);
+  RunObserver(RunScene scene, bool keep_record, std::function<void(const RunSample&)> progress);
 
   void add(const TickRecord& tick);
 
@@ -28,8 +25,8 @@ class RunObserver {
   RunRecord take_record();
 
  private:
-  const sim::Simulator simulator_;  // for its model and terrain
-  const double motor_constant_;
+  RunSample make_sample(const TickRecord& tick) const;
+
   const bool keep_record_;
   const std::function<void(const RunSample&)> progress_;
   RunStatistics statistics_;

@@ -31,9 +31,12 @@ constexpr int kViewsPerRow = 5;
 constexpr double kGap_px = 8.0;
 constexpr double kHead_px = 46.0;
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 std::string title_of(const RunRecord& record) {
-  std::string title = "Sandrunner on " + record.terrain;
-  if (!record.policy.empty()) title += ", policy " + record.policy;
+  std::string title = record.scene.terrain.empty() ? std::string("Sandrunner")
+                                                   : "Sandrunner on " + record.scene.terrain;
+  if (!record.scene.policy.empty()) title += ", policy " + record.scene.policy;
   return title;
 }
 
@@ -74,16 +77,16 @@ plot::Series command(const RunRecord& record, const std::string& name, const Col
 template <typename Value>
 plot::Series estimate(const RunRecord& record, const Value& value) {
   return series(record, "estimate", kOrange, [&](const RunSample& sample) {
-    return sample.has_estimate ? value(sample.estimate) : std::numeric_limits<double>::quiet_NaN();
+    return sample.has_estimate ? value(sample.estimate) : kUnknown;
   });
 }
 
 plot::Panel torque_panel(const RunRecord& record, const std::string& title, std::size_t joint) {
   plot::Panel panel{title, "N m", {}, 10.0};
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    panel.series.push_back(series(record, kLegNames[leg], kLegColors[leg], [&](const RunSample& s) {
-      return s.joint_torque_nm[kJointsPerLeg * leg + joint];
-    }));
+    panel.series.push_back(
+        series(record, record.scene.leg_names[leg], kLegColors[leg],
+               [&](const RunSample& s) { return s.joint_torque_nm[kJointsPerLeg * leg + joint]; }));
   }
   return panel;
 }
@@ -94,14 +97,17 @@ std::vector<plot::Panel> panels(const RunRecord& record) {
   plot::Panel sinkage{"Sinkage of the feet", "mm", {}, 10.0};
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
     sinkage.series.push_back(
-        series(record, kLegNames[leg], kLegColors[leg],
-               [&](const RunSample& s) { return 1000.0 * std::max(0.0, s.penetration_m[leg]); }));
+        series(record, record.scene.leg_names[leg], kLegColors[leg], [&](const RunSample& s) {
+          return s.has_truth ? 1000.0 * std::max(0.0, s.penetration_m[leg]) : kUnknown;
+        }));
   }
   return {
       {"Speed, heading frame",
        "m/s",
-       {series(record, "vx", kBlue, [](const RunSample& s) { return s.vx_mps; }),
-        series(record, "vy", kTeal, [](const RunSample& s) { return s.vy_mps; }),
+       {series(record, "vx", kBlue,
+               [](const RunSample& s) { return s.has_truth ? s.vx_mps : kUnknown; }),
+        series(record, "vy", kTeal,
+               [](const RunSample& s) { return s.has_truth ? s.vy_mps : kUnknown; }),
         command(record, "vx commanded", kBlack,
                 [](const RunSample& s) { return s.command.vx_mps; }),
         command(record, "vy commanded", kGray,
@@ -119,12 +125,14 @@ std::vector<plot::Panel> panels(const RunRecord& record) {
       sinkage,
       {"Forward speed, body frame: estimate against truth",
        "m/s",
-       {series(record, "truth", kBlack, [&](const RunSample& s) { return body_vx(s.truth); }),
+       {series(record, "truth", kBlack,
+               [&](const RunSample& s) { return s.has_truth ? body_vx(s.truth) : kUnknown; }),
         estimate(record, body_vx)},
        0.5},
       {"Body height: estimate against truth",
        "m",
-       {series(record, "truth", kBlack, [&](const RunSample& s) { return height(s.truth); }),
+       {series(record, "truth", kBlack,
+               [&](const RunSample& s) { return s.has_truth ? height(s.truth) : kUnknown; }),
         estimate(record, height)},
        0.1},
   };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rt/base/quantile.h"
+#include "rt/report/body_motion.h"
 
 namespace sandrunner {
 namespace {
@@ -23,20 +24,22 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
   if (periods_.empty() || periods_.back().ticks == kTicksPerPolicyStep) periods_.emplace_back();
   Period& p = periods_.back();
   ++p.ticks;
+  p.has_truth = tick.has_truth != 0;
   const RobotTruth& robot = tick.truth;
-  const auto& q = robot.orientation_wxyz;
-  const sim::Mat3<double> r =
-      sim::rotation_matrix(sim::Quaternion<double>{q[0], q[1], q[2], q[3]});
-  const double forward = std::sqrt(r.r0.x * r.r0.x + r.r1.x * r.r1.x);
-  const double c = r.r0.x / forward, s = r.r1.x / forward;
-  const auto& v = robot.velocity_mps;
-  p.vx += c * v[0] + s * v[1];
-  p.vy += c * v[1] - s * v[0];
-  const auto& w = robot.angular_velocity_radps;
-  p.yaw_rate += dot(r.r2, sim::Vec3<double>{w[0], w[1], w[2]});
+  if (p.has_truth) {
+    const BodyMotion motion =
+        body_motion(robot.orientation_wxyz, robot.velocity_mps, robot.angular_velocity_radps);
+    p.vx += motion.vx_mps;
+    p.vy += motion.vy_mps;
+    p.yaw_rate += motion.yaw_rate_radps;
+  }
+  const JointState& sensed = tick.input.sensors.joints;
+  const JointArray<double>& torque_nm = p.has_truth ? robot.joint_torque_nm : sensed.torque_nm;
+  const JointArray<double>& velocity_radps =
+      p.has_truth ? tick.before.joint_velocity_radps : sensed.velocity_radps;
   for (int j = 0; j < kNumJoints; ++j) {
-    p.power += robot.joint_torque_nm[j] * tick.before.joint_velocity_radps[j];
-    p.torque_squared += square(robot.joint_torque_nm[j]);
+    p.power += torque_nm[j] * velocity_radps[j];
+    p.torque_squared += square(torque_nm[j]);
   }
   p.command = tick.output.policy_input.command;
   p.past_stop += static_cast<int>(counters_.joint_past_stop - before.joint_past_stop);
@@ -52,12 +55,12 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
       p.foot_error2 += square(estimate.foot_height_m[l] - truth->foot_height_m[l]) / kNumLegs;
     }
   }
-  if (p.ticks == kTicksPerPolicyStep) {
+  if (p.has_truth && p.ticks == kTicksPerPolicyStep) {
     for (int l = 0; l < kNumLegs; ++l) {
       p.foot_height[l] = robot.state.foot_height_m[l] - robot.position_m[2];
     }
   }
-  follow_stances(tick);
+  if (p.has_truth) follow_stances(tick);
 }
 
 void RunStatistics::follow_stances(const TickRecord& tick) {
@@ -91,10 +94,10 @@ RunFigures RunStatistics::figures(double mass_kg, double motor_constant) const {
   RunFigures f;
   const std::size_t begin = periods_.size() / 2;
   Period sum;
-  std::array<std::vector<double>, kNumLegs> heights;
   double command_ticks = 0.0;
   for (std::size_t i = begin; i < periods_.size(); ++i) {
     const Period& p = periods_[i];
+    sum.has_truth = p.has_truth;
     sum.ticks += p.ticks;
     sum.estimates += p.estimates;
     sum.vx += p.vx;
@@ -111,44 +114,52 @@ RunFigures RunStatistics::figures(double mass_kg, double motor_constant) const {
     f.mean_command_mps[1] += p.command.vy_mps;
     f.mean_yaw_command_radps += p.command.wz_radps;
     command_ticks += 1.0;
-    if (p.ticks == kTicksPerPolicyStep) {
-      for (int l = 0; l < kNumLegs; ++l) heights[l].push_back(p.foot_height[l]);
-    }
   }
   if (sum.ticks == 0) return f;
   const double n = sum.ticks;
-  f.mean_velocity_mps = {sum.vx / n, sum.vy / n};
-  f.mean_yaw_rate_radps = sum.yaw_rate / n;
   for (double& v : f.mean_command_mps) v /= command_ticks;
   f.mean_yaw_command_radps /= command_ticks;
   f.mechanical_power_w = sum.power / n;
   f.torque_squared_nm2 = sum.torque_squared / n;
-  const double speed = std::fabs(f.mean_velocity_mps[0]);
-  if (speed >= 0.05) {
-    f.cost_of_transport = (f.mechanical_power_w + f.torque_squared_nm2 / square(motor_constant)) /
-                          (mass_kg * sim::kGravity_mps2 * speed);
-  }
   f.joint_limit_steps = sum.past_stop;
   f.speed_limit_steps = sum.too_fast;
   if (sum.estimates > 0) {
-    f.has_estimate = true;
-    f.velocity_rmse_mps = std::sqrt(sum.velocity_error2 / sum.estimates);
-    f.body_height_rmse_m = std::sqrt(sum.height_error2 / sum.estimates);
-    f.foot_height_rmse_m = std::sqrt(sum.foot_error2 / sum.estimates);
+    f.estimate = {.velocity_rmse_mps = std::sqrt(sum.velocity_error2 / sum.estimates),
+                  .body_height_rmse_m = std::sqrt(sum.height_error2 / sum.estimates),
+                  .foot_height_rmse_m = std::sqrt(sum.foot_error2 / sum.estimates)};
   }
-  for (auto& h : heights) {
-    if (h.empty()) continue;
-    std::sort(h.begin(), h.end());
-    f.foot_clearance_iqr_m += (quantile(h, 0.75) - quantile(h, 0.25)) / kNumLegs;
+  if (!sum.has_truth) return f;
+  MotionFigures& m = f.motion.emplace();
+  m.mean_velocity_mps = {sum.vx / n, sum.vy / n};
+  m.mean_yaw_rate_radps = sum.yaw_rate / n;
+  const double speed = std::fabs(m.mean_velocity_mps[0]);
+  if (speed >= 0.05) {
+    m.cost_of_transport = (f.mechanical_power_w + f.torque_squared_nm2 / square(motor_constant)) /
+                          (mass_kg * kGravity_mps2 * speed);
   }
+  m.foot_clearance_iqr_m = foot_clearance_iqr_m(begin);
   for (const EndedStance& stance : ended_) {
     if (stance.period < begin) continue;
-    ++f.stances;
-    f.sinkage_mean_m += stance.depth;
-    f.sinkage_max_m = std::max(f.sinkage_max_m, stance.depth);
+    ++m.stances;
+    m.sinkage_mean_m += stance.depth;
+    m.sinkage_max_m = std::max(m.sinkage_max_m, stance.depth);
   }
-  if (f.stances > 0) f.sinkage_mean_m /= f.stances;
+  if (m.stances > 0) m.sinkage_mean_m /= m.stances;
   return f;
+}
+
+double RunStatistics::foot_clearance_iqr_m(std::size_t begin) const {
+  double iqr_m = 0.0;
+  for (int l = 0; l < kNumLegs; ++l) {
+    std::vector<double> heights;
+    for (std::size_t i = begin; i < periods_.size(); ++i) {
+      if (periods_[i].ticks == kTicksPerPolicyStep) heights.push_back(periods_[i].foot_height[l]);
+    }
+    if (heights.empty()) continue;
+    std::sort(heights.begin(), heights.end());
+    iqr_m += (quantile(heights, 0.75) - quantile(heights, 0.25)) / kNumLegs;
+  }
+  return iqr_m;
 }
 
 }  // namespace sandrunner

@@ -12,12 +12,10 @@
 
 namespace sandrunner {
 
-/// Figures of a run over the second half of its time in Walk.
-struct RunFigures {
+/// How the robot really moved: known of one that offers its truth.
+struct MotionFigures {
   std::array<double, 2> mean_velocity_mps{};  ///< of the base origin, heading frame
   double mean_yaw_rate_radps = 0.0;           ///< about world z
-  std::array<double, 2> mean_command_mps{};   ///< vx, vy as given to the policy
-  double mean_yaw_command_radps = 0.0;
   /// Deepest penetration of the contact point in each stance, mean and maximum over the stances
   /// that ended in that half. A stance begins at penetration >= 0, ends when the point is 1 mm
   /// above the surface, and counts from 10 ms on.
@@ -26,23 +24,36 @@ struct RunFigures {
   /// Interquartile range of a foot centre's height relative to the base origin (world vertical),
   /// mean over the feet.
   double foot_clearance_iqr_m = 0.0;
-  double mechanical_power_w = 0.0;  ///< mean signed sum of tau qd, tau after the clamp
-  double torque_squared_nm2 = 0.0;  ///< mean of the sum over joints of tau^2
   /// (P_mech + P_heat)/(m g |vx|) with P_heat = sum tau^2/k_m^2 (paper, "Beach sand"); none below
   /// 0.05 m/s.
   std::optional<double> cost_of_transport;
-  /// Root mean square errors of the network's estimates: length of the velocity error; body height;
-  /// over all feet.
-  double velocity_rmse_mps = 0.0, body_height_rmse_m = 0.0, foot_height_rmse_m = 0.0;
-  bool has_estimate = false;
+};
+
+/// Root mean square errors of the network's estimates.
+struct EstimateErrors {
+  double velocity_rmse_mps = 0.0;  ///< of the length of the velocity error
+  double body_height_rmse_m = 0.0;
+  double foot_height_rmse_m = 0.0;  ///< over all feet
+};
+
+/// Figures of a run over the second half of its time in Walk.
+struct RunFigures {
+  std::array<double, 2> mean_command_mps{};  ///< vx, vy as given to the policy
+  double mean_yaw_command_radps = 0.0;
+  /// Mean signed sum of tau qd and mean of the sum over joints of tau^2; tau is the true torque
+  /// after the clamp, or else what the drives report.
+  double mechanical_power_w = 0.0, torque_squared_nm2 = 0.0;
   std::int64_t joint_limit_steps = 0;  ///< ticks with a joint past its stop
   std::int64_t speed_limit_steps = 0;  ///< ticks with a joint above its speed limit
+  std::optional<MotionFigures> motion;
+  std::optional<EstimateErrors> estimate;
 };
 
 /// Collects figures from the ticks that count, and footprints.
 class RunStatistics {
  public:
-  /// Every tick, in order. `truth`: what the estimate that came with this tick should be; null: none came.
+  /// Every tick, in order. `truth`: what the estimate that came with this tick should be; null:
+  /// none came.
   void add(const TickRecord& tick, const StateEstimate* truth);
   /// Figures so far. `mass_kg`, `motor_constant` (N m/sqrt(W)): for the cost of transport.
   RunFigures figures(double mass_kg, double motor_constant) const;
@@ -54,6 +65,7 @@ class RunStatistics {
   // Sums over one policy period, so that the half that counts can be chosen at the end.
   struct Period {
     int ticks = 0, estimates = 0;
+    bool has_truth = false;
     double vx = 0, vy = 0, yaw_rate = 0, power = 0, torque_squared = 0;
     VelocityCommand command;
     double velocity_error2 = 0, height_error2 = 0, foot_error2 = 0;
@@ -70,6 +82,7 @@ class RunStatistics {
     double depth;
   };
   void follow_stances(const TickRecord& tick);
+  double foot_clearance_iqr_m(std::size_t begin) const;  // of the periods from `begin` on
 
   GateCounters counters_;  // of the last tick
   std::vector<Period> periods_;

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <vector>
 
+#include "rt/report/body_motion.h"
+
 namespace sandrunner {
 namespace {
 
@@ -25,21 +27,13 @@ constexpr Color kFarLeg{0.62, 0.71, 0.80};
 constexpr Color kBody{0.93, 0.52, 0.13};
 constexpr Color kBodyEdge{0.60, 0.30, 0.05};
 
-/// A rotation from body to world, columns x, y, z.
-std::array<Vector3, 3> axes_of(const std::array<double, 4>& q) {
-  const auto [w, x, y, z] = q;
-  return {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-           {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-           {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
-}
-
 /// One view: looks along the robot's left, at the base, forward to the right.
 class SideView {
  public:
   SideView(const Canvas& canvas, const RunRecord& record, const RunSample& sample, double left_px,
            double top_px)
       : canvas_(canvas), record_(record), sample_(sample), left_px_(left_px), top_px_(top_px) {
-    const Vector3 forward = axes_of(sample.orientation_wxyz)[0];
+    const Vector3 forward = body_axes(sample.orientation_wxyz)[0];
     const double length = std::hypot(forward[0], forward[1]);
     if (length > 1e-6) heading_ = {forward[0] / length, forward[1] / length};
     ground_m_ = ground(0.0, 0.0);
@@ -85,9 +79,10 @@ class SideView {
 
   /// Height of the undisturbed surface.
   double ground(double u, double v) const {
-    if (!record_.ground_height_m) return 0.0;
-    return record_.ground_height_m(sample_.base_position_m[0] + heading_[0] * u - heading_[1] * v,
-                                   sample_.base_position_m[1] + heading_[1] * u + heading_[0] * v);
+    if (!record_.scene.ground_height_m) return 0.0;
+    return record_.scene.ground_height_m(
+        sample_.base_position_m[0] + heading_[0] * u - heading_[1] * v,
+        sample_.base_position_m[1] + heading_[1] * u + heading_[0] * v);
   }
 
   /// A hole in the surface at u. Its shape is drawn, not simulated: as wide as the foot, walls of
@@ -111,7 +106,7 @@ class SideView {
       if ((p.v > 0.0) == far && std::abs(p.v) < kFarthest_m) result.push_back({p.u, print.depth_m});
     }
     for (std::size_t leg = far ? 0 : 1; leg < kNumLegs; leg += 2) {
-      if (!record_.granular_ground) continue;
+      if (!record_.scene.granular_ground) continue;
       result.push_back({view_point(sample_.foot_position_m[leg]).u, sample_.penetration_m[leg]});
     }
     return result;
@@ -128,13 +123,14 @@ class SideView {
     for (double px = -2.0; px <= kSideViewWidth_px + 2.0; px += 1.0) {
       const double u = (px - 0.5 * kSideViewWidth_px) / kPixelsPerMeter;
       double depth_m = 0.0;
-      for (const Dent& dent : holes) depth_m = std::max(depth_m, dent.at(u, record_.foot_radius_m));
+      for (const Dent& dent : holes)
+        depth_m = std::max(depth_m, dent.at(u, record_.scene.foot_radius_m));
       cairo_line_to(cr, left_px_ + px, y_px(ground(u, lateral_m) - depth_m));
     }
     cairo_path_t* surface = cairo_copy_path(cr);
     cairo_line_to(cr, left_px_ + kSideViewWidth_px + 2.0, top_px_ + kSideViewHeight_px + 2.0);
     cairo_line_to(cr, left_px_ - 2.0, top_px_ + kSideViewHeight_px + 2.0);
-    const bool sand = record_.granular_ground;
+    const bool sand = record_.scene.granular_ground;
     const Color near_fill = sand ? Color{0.90, 0.80, 0.60} : Color{0.80, 0.81, 0.83};
     const Color far_fill = sand ? Color{0.80, 0.68, 0.46} : Color{0.72, 0.73, 0.76};
     const Color edge = sand ? Color{0.60, 0.47, 0.25} : Color{0.45, 0.47, 0.50};
@@ -185,11 +181,11 @@ class SideView {
       canvas_.set_color(color);
       link(knee, foot, 0.026);
       link(hip, knee, 0.058);
-      disc(foot, record_.foot_radius_m, color);
+      disc(foot, record_.scene.foot_radius_m, color);
       disc(hip, 0.046, color);
       disc(hip, 0.018, kSky);
       disc(knee, 0.011, kSky);
-      disc(foot, 0.4 * record_.foot_radius_m, kSky);
+      disc(foot, 0.4 * record_.scene.foot_radius_m, kSky);
     }
   }
 
@@ -202,15 +198,15 @@ class SideView {
 
   /// Part of the base box: from `rear` to `front`, -1 to 1, of its length.
   void draw_box(double rear, double front, const Color& color) const {
-    const std::array<Vector3, 3> axes = axes_of(sample_.orientation_wxyz);
+    const std::array<Vector3, 3> axes = body_axes(sample_.orientation_wxyz);
     std::array<ViewPoint, 8> corners;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vector3 side = {(i & 1) != 0 ? front : rear, (i & 2) != 0 ? 1.0 : -1.0,
                             (i & 4) != 0 ? 1.0 : -1.0};
       Vector3 p = sample_.base_position_m;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double along_m =
-            record_.base_box_center_m[axis] + 0.5 * side[axis] * record_.base_box_size_m[axis];
+        const double along_m = record_.scene.base_box_center_m[axis] +
+                               0.5 * side[axis] * record_.scene.base_box_size_m[axis];
         for (std::size_t k = 0; k < 3; ++k) p[k] += along_m * axes[axis][k];
       }
       corners[i] = view_point(p);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "rt/base/errors.h"
 
@@ -71,9 +72,18 @@ std::string realtime_table(const RealtimeReport& r) {
   return t;
 }
 
+/// Names of the joints in `bits`.
+std::vector<std::string> joints_in(std::uint64_t bits, const RunScene& scene) {
+  std::vector<std::string> names;
+  for (std::size_t j = 0; j < kNumJoints; ++j) {
+    if ((bits >> j & 1) != 0) names.push_back(scene.joint_names[j]);
+  }
+  return names;
+}
+
 }  // namespace
 
-std::string summary_table(const RunResult& r, const std::string& command) {
+std::string summary_table(const RunResult& r, const RunInfo& info) {
   const RunFigures& f = r.figures;
   std::string t;
   const auto row = [&](const std::string& name, const std::string& value) {
@@ -82,71 +92,95 @@ std::string summary_table(const RunResult& r, const std::string& command) {
   std::string end = r.interrupted ? "interrupted, ended in damping" : "finished on its feet";
   if (!r.survived) {
     end = "FAILED: " + r.fall_reason;
+    const std::vector<std::string> joints = joints_in(r.end.gate.fault_joints, r.record.scene);
+    if (!joints.empty()) end += fmt::format(" ({})", fmt::join(joints, ", "));
     if (r.fall_time_s) end += fmt::format(" after {:.2f} s of Walk", *r.fall_time_s);
   }
   t += end + "\n";
   if (r.walked_s > 0.0) {
-    t +=
-        fmt::format("over the second half of {:.1f} s in Walk, command {}:\n", r.walked_s, command);
-    row("velocity x, commanded",
-        fmt::format("{:6.3f} m/s     of {:6.3f}", f.mean_velocity_mps[0], f.mean_command_mps[0]));
-    row("velocity y, commanded",
-        fmt::format("{:6.3f} m/s     of {:6.3f}", f.mean_velocity_mps[1], f.mean_command_mps[1]));
-    row("yaw rate, commanded",
-        fmt::format("{:6.3f} rad/s   of {:6.3f}", f.mean_yaw_rate_radps, f.mean_yaw_command_radps));
-    row("sinkage mean, max", fmt::format("{:6.1f} mm      {:6.1f}   ({} stances)",
-                                         1e3 * f.sinkage_mean_m, 1e3 * f.sinkage_max_m, f.stances));
-    row("foot clearance (IQR)", fmt::format("{:6.1f} mm", 1e3 * f.foot_clearance_iqr_m));
+    t += fmt::format("over the second half of {:.1f} s in Walk, command {}:\n", r.walked_s,
+                     info.command);
+    if (f.motion) {
+      const MotionFigures& m = *f.motion;
+      row("velocity x, commanded",
+          fmt::format("{:6.3f} m/s     of {:6.3f}", m.mean_velocity_mps[0], f.mean_command_mps[0]));
+      row("velocity y, commanded",
+          fmt::format("{:6.3f} m/s     of {:6.3f}", m.mean_velocity_mps[1], f.mean_command_mps[1]));
+      row("yaw rate, commanded", fmt::format("{:6.3f} rad/s   of {:6.3f}", m.mean_yaw_rate_radps,
+                                             f.mean_yaw_command_radps));
+      row("sinkage mean, max",
+          fmt::format("{:6.1f} mm      {:6.1f}   ({} stances)", 1e3 * m.sinkage_mean_m,
+                      1e3 * m.sinkage_max_m, m.stances));
+      row("foot clearance (IQR)", fmt::format("{:6.1f} mm", 1e3 * m.foot_clearance_iqr_m));
+    }
     row("mechanical power", fmt::format("{:6.1f} W", f.mechanical_power_w));
     row("torque squared", fmt::format("{:6.0f} N^2m^2", f.torque_squared_nm2));
-    row("cost of transport",
-        f.cost_of_transport ? fmt::format("{:6.3f}", *f.cost_of_transport) : "     -");
-    if (f.has_estimate) {
+    if (f.motion) {
+      row("cost of transport", f.motion->cost_of_transport
+                                   ? fmt::format("{:6.3f}", *f.motion->cost_of_transport)
+                                   : "     -");
+    }
+    if (f.estimate) {
       row("estimate errors (rms)",
           fmt::format("{:6.3f} m/s, body height {:.1f} mm, foot height {:.1f} mm",
-                      f.velocity_rmse_mps, 1e3 * f.body_height_rmse_m, 1e3 * f.foot_height_rmse_m));
+                      f.estimate->velocity_rmse_mps, 1e3 * f.estimate->body_height_rmse_m,
+                      1e3 * f.estimate->foot_height_rmse_m));
     }
     row("past joint stop, too fast",
         fmt::format("{} and {} control steps", f.joint_limit_steps, f.speed_limit_steps));
   }
-  row("state hash", fmt::format("{:016x}", r.state_hash));
-  row("simulated", r.realtime ? fmt::format("{:.1f} s", r.simulated_s)
-                              : fmt::format("{:.1f} s, {:.0f} times real time", r.simulated_s,
-                                            r.realtime_factor));
+  std::string counted;
+  for (const GateCounterName& counter : kGateCounters) {
+    const std::uint64_t ticks = r.end.gate.counters.*counter.ticks;
+    if (ticks > 0) {
+      counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", counter.name, ticks);
+    }
+  }
+  if (!counted.empty()) row("safety gate, ticks", counted);
+  row("state hash", fmt::format("{:016x}", r.end.state_hash));
+  row("simulated", r.realtime ? fmt::format("{:.1f} s", r.end.time_s)
+                              : fmt::format("{:.1f} s, {:.0f} times real time", r.end.time_s,
+                                            r.end.realtime_factor));
   if (r.realtime) t += realtime_table(*r.realtime);
   return t;
 }
 
-std::string summary_json(const RunResult& r, const Options& options, const std::string& command,
-                         const std::string& policy_name) {
+std::string summary_json(const RunResult& r, const RunInfo& info) {
   using Json = nlohmann::ordered_json;
   const RunFigures& f = r.figures;
   Json j;
   j["version"] = SANDRUNNER_VERSION;
-  j["policy"] = policy_name.empty() ? Json() : Json(policy_name);
-  j["terrain"] = options.terrain;
-  j["seed"] = options.seed;
+  j["policy"] = info.policy.empty() ? Json() : Json(info.policy);
+  j["terrain"] = info.terrain;
+  j["seed"] = info.seed;
   j["survived"] = r.survived;
   j["fall_time_s"] = r.fall_time_s ? Json(*r.fall_time_s) : Json();
   j["fall_reason"] = r.survived ? Json() : Json(r.fall_reason);
+  j["fault_joints"] = joints_in(r.end.gate.fault_joints, r.record.scene);
   j["interrupted"] = r.interrupted;
   j["duration_s"] = r.walked_s;
-  j["command"] = command;
-  j["mean_velocity_mps"] = f.mean_velocity_mps;
-  j["mean_yaw_rate_radps"] = f.mean_yaw_rate_radps;
-  j["sinkage_mm"] = {{"mean", 1e3 * f.sinkage_mean_m}, {"max", 1e3 * f.sinkage_max_m}};
-  j["foot_clearance_iqr_mm"] = 1e3 * f.foot_clearance_iqr_m;
+  j["command"] = info.command;
+  if (f.motion) {
+    const MotionFigures& m = *f.motion;
+    j["mean_velocity_mps"] = m.mean_velocity_mps;
+    j["mean_yaw_rate_radps"] = m.mean_yaw_rate_radps;
+    j["sinkage_mm"] = {{"mean", 1e3 * m.sinkage_mean_m}, {"max", 1e3 * m.sinkage_max_m}};
+    j["foot_clearance_iqr_mm"] = 1e3 * m.foot_clearance_iqr_m;
+    j["cost_of_transport"] = m.cost_of_transport ? Json(*m.cost_of_transport) : Json();
+  }
   j["mechanical_power_w"] = f.mechanical_power_w;
   j["torque_squared_nm2"] = f.torque_squared_nm2;
-  j["cost_of_transport"] = f.cost_of_transport ? Json(*f.cost_of_transport) : Json();
-  j["estimator"] = f.has_estimate ? Json{{"velocity_rmse_mps", f.velocity_rmse_mps},
-                                         {"body_height_rmse_m", f.body_height_rmse_m},
-                                         {"foot_height_rmse_m", f.foot_height_rmse_m}}
-                                  : Json();
+  j["estimator"] = f.estimate ? Json{{"velocity_rmse_mps", f.estimate->velocity_rmse_mps},
+                                     {"body_height_rmse_m", f.estimate->body_height_rmse_m},
+                                     {"foot_height_rmse_m", f.estimate->foot_height_rmse_m}}
+                              : Json();
   j["joint_limit_steps"] = f.joint_limit_steps;
   j["speed_limit_steps"] = f.speed_limit_steps;
-  j["state_hash"] = fmt::format("{:016x}", r.state_hash);
-  j["realtime_factor"] = r.realtime_factor;
+  for (const GateCounterName& counter : kGateCounters) {
+    j["gate_ticks"][counter.name] = r.end.gate.counters.*counter.ticks;
+  }
+  j["state_hash"] = fmt::format("{:016x}", r.end.state_hash);
+  j["realtime_factor"] = r.end.realtime_factor;
   if (r.realtime) j["realtime"] = realtime_json(*r.realtime);
   // A file named on the command line may have a name that is not UTF-8.
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -17,8 +17,6 @@
 
 namespace sandrunner::sim {
 
-inline constexpr double kGravity_mps2 = 9.81;
-
 /// Configuration and velocity of one robot (or one a lane). Joints in the order of kJointNames:
 /// HAA, HFE, KFE of LF, RF, LH, RH.
 template <typename S>

@@ -22,6 +22,8 @@
 #include "rt/report/run_csv.h"
 #include "rt/report/run_observer.h"
 #include "rt/report/run_pictures.h"
+#include "rt/run/process_config.h"
+#include "rt/run/scene.h"
 #include "rt/telemetry/recording/recording_file.h"
 
 namespace {
@@ -72,8 +74,7 @@ struct Player {
       }
     }
     if (arguments.plot_dir.empty()) return;
-    const sim::Simulator simulator(config.robot, config.simulator);
-    observer = std::make_unique<RunObserver>(config, simulator, policy ? policy->spec().name : "",
+    observer = std::make_unique<RunObserver>(scene_of(config, policy ? policy->spec().name : ""),
                                              true, std::function<void(const RunSample&)>());
   }
 
@@ -118,8 +119,9 @@ int run(int argc, char** argv) {
     prepare_folder(arguments->plot_dir, "--plot");
     write_csv(record, dir + "run.csv");
     draw_run_plot(record, dir + "run.png");
-    draw_run_strip(record, dir + "strip.png");
-    fmt::print("wrote {0}run.csv, {0}run.png, {0}strip.png\n", dir);
+    if (record.has_truth()) draw_run_strip(record, dir + "strip.png");
+    fmt::print("wrote {0}run.csv, {0}run.png{1}\n", dir,
+               record.has_truth() ? fmt::format(", {}strip.png", dir) : "");
   }
   if (!contents.complete) fmt::print("the recording was cut: it is read up to its last chunk\n");
   if (player && !player->replay) {

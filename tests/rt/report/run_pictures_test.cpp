@@ -47,10 +47,10 @@ Vector3 knee_of(const Vector3& hip, const Vector3& foot) {
 /// `ground(x)`.
 RunRecord trot(double walk_s, double (*ground)(double), double sinkage_m) {
   RunRecord record;
-  record.terrain = "dry-sand";
-  record.policy = "made-up";
-  record.granular_ground = sinkage_m > 0.0;
-  record.ground_height_m = [ground](double x, double) { return ground(x); };
+  record.scene.terrain = "dry-sand";
+  record.scene.policy = "made-up";
+  record.scene.granular_ground = sinkage_m > 0.0;
+  record.scene.ground_height_m = [ground](double x, double) { return ground(x); };
   const double end_s = 1.0 + walk_s;
   double x = 0.0;
   std::array<bool, kNumLegs> was_down{};

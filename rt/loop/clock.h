@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace sandrunner {
+
+/// Time as a loop sees it. Used by one thread.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual std::int64_t now_ns() noexcept = 0;
+  /// Returns at once if it is already later.
+  virtual void sleep_until(std::int64_t time_ns) noexcept = 0;
+};
+
+/// Time that passes only when somebody says so: of lockstep, and of tests of the threaded loop.
+class ManualClock final : public Clock {
+ public:
+  std::int64_t now_ns() noexcept override { return now_ns_; }
+  void sleep_until(std::int64_t time_ns) noexcept override { now_ns_ = std::max(now_ns_, time_ns); }
+  void advance(std::int64_t duration_ns) noexcept { now_ns_ += duration_ns; }
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+}  // namespace sandrunner

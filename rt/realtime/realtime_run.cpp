@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/realtime/realtime_run.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <thread>
+
+namespace sandrunner {
+namespace {
+
+constexpr std::int64_t kLeadTime_ns = 20'000'000;  // from the last set-up to slot 0
+constexpr auto kDrainEvery = std::chrono::milliseconds(5);
+
+// Both real-time threads, held until they are set up, and joined in whatever way the run ends: the
+// robot is let down first.
+class Threads {
+ public:
+  Threads(ControlThread& control, PolicyThread* policy, Clock& clock, std::atomic<bool>& end)
+      : policy_loop_(policy), clock_(clock), end_(end) {
+    control_ = std::thread([this, &control] {
+      prepare_this_thread();
+      start_.wait(0);
+      if (start_ > 0) control.run(start_);
+      done_ = true;
+    });
+    if (!policy) return;
+    policy_ = std::thread([this, policy] {
+      prepare_this_thread();
+      start_.wait(0);
+      if (start_ > 0) policy->run(start_);
+    });
+  }
+  ~Threads() {
+    end_ = true;
+    std::int64_t unset = 0;
+    if (start_.compare_exchange_strong(unset, -1)) start_.notify_all();
+    control_.join();
+    if (policy_loop_) policy_loop_->stop();
+    if (policy_.joinable()) policy_.join();
+  }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+  void set_up(RealtimeSetup& setup) {
+    setup.adopt_control_thread(control_.native_handle());
+    if (policy_.joinable()) setup.adopt_policy_thread(policy_.native_handle());
+  }
+  void start() {
+    start_ = clock_.now_ns() + kLeadTime_ns;
+    start_.notify_all();
+  }
+  bool done() const noexcept { return done_; }
+
+ private:
+  PolicyThread* policy_loop_;
+  Clock& clock_;
+  std::atomic<bool>& end_;
+  std::atomic<std::int64_t> start_{0};  // time of slot 0; -1: do not start
+  std::atomic<bool> done_{false};
+  std::thread control_, policy_;
+};
+
+}  // namespace
+
+RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
+                         const RealtimeConfig& realtime, Mode start, Policy* policy,
+                         OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                         Clock& clock) {
+  RealtimeSetup setup(realtime);
+  const auto exchange = std::make_unique<PolicyExchange>();
+  const auto ring = std::make_unique<TickRing>();
+  std::atomic<bool> stop{false};
+  ControlLoop loop(robot, config, start, *exchange, clock);
+  ControlThread control(robot, loop, op, *ring, clock, stop);
+  std::optional<PolicyThread> policy_thread;
+  if (policy) policy_thread.emplace(*policy, *exchange, clock);
+
+  RealtimeEnd end;
+  const auto drain = [&] {
+    while (const TickRecord* tick = ring->front()) {
+      tap(*tick);
+      ring->pop();
+    }
+  };
+  {
+    Threads threads(control, policy_thread ? &*policy_thread : nullptr, clock, stop);
+    threads.set_up(setup);
+    threads.start();
+    while (!threads.done()) {
+      std::this_thread::sleep_for(kDrainEvery);
+      if (interrupt.load(std::memory_order_relaxed)) stop = true;
+      drain();
+    }
+  }
+  drain();
+
+  const ControllerState& state = loop.controller().state();
+  end.realtime_factor = 1.0;
+  StateHash hash;
+  robot.add_to(hash);
+  hash.add(state);
+  if (policy) hash.add(policy->state());
+  end.state_hash = hash.value();
+  end.gate = state.gate;
+  const ControlDeadlines& done = control.deadlines();
+  end.time_s = static_cast<double>(done.ticks + done.skipped) * kControlPeriod_s;
+  end.report.control = done;
+  if (policy_thread) end.report.policy = policy_thread->deadlines();
+  end.report.late_policy_outputs = state.late_policy_outputs;
+  end.report.records_dropped = ring->dropped();
+  end.report.setup = setup.items();
+  return end;
+}
+
+}  // namespace sandrunner

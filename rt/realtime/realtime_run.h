@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "rt/loop/lockstep.h"
+#include "rt/realtime/clock.h"
+#include "rt/realtime/control_thread.h"
+#include "rt/realtime/policy_thread.h"
+#include "rt/realtime/setup.h"
+
+namespace sandrunner {
+
+/// How the threads of a real-time run kept their times.
+struct RealtimeReport {
+  ControlDeadlines control;
+  PolicyDeadlines policy;
+  std::uint64_t late_policy_outputs = 0;  ///< that came after the tick they were meant for
+  std::uint64_t records_dropped = 0;      ///< ticks that figures and record lack
+  std::vector<SetupItem> setup;
+};
+
+struct RealtimeEnd : LoopEnd {
+  RealtimeReport report;
+};
+
+/// As run_lockstep, on the clock: control and policy in threads of their own; `tap` gets their
+/// ticks in the caller's thread. `clock` is shared by both threads. Throws InputError if a required
+/// part of the set-up is not to be had.
+RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
+                         const RealtimeConfig& realtime, Mode start, Policy* policy,
+                         OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                         Clock& clock);
+
+}  // namespace sandrunner

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "rt/loop/lockstep.h"
+#include "rt/realtime/realtime_run.h"
+#include "rt/report/run_record.h"
+#include "rt/report/run_statistics.h"
+
+namespace sandrunner {
+
+/// What a person asked for, in their words.
+struct RunInfo {
+  std::string command, policy, terrain;
+  std::uint64_t seed = 0;
+};
+
+/// What became of a run.
+struct RunResult {
+  bool survived = true;  ///< on its feet: no base or thigh contact since the first Walk, no fault
+  std::optional<double> fall_time_s;  ///< since the start of Walk
+  std::string
+      fall_reason;  ///< "base_contact", "thigh_contact", "did_not_stand", or the name of a fault
+  bool interrupted = false;
+  double walked_s = 0.0;  ///< time in Walk under the command
+  LoopEnd end;
+  RunFigures figures;
+  RunRecord record;  ///< of samples only if asked for; the scene always
+  std::optional<RealtimeReport> realtime;
+};
+
+}  // namespace sandrunner
