@@ -32,7 +32,7 @@ using namespace sandrunner::train;
 std::atomic<bool> interrupted{false};
 
 struct Arguments {
-  std::string out, config_file;
+  std::string out, config_file, robot_file;
   std::vector<std::string> assignments;
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::uint64_t seed = 1;
@@ -57,26 +57,40 @@ std::string processor_name() {
   return "unknown";
 }
 
-// What a checkpoint belongs to: another configuration or seed would not continue to the same
+// What a checkpoint belongs to: another configuration, seed or robot would not continue to the same
 // weights.
-std::uint64_t config_hash(const std::string& text, std::uint64_t seed) {
-  std::uint64_t h = 14695981039346656037u ^ seed;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
+std::uint64_t fnv1a(std::string_view bytes, std::uint64_t start) {
+  std::uint64_t h = start;
+  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
   return h;
+}
+std::uint64_t config_hash(const std::string& text, std::uint64_t seed) {
+  return fnv1a(text, 14695981039346656037u ^ seed);
+}
+std::uint64_t robot_hash(const sim::Robot& robot) {
+  const auto bytes = [](const auto& figures) {  // doubles without padding
+    return std::string_view(reinterpret_cast<const char*>(&figures), sizeof(figures));
+  };
+  std::uint64_t h = fnv1a(robot.description.name, 14695981039346656037u);
+  h = fnv1a(bytes(robot.model), h);
+  h = fnv1a(bytes(robot.nominal_rad), h);
+  return fnv1a(bytes(robot.nominal_height_m), h);
 }
 
 // One training: everything that continues from checkpoint to checkpoint.
 class Training {
  public:
-  Training(const TrainConfig& config, const Arguments& arguments)
+  Training(const TrainConfig& config, const sim::Robot& robot, const Arguments& arguments)
       : config_(config),
+        robot_(robot),
         arguments_(arguments),
         pool_(arguments.threads),
-        task_(config, arguments.seed),
+        task_(config, robot, arguments.seed),
         learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
                  arguments.seed, pool_, Task::symmetry()),
         checkpoint_path_(arguments.out + "/checkpoint.bin"),
         config_hash_(config_hash(config.effective, arguments.seed)),
+        robot_hash_(robot_hash(robot)),
         builds_(build_commit()),
         processors_(processor_name()) {}
 
@@ -91,6 +105,13 @@ class Training {
       throw InputError(
           fmt::format("{}: was made with another config or seed; continue with the same ones",
                       checkpoint_path_));
+    }
+    std::uint64_t robot = 0;
+    checkpoint.get("run.robot", &robot, 1);
+    if (robot != robot_hash_) {
+      throw InputError(
+          fmt::format("{}: was made with another robot than this '{}'; continue with the same one",
+                      checkpoint_path_, robot_.description.name));
     }
     restore(checkpoint);
     checkpoint.get("run.cpu_seconds", &cpu_before_, 1);
@@ -112,20 +133,13 @@ class Training {
     progress_.save(checkpoint);
     const double cpu = cpu_before_ + cpu_seconds();
     checkpoint.put("run.cpu_seconds", &cpu, 1);
+    checkpoint.put("run.robot", &robot_hash_, 1);
     for (const auto& [section, text] :
          {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
       Names names{};
       text->copy(names.data(), names.size() - 1);
       checkpoint.put(section, names.data(), names.size());
     }
-    // The first observation of the next window was made with noise that is not drawn again.
-    const learner::Rollout& rollout = learner_.rollout();
-    checkpoint.put("run.observation", rollout.observation(0).data(),
-                   static_cast<std::size_t>(rollout.observation(0).size()));
-    checkpoint.put("run.privileged", rollout.privileged(0).data(),
-                   static_cast<std::size_t>(rollout.privileged(0).size()));
-    checkpoint.put("run.target", rollout.estimate_target(0).data(),
-                   static_cast<std::size_t>(rollout.estimate_target(0).size()));
     checkpoint.config_hash = config_hash_;
     learner::save_checkpoint(checkpoint, checkpoint_path_);
     write_policy_file(arguments_.out + "/policy.safetensors", policy_file());
@@ -178,13 +192,6 @@ class Training {
     learner_.load(checkpoint);
     task_.load(checkpoint);
     progress_.load(checkpoint);
-    learner::Rollout& rollout = learner_.rollout();
-    checkpoint.get("run.observation", rollout.observation(0).data(),
-                   static_cast<std::size_t>(rollout.observation(0).size()));
-    checkpoint.get("run.privileged", rollout.privileged(0).data(),
-                   static_cast<std::size_t>(rollout.privileged(0).size()));
-    checkpoint.get("run.target", rollout.estimate_target(0).data(),
-                   static_cast<std::size_t>(rollout.estimate_target(0).size()));
   }
 
   // Smaller and smaller updates in the last part: the policy settles.
@@ -249,13 +256,14 @@ class Training {
   PolicyFile policy_file() const {
     PolicyFile file;
     PolicySpec& spec = file.spec;
-    spec.name = "raibo";
-    spec.nominal_position_rad = task_.nominal_rad();
+    spec.name = robot_.description.name;
+    spec.nominal_position_rad = robot_.nominal_rad;
     spec.action_scale_rad = config_.policy.action_scale_rad;
     spec.action_clip = config_.policy.action_clip;
     spec.kp_nmprad = config_.policy.kp_nmprad;
     spec.kd_nmsprad = config_.policy.kd_nmsprad;
-    spec.torque_limit_nm = 63.45;
+    // One limit for all joints: where they differ, the robot's own are the lower ones.
+    spec.torque_limit_nm = *std::ranges::max_element(robot_.model.torque_limit_nm);
     spec.yaw_command_clip_mps2 = config_.command.centripetal_mps2;
     const InputScales& scales = task_.scales();
     for (int i = 0; i < kEstimateSize; ++i) {
@@ -264,6 +272,7 @@ class Training {
     }
     spec.provenance = {
         {"config", config_.effective},
+        {"robot", robot_.description.name},
         {"seed", std::to_string(arguments_.seed)},
         {"threads", std::to_string(arguments_.threads)},
         {"transitions", std::to_string(learner_.transitions())},
@@ -288,13 +297,14 @@ class Training {
   }
 
   TrainConfig config_;
+  sim::Robot robot_;
   Arguments arguments_;
   learner::WorkerPool pool_;
   Task task_;
   learner::Learner learner_;
   Progress progress_;
   std::string checkpoint_path_;
-  std::uint64_t config_hash_;
+  std::uint64_t config_hash_, robot_hash_;
   std::string builds_, processors_;  // of this process and those it continues, separated by commas
   double cpu_before_ = 0.0;          // core time of those before
   double saved_wall_ = 0.0;
@@ -311,6 +321,9 @@ int run(int argc, char** argv) {
   app.add_option("--config", a.config_file,
                  "TOML with settings that differ from the built-in raibo.toml")
       ->type_name("FILE");
+  app.add_option("--robot", a.robot_file,
+                 "map of the robot to train (sim/robot/README.md); default: the one that ships")
+      ->type_name("FILE");
   app.add_option("--set", a.assignments, "one setting; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -326,13 +339,14 @@ int run(int argc, char** argv) {
   if (!a.config_file.empty()) tree.add_file(a.config_file);
   for (const std::string& assignment : a.assignments) tree.set(assignment);
   const TrainConfig config = read_train_config(tree);
+  const sim::Robot robot = a.robot_file.empty() ? sim::load_raibo() : sim::load_robot(a.robot_file);
   if (!a.resume && std::filesystem::exists(a.out + "/checkpoint.bin")) {
     throw InputError(
         fmt::format("--out: '{}' holds a training; give --resume or another folder", a.out));
   }
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
-  Training training(config, a);
+  Training training(config, robot, a);
   if (a.resume) training.resume();
   prepare_folder(a.out, "--out");
   if (!a.resume) training.start();

@@ -19,11 +19,6 @@ constexpr float kStep_s = 1.0f / kPolicyHz;
 constexpr float kLoaded_n = 3.0f;
 constexpr int kUnloadedSteps = 2;
 
-sim::FootProfile<double> tyre(const sim::Robot& robot) {
-  return sim::fit_foot_profile(sim::FootShape::kTyre, robot.model.foot_radius_m,
-                               robot.model.foot_width_m, 4.0);
-}
-
 sim::StepSettings batch_settings() {
   sim::StepSettings s;
   s.max_sweeps =
@@ -33,13 +28,14 @@ sim::StepSettings batch_settings() {
 
 }  // namespace
 
-Task::Task(const TrainConfig& config, std::uint64_t seed)
+Task::Task(const TrainConfig& config, const sim::Robot& robot, std::uint64_t seed)
     : config_(config),
       seed_(seed),
       block_envs_(config.learner.block_envs),
-      robot_(sim::load_raibo()),
-      scales_(make_scales(robot_.nominal_rad, config.policy.observation_clip)),
-      foot_(tyre(robot_)),
+      robot_(robot),
+      scales_(make_scales(robot_.nominal_rad, config.policy.body_height_m,
+                          config.policy.observation_clip)),
+      foot_(sim::make_foot_profile({}, robot_.model)),
       batch_(config.run.envs, foot_, batch_settings()),
       envs_(static_cast<std::size_t>(config.run.envs)),
       sums_(static_cast<std::size_t>(config.run.envs / config.learner.block_envs)),

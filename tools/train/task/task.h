@@ -43,13 +43,12 @@ struct WindowStats {
 /// threads and width of the batch.
 class Task {
  public:
-  Task(const TrainConfig& config, std::uint64_t seed);
+  Task(const TrainConfig& config, const sim::Robot& robot, std::uint64_t seed);
 
   static constexpr int privileged_size() { return kPrivileged; }
   const InputScales& scales() const { return scales_; }
   /// Left for right: the robot and its task are the same in the mirror.
   static learner::Symmetry symmetry();
-  const JointArray<double>& nominal_rad() const { return robot_.nominal_rad; }
 
   /// Writes observation(t), privileged(t) and estimate_target(t) of a block.
   void observe(int block, int t, learner::Rollout& rollout);

@@ -72,6 +72,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   number("policy.kp_nmprad", c.policy.kp_nmprad, 0.0, 1e9);
   number("policy.kd_nmsprad", c.policy.kd_nmsprad, 0.0, 1e9);
   number("policy.observation_clip", c.policy.observation_clip, 0.1, 1e3);
+  number("policy.body_height_m", c.policy.body_height_m, 0.0, 10.0);
 
   number("episode.length_s", c.episode.length_s, 0.1, 1000.0);
   number("episode.soft_reset_share", c.episode.soft_reset_share, 0.0, 1.0);

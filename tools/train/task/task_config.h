@@ -20,7 +20,8 @@ struct RunSettings {
 };
 
 struct PolicySettings {
-  double action_scale_rad = 0, action_clip = 0, kp_nmprad = 0, kd_nmsprad = 0, observation_clip = 0;
+  double action_scale_rad = 0, action_clip = 0, kp_nmprad = 0, kd_nmsprad = 0, observation_clip = 0,
+         body_height_m = 0;
 };
 
 struct EpisodeSettings {

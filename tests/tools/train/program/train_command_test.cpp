@@ -73,6 +73,21 @@ class TrainCommandTest : public testing::Test {
     EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
     EXPECT_NE(error.find(named), std::string::npos) << error;
   }
+  /// A robot map of the test's own: Raibo under another name, with weaker drives.
+  std::string mule() const {
+    const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+      EXPECT_NE(text.find(from), std::string::npos) << from;
+      for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+        text.replace(at, from.size(), to);
+      }
+      return text;
+    };
+    const std::string raibo = SANDRUNNER_ROBOT_FOLDER "/raibo";
+    write_file(folder_.path("mule.urdf"),
+               changed(read_file(raibo + ".urdf"), "effort=\"63.45\"", "effort=\"41.5\""));
+    write_file(folder_.path("mule.toml"), changed(read_file(raibo + ".toml"), "raibo", "mule"));
+    return folder_.path("mule.toml");
+  }
   const TemporaryFolder folder_;
 };
 
@@ -115,9 +130,32 @@ TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
   expect_refused("a", {"--set", "learner.critic=[128.7]"}, "learner.critic: 128.7");
   expect_refused("a", {"--set", "learner.gamma=1"}, "gamma");
   expect_refused("a", {"--set", "ground.sigma_flat_low_start=1e8"}, "sigma_flat_low_start");
+  expect_refused("a", {"--robot", folder_.path("absent.toml")}, "absent.toml");
   expect_refused("a", {"--config", folder_.path("absent.toml")}, "absent.toml");
   expect_refused("a", {"--resume"}, "checkpoint.bin");
   EXPECT_FALSE(std::filesystem::exists(folder_.path("a")));
+}
+
+TEST_F(TrainCommandTest, PolicyFileNamesTheRobotOfTheMapAndItsTorqueLimit) {
+  const std::vector<std::string> brief = {"--set", "run.transitions=600"};
+  std::vector<std::string> with_mule = brief;
+  with_mule.insert(with_mule.end(), {"--robot", mule()});
+  ASSERT_EQ(run("mule", with_mule), 0) << read_file(folder_.path("err.txt"));
+  const PolicySpec spec = policy("mule").spec;
+  EXPECT_EQ(spec.name, "mule");
+  EXPECT_EQ(spec.provenance.at("robot"), "mule");
+  EXPECT_EQ(spec.torque_limit_nm, 41.5);
+
+  ASSERT_EQ(run("raibo", brief), 0);
+  EXPECT_EQ(policy("raibo").spec.name, "raibo");
+  EXPECT_EQ(policy("raibo").spec.torque_limit_nm, 63.45);
+}
+
+TEST_F(TrainCommandTest, CheckpointOfAnotherRobotIsRefused) {
+  const std::vector<std::string> brief = {"--set", "run.transitions=600"};
+  ASSERT_EQ(run("r", brief), 0);
+  expect_refused("r", {"--resume", "--set", "run.transitions=600", "--robot", mule()},
+                 "another robot than this 'mule'");
 }
 
 TEST_F(TrainCommandTest, FolderThatCannotBeWrittenIsRefusedBeforeTheTraining) {

@@ -66,7 +66,7 @@ TEST_P(SymmetryTest, RobotInTheMirrorMovesLikeTheMirrorImage) {
   const auto terrain =
       sim::convert_terrain<float>(sim::make_terrain(description, foot, robot.model));
   const learner::Symmetry symmetry = Task::symmetry();
-  const InputScales scales = make_scales(robot.nominal_rad, 6.0);
+  const InputScales scales = make_scales(robot.nominal_rad, 0.48, 6.0);
 
   sim::RobotState<float> state;
   std::array<sim::BatchDrive<float>, 2> drive;
