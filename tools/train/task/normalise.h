@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "rt/core/messages.h"
-#include "tools/train/task/task_config.h"
 
 namespace sandrunner::train {
 

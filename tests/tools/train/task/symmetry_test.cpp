@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Grounds, SymmetryTest,
 TEST(SymmetryShapeTest, ReflectionsAreTheirOwnInverse) {
   const learner::Symmetry s = Task::symmetry();
   EXPECT_EQ(s.observation.index.size(), std::size_t{kObservationSize});
-  EXPECT_EQ(s.action.index.size(), std::size_t{learner::kActionSize});
+  EXPECT_EQ(s.action.index.size(), std::size_t{kNumJoints});
   for (const Reflection& r : {s.observation, s.action}) {
     for (std::size_t i = 0; i < r.index.size(); ++i) {
       EXPECT_EQ(r.index[r.index[i]], static_cast<int>(i));
