@@ -20,12 +20,13 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-std::string results_json(const Results& results, const Options& options) {
+std::string results_json(const Results& results, const std::string& robot, const Options& options) {
   using Json = nlohmann::ordered_json;
   Json j;
   j["version"] = SANDRUNNER_VERSION;
   j["settings"] = {{"policy", options.policy_path},
                    {"against", options.against_path.empty() ? Json() : Json(options.against_path)},
+                   {"robot", robot},
                    {"seed", options.study.seed},
                    {"runs", options.study.runs},
                    {"grid_runs", options.study.grid_runs},

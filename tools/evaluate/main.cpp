@@ -58,6 +58,8 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
+  const sim::Robot robot =
+      options->robot_path.empty() ? sim::load_raibo() : sim::load_robot(options->robot_path);
   std::vector<Policy> policies = {load_policy(options->policy_path)};
   if (!options->against_path.empty()) policies.push_back(load_policy(options->against_path));
   const std::string dir = options->out_dir + "/";
@@ -69,7 +71,7 @@ int run(int argc, char** argv) {
     const bool taken = !results.policies.empty() && results.policies[0] == policy.spec().name;
     results.policies.push_back(policy.spec().name + (taken ? " (2)" : ""));
   }
-  Study study(options->study);
+  Study study(options->study, robot);
   RunnerSettings settings;
   settings.threads = options->threads;
   settings.torque_speed_line = options->torque_speed_line;
@@ -88,7 +90,7 @@ int run(int argc, char** argv) {
       write_text(part_csv(part, results.policies), dir + part.part.name + ".csv");
       draw_part(part, results.policies, options->out_dir);
     }
-    write_text(results_json(results, *options), dir + "evaluation.json");
+    write_text(results_json(results, robot.description.name, *options), dir + "evaluation.json");
     fmt::print("wrote evaluation.json and the parts' files into {}\n", options->out_dir);
   }
   return kExitOk;

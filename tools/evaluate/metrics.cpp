@@ -43,7 +43,7 @@ const std::vector<Metric>& metrics() {
       {"body_height_m", "height m", 1.0, 3, kMean, [](R r) { return r.body_height_m; }},
       {"tilt_rms_rad", "tilt rad", 1.0, 3, kRms, [](R r) { return r.tilt_rms_rad; }},
       {"action_change_rad", "d action rad", 1.0, 3, kMean, [](R r) { return r.action_change_rad; }},
-      {"too_fast_share", ">25.7 rad/s %", 100.0, 3, kMean, [](R r) { return r.too_fast_share; }},
+      {"too_fast_share", "too fast %", 100.0, 3, kMean, [](R r) { return r.too_fast_share; }},
       {"past_stop_share", "past stop %", 100.0, 3, kMean, [](R r) { return r.past_stop_share; }},
       {"torque_limit_share", "tau limit %", 100.0, 2, kMean,
        [](R r) { return r.torque_limit_share; }},

@@ -33,6 +33,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.option_defaults()->always_capture_default();
   app.add_option("--policy", o.policy_path, "policy file")->type_name("FILE")->required();
   app.add_option("--against", o.against_path, "policy file to compare with")->type_name("FILE");
+  app.add_option("--robot", o.robot_path,
+                 "map of the robot (sim/robot/README.md); none: the one that ships")
+      ->type_name("FILE");
   app.add_option("--out", o.out_dir, "folder for evaluation.json, CSV files and pictures")
       ->type_name("DIR");
   app.add_option("--threads", o.threads, "worker threads; the results do not depend on them")

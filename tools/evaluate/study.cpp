@@ -29,9 +29,9 @@ sim::RigidState<float> in_float(const sim::RigidState<double>& from) {
 
 }  // namespace
 
-Study::Study(const StudySettings& settings)
+Study::Study(const StudySettings& settings, const sim::Robot& robot)
     : settings_(settings),
-      robot_(sim::load_raibo()),
+      robot_(robot),
       foot_(sim::make_foot_profile(preset("dry-sand"), robot_.model)) {
   // All grounds are level, so a start serves for all of them. The simulator makes it, so that there
   // is one definition.

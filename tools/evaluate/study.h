@@ -38,7 +38,7 @@ inline constexpr int kGridSize = 10;  ///< cells along each side of the stiffnes
 /// Robot, grounds and starts, to which trials point: it must outlive them, at its place.
 class Study {
  public:
-  explicit Study(const StudySettings& settings);
+  Study(const StudySettings& settings, const sim::Robot& robot);
   Study(const Study&) = delete;
   Study& operator=(const Study&) = delete;
 

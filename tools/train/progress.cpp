@@ -9,39 +9,42 @@
 namespace sandrunner::train {
 namespace {
 
+using R = const ProgressRow&;
+
 struct Column {
   const char* name;
-  double ProgressRow::*value;
+  double (*value)(R row);
 };
 
+// The terms of the reward follow, each as reward_<name>.
 constexpr Column kColumns[] = {
-    {"iteration", &ProgressRow::iteration},
-    {"transitions", &ProgressRow::transitions},
-    {"core_hours", &ProgressRow::core_hours},
-    {"transitions_per_s", &ProgressRow::transitions_per_s},
-    {"simulation_share", &ProgressRow::simulation_share},
-    {"reward", &ProgressRow::reward},
-    {"kernel_rigid", &ProgressRow::kernel_rigid},
-    {"kernel_soil", &ProgressRow::kernel_soil},
-    {"falls_rigid_per_4s", &ProgressRow::falls_rigid},
-    {"falls_soil_per_4s", &ProgressRow::falls_soil},
-    {"speed_ratio_rigid", &ProgressRow::speed_ratio_rigid},
-    {"speed_ratio_soil", &ProgressRow::speed_ratio_soil},
-    {"estimate_vx_rms_mps", &ProgressRow::estimate_vx_rms_mps},
-    {"estimate_height_rms_m", &ProgressRow::estimate_height_rms_m},
-    {"command_speed_mps", &ProgressRow::command_speed_mps},
-    {"ground_open", &ProgressRow::ground_open},
-    {"body_height_m", &ProgressRow::body_height_m},
-    {"torque_squared_nm2", &ProgressRow::torque_squared},
-    {"power_w", &ProgressRow::power_w},
-    {"stride_hz", &ProgressRow::stride_hz},
-    {"abreast", &ProgressRow::abreast},
-    {"diagonal", &ProgressRow::diagonal},
-    {"learning_rate", &ProgressRow::learning_rate},
-    {"kl", &ProgressRow::kl},
-    {"action_std", &ProgressRow::action_std},
-    {"asymmetry", &ProgressRow::asymmetry},
-    {"explained_variance", &ProgressRow::explained_variance},
+    {"iteration", [](R r) { return r.iteration; }},
+    {"transitions", [](R r) { return r.transitions; }},
+    {"core_hours", [](R r) { return r.core_hours; }},
+    {"transitions_per_s", [](R r) { return r.transitions_per_s; }},
+    {"simulation_share", [](R r) { return r.simulation_share; }},
+    {"reward", [](R r) { return r.window.reward; }},
+    {"kernel_rigid", [](R r) { return r.window.kernel[0]; }},
+    {"kernel_soil", [](R r) { return r.window.kernel[1]; }},
+    {"falls_rigid_per_4s", [](R r) { return r.window.falls[0]; }},
+    {"falls_soil_per_4s", [](R r) { return r.window.falls[1]; }},
+    {"speed_ratio_rigid", [](R r) { return r.window.speed_ratio[0]; }},
+    {"speed_ratio_soil", [](R r) { return r.window.speed_ratio[1]; }},
+    {"estimate_vx_rms_mps", [](R r) { return r.estimate_vx_rms_mps; }},
+    {"estimate_height_rms_m", [](R r) { return r.estimate_height_rms_m; }},
+    {"command_speed_mps", [](R r) { return r.command_speed_mps; }},
+    {"ground_open", [](R r) { return r.ground_open; }},
+    {"body_height_m", [](R r) { return r.window.body_height_m; }},
+    {"torque_squared_nm2", [](R r) { return r.window.torque_squared; }},
+    {"power_w", [](R r) { return r.window.power_w; }},
+    {"stride_hz", [](R r) { return r.window.stride_hz; }},
+    {"abreast", [](R r) { return r.window.abreast; }},
+    {"diagonal", [](R r) { return r.window.diagonal; }},
+    {"learning_rate", [](R r) { return r.learning_rate; }},
+    {"kl", [](R r) { return r.kl; }},
+    {"action_std", [](R r) { return r.action_std; }},
+    {"asymmetry", [](R r) { return r.asymmetry; }},
+    {"explained_variance", [](R r) { return r.explained_variance; }},
 };
 
 constexpr plot::Color kBlue{0.12, 0.37, 0.64}, kOrange{0.90, 0.45, 0.10};
@@ -62,6 +65,7 @@ void Progress::load(const learner::Checkpoint& checkpoint) {
 }
 
 std::string Progress::line(const ProgressRow& r, double eta_s) {
+  const WindowStats& w = r.window;
   return fmt::format(
       "{:5.0f}  {:6.2f} M  {:5.1f} k/s ({:2.0f} % sim)  reward {:.4f}  track {:.2f}/{:.2f}  falls "
       "{:.2f}/{:.2f}  "
@@ -69,21 +73,25 @@ std::string Progress::line(const ProgressRow& r, double eta_s) {
       "gait {:+.2f}/{:+.2f}  std "
       "{:.2f}  eta {:.0f} min",
       r.iteration, r.transitions / 1e6, r.transitions_per_s / 1e3, 100.0 * r.simulation_share,
-      r.reward, r.kernel_rigid, r.kernel_soil, r.falls_rigid, r.falls_soil, r.speed_ratio_rigid,
-      r.speed_ratio_soil, r.estimate_vx_rms_mps, r.command_speed_mps, r.ground_open,
-      r.body_height_m, r.stride_hz, r.abreast, r.diagonal, r.action_std, eta_s / 60.0);
+      w.reward, w.kernel[0], w.kernel[1], w.falls[0], w.falls[1], w.speed_ratio[0],
+      w.speed_ratio[1], r.estimate_vx_rms_mps, r.command_speed_mps, r.ground_open, w.body_height_m,
+      w.stride_hz, w.abreast, w.diagonal, r.action_std, eta_s / 60.0);
 }
 
 void Progress::write(const std::string& dir) const {
   std::string csv;
   for (const Column& c : kColumns) csv += fmt::format("{}{}", csv.empty() ? "" : ",", c.name);
+  for (std::size_t i = 0; i < kRewardTerms; ++i) {
+    csv += fmt::format(",reward_{}", reward_term_name(i));
+  }
   csv += "\n";
   for (const ProgressRow& row : rows_) {
     bool first = true;
     for (const Column& c : kColumns) {
-      csv += fmt::format("{}{:.6g}", first ? "" : ",", row.*c.value);
+      csv += fmt::format("{}{:.6g}", first ? "" : ",", c.value(row));
       first = false;
     }
+    for (const double term : row.window.terms) csv += fmt::format(",{:.6g}", term);
     csv += "\n";
   }
   write_text(csv, dir + "/curve.csv");
@@ -93,31 +101,33 @@ void Progress::write(const std::string& dir) const {
   figure.title = "Training";
   figure.x_label = "transitions, millions";
   for (const ProgressRow& row : rows_) figure.x.push_back(row.transitions / 1e6);
-  const auto series = [&](const char* name, plot::Color color, double ProgressRow::*value) {
+  const auto series = [&](const char* name, plot::Color color, double (*value)(R)) {
     plot::Series s;
     s.name = name;
     s.color = color;
-    for (const ProgressRow& row : rows_) s.y.push_back(row.*value);
+    for (const ProgressRow& row : rows_) s.y.push_back(value(row));
     return s;
   };
-  figure.panels.push_back({"Reward", "a step", {series("reward", kBlue, &ProgressRow::reward)}});
+  figure.panels.push_back(
+      {"Reward", "a step", {series("reward", kBlue, [](R r) { return r.window.reward; })}});
   figure.panels.push_back({"Velocity tracking",
                            "kernel, 0 to 1",
-                           {series("rigid", kBlue, &ProgressRow::kernel_rigid),
-                            series("soil", kOrange, &ProgressRow::kernel_soil)}});
+                           {series("rigid", kBlue, [](R r) { return r.window.kernel[0]; }),
+                            series("soil", kOrange, [](R r) { return r.window.kernel[1]; })}});
   figure.panels.push_back({"Falls",
                            "per robot and 4 s",
-                           {series("rigid", kBlue, &ProgressRow::falls_rigid),
-                            series("soil", kOrange, &ProgressRow::falls_soil)}});
-  figure.panels.push_back({"Curricula",
-                           "m/s; 0 to 1",
-                           {series("commanded speed", kBlue, &ProgressRow::command_speed_mps),
-                            series("softness of the ground", kOrange, &ProgressRow::ground_open)}});
+                           {series("rigid", kBlue, [](R r) { return r.window.falls[0]; }),
+                            series("soil", kOrange, [](R r) { return r.window.falls[1]; })}});
+  figure.panels.push_back(
+      {"Curricula",
+       "m/s; 0 to 1",
+       {series("commanded speed", kBlue, [](R r) { return r.command_speed_mps; }),
+        series("softness of the ground", kOrange, [](R r) { return r.ground_open; })}});
   figure.panels.push_back(
       {"Estimator",
        "rms error",
-       {series("vx, m/s", kBlue, &ProgressRow::estimate_vx_rms_mps),
-        series("body height, m", kOrange, &ProgressRow::estimate_height_rms_m)}});
+       {series("vx, m/s", kBlue, [](R r) { return r.estimate_vx_rms_mps; }),
+        series("body height, m", kOrange, [](R r) { return r.estimate_height_rms_m; })}});
   figure.views.push_back({"", figure.x.front(), figure.x.back()});
   plot::draw(figure, dir + "/curve.png");
 }

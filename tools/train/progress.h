@@ -4,21 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "tools/train/learner/learner.h"
-#include "tools/train/task/task.h"
+#include "tools/train/data/checkpoint.h"
+#include "tools/train/task/window_stats.h"
 
 namespace sandrunner::train {
 
-/// One row of the learning curve.
+/// One row of the learning curve: a window and the update from it.
 struct ProgressRow {
-  double iteration = 0, transitions = 0, core_hours = 0;
-  double transitions_per_s = 0, simulation_share = 0;  ///< of the wall time of the window
-  double reward = 0, kernel_rigid = 0, kernel_soil = 0, falls_rigid = 0, falls_soil = 0;
-  double speed_ratio_rigid = 0, speed_ratio_soil = 0;
+  double iteration = 0, transitions = 0, core_hours = 0;  ///< at its end
+  double transitions_per_s = 0;
+  double simulation_share = 0;  ///< of the wall time of the window, 0 to 1
+  WindowStats window;
   double estimate_vx_rms_mps = 0, estimate_height_rms_m = 0;
-  double command_speed_mps = 0, ground_open = 0;
-  double body_height_m = 0, torque_squared = 0, power_w = 0, stride_hz = 0;
-  double abreast = 0, diagonal = 0;  ///< see WindowStats
+  double command_speed_mps = 0, ground_open = 0;  ///< the curricula
   double learning_rate = 0, kl = 0, action_std = 0, asymmetry = 0, explained_variance = 0;
 };
 
@@ -27,7 +25,6 @@ struct ProgressRow {
 class Progress {
  public:
   void add(const ProgressRow& row) { rows_.push_back(row); }
-  const std::vector<ProgressRow>& rows() const { return rows_; }
   void save(learner::Checkpoint& checkpoint) const;
   void load(const learner::Checkpoint& checkpoint);
 

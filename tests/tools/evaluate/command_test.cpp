@@ -44,6 +44,7 @@ TEST_F(EvaluateCommandTest, WritesAllFilesTheSameForAnyThreads) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path("one")), {}), 8);
 
   const auto json = nlohmann::json::parse(read("one/evaluation.json"));
+  EXPECT_EQ(json["settings"]["robot"], "raibo");
   EXPECT_EQ(json["policies"].size(), 2u);
   EXPECT_NE(json["policies"][0]["name"], json["policies"][1]["name"]);
   const auto& policy = json["policies"][1];
@@ -71,6 +72,7 @@ TEST_F(EvaluateCommandTest, RefusesBadInputInOneLine) {
       {"--policy absent", "absent"},
       {"--policy broken", "broken"},
       {"--policy p --against absent", "absent"},
+      {"--policy p --robot absent", "absent"},
       {"--policy p --runs 0", "--runs: 0"},
       {"--policy p --grid-runs -3", "--grid-runs: -3"},
       {"--policy p --threads 0", "--threads: 0"},

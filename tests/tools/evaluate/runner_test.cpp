@@ -29,7 +29,7 @@ std::vector<Trial> mixed_trials(Study& study) {
 
 class RunnerTest : public testing::Test {
  protected:
-  RunnerTest() : study_({.runs = 3, .grid_runs = 2, .seed = 7}) {}
+  RunnerTest() : study_({.runs = 3, .grid_runs = 2, .seed = 7}, sim::load_raibo()) {}
 
   std::vector<std::vector<std::uint64_t>> run(const std::vector<Trial>& trials,
                                               const Policy& policy, int threads,

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdint>
 
+#include "tools/train/data/rollout.h"
 #include "tools/train/learner/lstm.h"
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/mlp.h"
 #include "tools/train/learner/parameters.h"
-#include "tools/train/learner/rollout.h"
 
 namespace sandrunner::learner {
 

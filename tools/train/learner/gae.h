@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tools/train/learner/rollout.h"
+#include "tools/train/data/rollout.h"
 
 namespace sandrunner::learner {
 

@@ -104,8 +104,7 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
       c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
       mirror_h_(h_),
-      mirror_c_(c_),
-      pending_reset_(static_cast<std::size_t>(shape.envs), 0) {
+      mirror_c_(c_) {
   if (!symmetry_) config_.loss.symmetry_weight = 0.0;
   counters_.seed = seed;
   counters_.learning_rate = config.learning_rate_start;
@@ -123,9 +122,6 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
 void Learner::act_block(int block, int t, int worker) {
   const int first = block * config_.block_envs;
   const int end = first + config_.block_envs;
-  for (int env = first; env < end; ++env) {
-    rollout_.reset(t, env) = std::exchange(pending_reset_[static_cast<std::size_t>(env)], 0);
-  }
   acting_[static_cast<std::size_t>(worker)].act(parameters_.data(), rollout_, t, first,
                                                 h_.middleCols(first, config_.block_envs),
                                                 c_.middleCols(first, config_.block_envs));
@@ -169,8 +165,15 @@ void Learner::act_in_mirror(int block, int t, int worker) {
   rollout_.mirror_mean(t).middleCols(first, config_.block_envs) = mean;
 }
 
-float Learner::value(const float* privileged, int worker) {
-  return acting_[static_cast<std::size_t>(worker)].value(parameters_.data(), privileged);
+void Learner::value_timeouts(int first_env, int worker) {
+  BlockPass<float>& pass = acting_[static_cast<std::size_t>(worker)];
+  for (int t = 0; t < rollout_.shape.steps; ++t) {
+    for (int env = first_env; env < first_env + config_.block_envs; ++env) {
+      if (rollout_.end(t, env) != End::kTimeout) continue;
+      rollout_.timeout_value(t, env) =
+          pass.value(parameters_.data(), rollout_.final_privileged(t).col(env).data());
+    }
+  }
 }
 
 void Learner::compute_advantages(UpdateStats& stats) {
@@ -185,6 +188,7 @@ void Learner::compute_advantages(UpdateStats& stats) {
     const int first = block * config_.block_envs;
     acting_[static_cast<std::size_t>(worker)].evaluate(parameters_.data(), rollout_,
                                                        rollout_.shape.steps, first);
+    value_timeouts(first, worker);
     compute_gae(rollout_, first, config_.block_envs, config_.gamma, config_.lambda);
     Sums& sum = sums[static_cast<std::size_t>(block)];
     for (int t = 0; t < rollout_.shape.steps; ++t) {
@@ -274,7 +278,6 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
     stats.estimate_rms[k] += total.estimate_square[k] / total.samples;
   }
   stats.kl += kl;
-  stats.last_kl = kl;
   stats.clip_fraction += total.clipped / total.samples;
   stats.gradient_norm += norm;
   if (symmetry_) stats.asymmetry += 2.0 * total.asymmetry / total.samples / kActionSize;
@@ -336,6 +339,9 @@ UpdateStats Learner::update() {
   rollout_.observation(0) = rollout_.observation(last);
   rollout_.privileged(0) = rollout_.privileged(last);
   rollout_.estimate_target(0) = rollout_.estimate_target(last);
+  for (int env = 0; env < rollout_.shape.envs; ++env) {
+    rollout_.reset(0, env) = rollout_.reset(last, env);
+  }
   ++counters_.updates;
   // Equal weights at first, so that the random start is soon forgotten.
   const auto share = static_cast<float>(
@@ -377,7 +383,8 @@ void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.put("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
   checkpoint.put("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
   checkpoint.put("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
-  checkpoint.put("learner.pending_reset", pending_reset_.data(), pending_reset_.size());
+  checkpoint.put("learner.reset", &rollout_.reset(0, 0),
+                 static_cast<std::size_t>(rollout_.shape.envs));
   const auto put_first_step = [&](const std::string& name, const auto& field) {
     const auto columns = field(0);
     checkpoint.put(name, columns.data(), static_cast<std::size_t>(columns.size()));
@@ -402,7 +409,8 @@ void Learner::load(const Checkpoint& checkpoint) {
   checkpoint.get("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
   checkpoint.get("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
   checkpoint.get("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
-  checkpoint.get("learner.pending_reset", pending_reset_.data(), pending_reset_.size());
+  checkpoint.get("learner.reset", &rollout_.reset(0, 0),
+                 static_cast<std::size_t>(rollout_.shape.envs));
   const auto get_first_step = [&](const std::string& name, auto& field) {
     auto columns = field(0);
     checkpoint.get(name, columns.data(), static_cast<std::size_t>(columns.size()));

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "tools/train/data/checkpoint.h"
+#include "tools/train/data/rollout.h"
+#include "tools/train/data/symmetry.h"
 #include "tools/train/learner/adam.h"
 #include "tools/train/learner/block_pass.h"
-#include "tools/train/learner/checkpoint.h"
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/parameters.h"
-#include "tools/train/learner/rollout.h"
-#include "tools/train/learner/symmetry.h"
 #include "tools/train/learner/worker_pool.h"
 
 namespace sandrunner::learner {
@@ -52,7 +52,6 @@ struct UpdateStats {
   double estimate_loss = 0.0;
   std::array<double, kEstimateSize> estimate_rms{};  ///< error, units of estimate_target
   double kl = 0.0;
-  double last_kl = 0.0;  ///< of the last minibatch
   double clip_fraction = 0.0;
   double gradient_norm = 0.0;       ///< before it was limited
   double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
@@ -69,10 +68,8 @@ struct UpdateStats {
 ///       learner.act_block(block, t, worker);      // -> rollout().action(t)
 ///       ... step environments [block * block_envs, (block + 1) * block_envs); write reward(t,
 ///       env), end(t, env);
-///       ... where an episode timed out: timeout_value(t, env) = learner.value(privileged vector,
-///       worker);
-///       ... where the robot was set up anew: learner.reset_memory(env);
-///       ... write observation(t + 1), privileged(t + 1), estimate_target(t + 1)
+///       ... where an episode timed out: write final_privileged(t)
+///       ... write observation(t + 1), privileged(t + 1), estimate_target(t + 1), reset(t + 1, env)
 ///     }
 ///   });
 ///   const UpdateStats stats = learner.update();   // also carries step `steps` over to step 0
@@ -93,12 +90,6 @@ class Learner {
   /// Answers observation(t), privileged(t) of a block's environments: fills action, mean, log_prob,
   /// value of step t. Different blocks may be run at the same time by different workers.
   void act_block(int block, int t, int worker);
-
-  /// Clears the environment's memory before its next act. By whoever runs the environment's block.
-  void reset_memory(int env) { pending_reset_[static_cast<std::size_t>(env)] = 1; }
-
-  /// The critic's value of one privileged vector.
-  float value(const float* privileged, int worker);
 
   /// Learns from the whole window and moves on to the next. Not from within a task of the pool.
   /// When not finite, the parameters and the optimiser are as before, but the data that caused it
@@ -141,6 +132,7 @@ class Learner {
 
   std::string architecture() const;
   void act_in_mirror(int block, int t, int worker);
+  void value_timeouts(int first_env, int worker);
   void compute_advantages(UpdateStats& stats);
   std::vector<int> shuffled_blocks(int epoch) const;
   bool learn_minibatch(const int* blocks, int count, UpdateStats& stats);
@@ -160,7 +152,6 @@ class Learner {
   Matrix<float> c_;
   Matrix<float> mirror_h_;  // of the policy that sees the mirror
   Matrix<float> mirror_c_;
-  std::vector<std::uint8_t> pending_reset_;
   AdvantageScale advantage_scale_;
   std::vector<BlockPass<float>> acting_;       // one a worker, one step
   std::vector<BlockPass<float>> learning_;     // one a worker, a window

@@ -89,9 +89,9 @@ std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64
   return parameters;
 }
 
-std::vector<NamedTensor> policy_tensors(const ParameterLayout& layout,
-                                        const std::vector<float>& parameters) {
-  std::vector<NamedTensor> tensors;
+std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
+                                         const std::vector<float>& parameters) {
+  std::vector<PolicyTensor> tensors;
   const int hidden = layout.hidden();
   const int cols = kProprioceptionSize + 1 + hidden;
   const auto columns = [&](int first, int count) {

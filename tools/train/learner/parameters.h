@@ -86,7 +86,7 @@ std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64
                                       double action_std);
 
 /// A tensor by itself, in PyTorch's shape and order.
-struct NamedTensor {
+struct PolicyTensor {
   std::string name;
   std::vector<int> shape;
   std::vector<float> values;
@@ -94,7 +94,7 @@ struct NamedTensor {
 
 /// What a policy file holds of the networks: encoder.{weight_ih, weight_hh, bias_ih, bias_hh}
 /// (bias_hh is zero: one bias is enough), estimator.N.{weight, bias}, actor.N.{weight, bias}.
-std::vector<NamedTensor> policy_tensors(const ParameterLayout& layout,
-                                        const std::vector<float>& parameters);
+std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
+                                         const std::vector<float>& parameters);
 
 }  // namespace sandrunner::learner

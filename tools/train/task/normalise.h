@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "rt/core/messages.h"
-#include "tools/train/task/task_config.h"
 
 namespace sandrunner::train {
 
@@ -19,9 +18,10 @@ struct InputScales {
 };
 
 /// Gravity x 8 (z about 0.98), angular velocity x 1, (q - nominal) x 3, joint velocity x 1/3, 1/4,
-/// 1/7 (HAA, HFE, KFE), command x 1, 2, 1. Estimate: height 0.05 m about 0.48, velocity 0.7, 0.3,
-/// 0.2 m/s, foot heights 0.07 m about 0.03.
-inline InputScales make_scales(const JointArray<double>& nominal_rad, double clip) {
+/// 1/7 (HAA, HFE, KFE), command x 1, 2, 1. Estimate: height 0.05 m about `body_height_m`, velocity
+/// 0.7, 0.3, 0.2 m/s, foot heights 0.07 m about 0.03.
+inline InputScales make_scales(const JointArray<double>& nominal_rad, double body_height_m,
+                               double clip) {
   InputScales s;
   s.clip = static_cast<float>(clip);
   s.inverse_deviation = {1, 2, 1, 8, 8, 8, 1, 1, 1};
@@ -32,7 +32,7 @@ inline InputScales make_scales(const JointArray<double>& nominal_rad, double cli
     s.inverse_deviation[9 + j] = 3.0f;
     s.inverse_deviation[9 + kNumJoints + j] = kVelocity[j % 3];
   }
-  s.estimate_mean = {0.48f, 0, 0, 0, 0.03f, 0.03f, 0.03f, 0.03f};
+  s.estimate_mean = {static_cast<float>(body_height_m), 0, 0, 0, 0.03f, 0.03f, 0.03f, 0.03f};
   s.estimate_deviation = {0.05f, 0.7f, 0.3f, 0.2f, 0.07f, 0.07f, 0.07f, 0.07f};
   return s;
 }

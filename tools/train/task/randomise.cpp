@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Task, first part: what is drawn at random, and resets.
+// Task: what is drawn at random, and resets.
 #include <cmath>
 
 #include "rt/core/command_shaping.h"
@@ -160,7 +160,7 @@ void Task::hard_reset(int env, Env& e) {
   new_robot(env, e);
   new_command(env, e);
   e.step = 0;
-  e.action_1 = e.action_2 = {};
+  e.action = e.action_1 = e.action_2 = {};
   e.air_s = e.stance_s = {};
   e.unloaded_steps = {};
   e.drift = {};
@@ -199,38 +199,20 @@ void Task::hard_reset(int env, Env& e) {
   batch_.set_robot(env, fresh);
 }
 
-learner::Symmetry Task::symmetry() {
-  learner::Symmetry s;
-  const auto add = [](learner::Reflection& to, std::initializer_list<float> signs) {
-    for (const float sign : signs) {
-      to.index.push_back(static_cast<int>(to.index.size()));
-      to.sign.push_back(sign);
-    }
-  };
-  // A group of values of each leg: those of the leg on the other side.
-  const auto add_legs = [](learner::Reflection& to, std::initializer_list<float> signs) {
-    const auto first = static_cast<int>(to.index.size()), width = static_cast<int>(signs.size());
-    for (const int other : {1, 0, 3, 2}) {
-      int i = 0;
-      for (const float sign : signs) {
-        to.index.push_back(first + other * width + i++);
-        to.sign.push_back(sign);
-      }
-    }
-  };
-  add(s.observation, {1, -1, -1});      // command vx, vy, wz
-  add(s.observation, {1, -1, 1});       // gravity
-  add(s.observation, {-1, 1, -1});      // angular velocity
-  add_legs(s.observation, {-1, 1, 1});  // joint positions less nominal, and velocities
-  add_legs(s.observation, {-1, 1, 1});
-  add_legs(s.action, {-1, 1, 1});
-  return s;
+// The robot goes on as it is, perhaps on other ground.
+void Task::soft_reset(int env, Env& e, float x_m) {
+  e.step = 0;
+  new_command(env, e);
+  if (e.terrain.highest == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground) {
+    new_ground(env, e, x_m);
+  }
 }
 
-void Task::push(int env, Env& e, sim::RobotState<float>& state) const {
+void Task::push(int env, Env& e, sim::RobotState<float> state) {
   const double v = config_.episode.push_speed_mps;
   state.rigid.velocity.x += static_cast<float>(uniform(env, e, -v, v));
   state.rigid.velocity.y += static_cast<float>(uniform(env, e, -v, v));
+  batch_.set_state(env, state);
 }
 
 }  // namespace sandrunner::train

@@ -1,83 +1,184 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The reward of a policy step: scale * max(sum of what is paid - ramp * sum of what is charged, 0).
+//
+// A new term is a function here, its row in kPaid or kCharged, which also makes it a column of the
+// learning curve, and its settings in RewardSettings and kRewardSettings, with values in
+// raibo.toml.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
-#include "rt/core/messages.h"
-#include "tools/train/task/task_config.h"
+#include "tools/train/task/settings.h"
+#include "tools/train/task/step_outcome.h"
 
 namespace sandrunner::train {
 
-/// What a policy step (10 ms) is judged by. Velocities in the heading frame.
-struct StepOutcome {
-  std::array<float, 3> command{};       ///< vx, vy, wz
-  float vx = 0, vy = 0, vz = 0;         ///< base origin, m/s
-  float yaw_rate = 0;                   ///< about world z, rad/s
-  std::array<float, 3> drift{};         ///< vx, vy, yaw rate over the last stride or so
-  float roll_rate = 0, pitch_rate = 0;  ///< body frame, rad/s
-  float up_z = 1;                       ///< cosine of the tilt
-  float body_height = 0;                ///< above the deformed ground, m
-  JointArray<float> q{}, nominal{};
-  JointArray<float> action{}, action_1{},
-      action_2{};  ///< now, one and two steps ago; network units
-  float torque_squared = 0, power = 0, speed_squared = 0,
-        speed_excess = 0;  ///< means over the period's ticks
-  float slip = 0;          ///< mean sum over feet in contact of v_xy^2
-  std::array<float, kNumLegs> air_s{},
-      stance_s{};  ///< how long each foot has been in the air / loaded
-  std::array<bool, kNumLegs> contact{};
-  std::array<float, kNumLegs>
-      foot_clearance{};                      ///< of the foot's lowest point above the surface, m
-  std::array<float, kNumLegs> foot_speed{};  ///< horizontal, m/s
+/// Table `reward` of raibo.toml. Weights are rewards a step, before `scale`; those of the costs are
+/// per unit of what is charged.
+struct RewardSettings {
+  double scale = 0;                       ///< of the whole, before the critic sees it
+  double cost_weight = 0;                 ///< of all costs
+  double cost_ramp_start = 0;             ///< factor of the costs at the start of the training
+  double cost_ramp_transitions = 0;       ///< transitions at which that factor is 1
+  double cost_end = 0;                    ///< factor of the costs at the end
+  double cost_end_start_transitions = 0;  ///< transitions from which it rises to that
+  double cost_end_transitions = 0;        ///< transitions at which it has
+  double energy_end = 0;                  ///< factor of the energy besides, at the end
+
+  double velocity_weight = 0;
+  double velocity_width = 0;             ///< of the squared error, m^2/s^2
+  double velocity_width_per_speed2 = 0;  ///< and for each m^2/s^2 of commanded speed
+  double progress_weight = 0;
+  double yaw_weight = 0;
+  double yaw_width = 0;  ///< of the squared error, rad^2/s^2
+  double yaw_progress_weight = 0;
+  double precise_time_s = 0;  ///< over which velocities are averaged into `drift`
+  double precise_forward_weight = 0;
+  double precise_forward_width = 0;            ///< of the error, m/s
+  double precise_forward_width_per_speed = 0;  ///< and for each m/s of |commanded vx|
+  double precise_drift_weight = 0;
+  double precise_lateral_width = 0;  ///< of the error, m/s
+  double precise_yaw_width = 0;      ///< of the error, rad/s
+  double air_weight = 0;             ///< per s
+  double air_target_s = 0;           ///< longest swing and stance that are paid in full
+  double air_longest_s = 0;          ///< a longer swing is not paid at all
+  double stance_longest_s = 0;       ///< a longer stance is not paid at all
+
+  double torque = 0;              ///< per N^2 m^2
+  double power = 0;               ///< per W
+  double energy_speed_mps = 0;    ///< energy counts times this speed over ...
+  double energy_offset_mps = 0;   ///< ... the sum of this one and the commanded
+  double joint_speed = 0;         ///< per rad^2/s^2
+  double speed_excess = 0;        ///< per rad^2/s^2
+  double slip = 0;                ///< per m^2/s^2
+  double smoothness_1 = 0;        ///< per square of the action's change
+  double smoothness_2 = 0;        ///< per square of the change of that
+  double pose = 0;                ///< per rad^2 off the nominal pose
+  double pose_flexion_share = 0;  ///< of that, for HFE and KFE
+  double joint_margin = 0;        ///< per rad of a knee past one of the next two
+  double knee_low_rad = 0;
+  double knee_high_rad = 0;
+  double orientation = 0;      ///< per rad^2 of tilt
+  double base_vertical = 0;    ///< per m^2/s^2
+  double base_roll_pitch = 0;  ///< per rad/s
+  double height = 0;           ///< per m^2 below height_m
+  double height_m = 0;         ///< of the base above the deformed ground
+  double clearance = 0;        ///< per m^2 below clearance_m, times the root of the foot's speed
+  double clearance_m = 0;      ///< of a foot in the air above the surface
 };
 
-/// How well the commanded velocity is kept: 1 exactly, towards 0 far from it. The curricula look at
-/// this too.
-inline float velocity_kernel(const StepOutcome& s, double width, double width_per_speed2) {
-  const double ex = s.command[0] - s.vx, ey = s.command[1] - s.vy;
-  const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
-  return static_cast<float>(std::exp(-(ex * ex + ey * ey) / (width + width_per_speed2 * speed2)));
+/// What read_task_config reads, with the ranges.
+inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
+    {"scale", &RewardSettings::scale, 1e-9, 1e3},
+    {"cost_weight", &RewardSettings::cost_weight, 0.0, kNoLimit},
+    {"cost_ramp_start", &RewardSettings::cost_ramp_start, 0.0, kNoLimit},
+    {"cost_ramp_transitions", &RewardSettings::cost_ramp_transitions, 1.0, 1e12},
+    {"cost_end", &RewardSettings::cost_end, 0.0, kNoLimit},
+    {"cost_end_start_transitions", &RewardSettings::cost_end_start_transitions, 0.0, 1e12},
+    {"cost_end_transitions", &RewardSettings::cost_end_transitions, 0.0, 1e12},
+    {"energy_end", &RewardSettings::energy_end, 0.0, kNoLimit},
+    {"velocity_weight", &RewardSettings::velocity_weight, 0.0, kNoLimit},
+    {"velocity_width", &RewardSettings::velocity_width, 1e-6, 1e3},
+    {"velocity_width_per_speed2", &RewardSettings::velocity_width_per_speed2, 0.0, kNoLimit},
+    {"progress_weight", &RewardSettings::progress_weight, 0.0, kNoLimit},
+    {"yaw_weight", &RewardSettings::yaw_weight, 0.0, kNoLimit},
+    {"yaw_width", &RewardSettings::yaw_width, 1e-6, 1e3},
+    {"yaw_progress_weight", &RewardSettings::yaw_progress_weight, 0.0, kNoLimit},
+    {"precise_time_s", &RewardSettings::precise_time_s, 0.01, 10.0},
+    {"precise_forward_weight", &RewardSettings::precise_forward_weight, 0.0, kNoLimit},
+    {"precise_forward_width", &RewardSettings::precise_forward_width, 1e-6, 1e3},
+    {"precise_forward_width_per_speed", &RewardSettings::precise_forward_width_per_speed, 0.0,
+     kNoLimit},
+    {"precise_drift_weight", &RewardSettings::precise_drift_weight, 0.0, kNoLimit},
+    {"precise_lateral_width", &RewardSettings::precise_lateral_width, 1e-6, 1e3},
+    {"precise_yaw_width", &RewardSettings::precise_yaw_width, 1e-6, 1e3},
+    {"air_weight", &RewardSettings::air_weight, 0.0, kNoLimit},
+    {"air_target_s", &RewardSettings::air_target_s, 1e-3, 10.0},
+    {"air_longest_s", &RewardSettings::air_longest_s, 0.0, kNoLimit},
+    {"stance_longest_s", &RewardSettings::stance_longest_s, 0.0, kNoLimit},
+    {"torque", &RewardSettings::torque, 0.0, kNoLimit},
+    {"power", &RewardSettings::power, 0.0, kNoLimit},
+    {"energy_speed_mps", &RewardSettings::energy_speed_mps, 0.0, 1e3},
+    {"energy_offset_mps", &RewardSettings::energy_offset_mps, 1e-3, 1e3},
+    {"joint_speed", &RewardSettings::joint_speed, 0.0, kNoLimit},
+    {"speed_excess", &RewardSettings::speed_excess, 0.0, kNoLimit},
+    {"slip", &RewardSettings::slip, 0.0, kNoLimit},
+    {"smoothness_1", &RewardSettings::smoothness_1, 0.0, kNoLimit},
+    {"smoothness_2", &RewardSettings::smoothness_2, 0.0, kNoLimit},
+    {"pose", &RewardSettings::pose, 0.0, kNoLimit},
+    {"pose_flexion_share", &RewardSettings::pose_flexion_share, 0.0, kNoLimit},
+    {"joint_margin", &RewardSettings::joint_margin, 0.0, kNoLimit},
+    {"knee_low_rad", &RewardSettings::knee_low_rad, -7.0, 7.0},
+    {"knee_high_rad", &RewardSettings::knee_high_rad, -7.0, 7.0},
+    {"orientation", &RewardSettings::orientation, 0.0, kNoLimit},
+    {"base_vertical", &RewardSettings::base_vertical, 0.0, kNoLimit},
+    {"base_roll_pitch", &RewardSettings::base_roll_pitch, 0.0, kNoLimit},
+    {"height", &RewardSettings::height, 0.0, kNoLimit},
+    {"height_m", &RewardSettings::height_m, 0.0, kNoLimit},
+    {"clearance", &RewardSettings::clearance, 0.0, kNoLimit},
+    {"clearance_m", &RewardSettings::clearance_m, 0.0, kNoLimit},
+};
+
+/// Factors of the costs, which grow during training.
+struct CostRamp {
+  double all = 1.0;     ///< of every cost
+  double energy = 1.0;  ///< of that of energy, besides
+  double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
+};
+
+/// One term of the reward, for a step.
+struct RewardTerm {
+  const char* name;  ///< column reward_<name> of the learning curve
+  double (*value)(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp);
+  /// Terms of a group are added up first: it decides how the sum is rounded.
+  int group;
+};
+
+// What is paid.
+
+inline double velocity_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  return r.velocity_weight * velocity_kernel(s, r.velocity_width, r.velocity_width_per_speed2);
 }
 
-/// Share of the commanded motion that the robot makes, 0 to 1; 1 for a command to stand.
-inline double progress(const StepOutcome& s) {
-  const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
-  double share = 1.0;
-  if (speed2 > 0.01) {
-    share = (s.vx * s.command[0] + s.vy * s.command[1]) / speed2;
-  } else if (std::fabs(s.command[2]) > 0.1f) {
-    share = s.yaw_rate / s.command[2];
-  }
-  return std::clamp(share, 0.0, 1.0);
+/// What standing cannot collect.
+inline double progress_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  const double speed2 = command_speed2(s);
+  if (!(speed2 > 0.01)) return 0.0;
+  const double along = s.vx * s.command[0] + s.vy * s.command[1];
+  return r.progress_weight * std::clamp(along / speed2, -1.0, 1.0);
 }
 
-/// Sum of what is paid.
-inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
-  const double speed2 = s.command[0] * s.command[0] + s.command[1] * s.command[1];
+inline double yaw_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
   const double yaw_error = s.command[2] - s.yaw_rate;
-  double sum =
-      r.velocity_weight * velocity_kernel(s, r.velocity_width, r.velocity_width_per_speed2);
-  if (speed2 > 0.01) {
-    const double along = s.vx * s.command[0] + s.vy * s.command[1];
-    sum += r.progress_weight * std::clamp(along / speed2, -1.0, 1.0);
-  }
-  sum += r.yaw_weight * std::exp(-yaw_error * yaw_error / r.yaw_width);
-  if (std::fabs(s.command[2]) > 0.1f) {
-    sum += r.yaw_progress_weight *
-           std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
-  }
-  // Pointed kernels of the velocities without the gait's own swing: every bit of drift costs. None
-  // for standing while asked to go.
+  return r.yaw_weight * std::exp(-yaw_error * yaw_error / r.yaw_width);
+}
+
+inline double yaw_progress_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  if (!(std::fabs(s.command[2]) > 0.1f)) return 0.0;
+  return r.yaw_progress_weight *
+         std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
+}
+
+/// Pointed kernels of the velocities without the gait's own swing: every bit of drift costs. None
+/// for standing while asked to go.
+inline double precise_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
   const double ex = std::fabs(s.command[0] - s.drift[0]), ey = std::fabs(s.command[1] - s.drift[1]),
                ew = std::fabs(s.command[2] - s.drift[2]);
   const double width =
       r.precise_forward_width + r.precise_forward_width_per_speed * std::fabs(double(s.command[0]));
-  sum += progress(s) * (r.precise_forward_weight * std::exp(-ex / width) +
+  return progress(s) * (r.precise_forward_weight * std::exp(-ex / width) +
                         r.precise_drift_weight *
                             std::exp(-ey / r.precise_lateral_width - ew / r.precise_yaw_width));
-  const bool still = speed2 < 1e-4 && std::fabs(s.command[2]) < 1e-2f;
+}
+
+/// Swings and stances up to a length; told to stand, stances only.
+inline double air_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  // `pose_charged` takes other commands for one to stand: what is between the two is rarely drawn.
+  const bool still = command_speed2(s) < 1e-4 && std::fabs(s.command[2]) < 1e-2f;
   double air = 0.0;
   for (int l = 0; l < kNumLegs; ++l) {
     if (still) {
@@ -89,59 +190,161 @@ inline double positive_reward(const StepOutcome& s, const RewardSettings& r) {
       air += std::min<double>(s.air_s[l], r.air_target_s);
     }
   }
-  return sum + r.air_weight * air;
+  return r.air_weight * air;
 }
 
-/// Factors of the costs, which grow during training.
-struct CostRamp {
-  double all = 1.0;     ///< of every cost
-  double energy = 1.0;  ///< of that of energy, besides
-  double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
-};
+// What is charged.
 
-/// Sum of what is charged, before its weight.
-inline double cost(const StepOutcome& s, const RewardSettings& r, double energy_factor) {
-  // Energy for the way, not for the time: cost of transport counts at every speed. A way sideways,
-  // backwards or round is dear by nature: were it charged like one ahead, standing would be
-  // cheaper.
+/// Energy for the way, not for the time: cost of transport counts at every speed. A way sideways,
+/// backwards or round is dear by nature: were it charged like one ahead, standing would be cheaper.
+inline double energy_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   const double ahead = s.command[0] > 0.0f ? s.command[0] : -2.0 * s.command[0];
   const double way = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
-  double sum = energy * energy_factor * r.energy_speed_mps / (r.energy_offset_mps + way) +
-               r.joint_speed * s.speed_squared + r.speed_excess * s.speed_excess + r.slip * s.slip;
-  double first = 0.0, second = 0.0, pose = 0.0, overrun = 0.0;
-  const bool still =
-      std::fabs(s.command[0]) + std::fabs(s.command[1]) + std::fabs(s.command[2]) < 1e-3f;
-  for (int j = 0; j < kNumJoints; ++j) {
-    const double d1 = s.action[j] - s.action_1[j];
-    const double d2 = d1 - (s.action_1[j] - s.action_2[j]);
-    first += d1 * d1;
-    second += d2 * d2;
-    const double off = s.q[j] - s.nominal[j];
-    pose += (j % 3 == 0 ? 1.0 : r.pose_flexion_share) * off * off;
-    if (j % 3 == 2)
-      overrun += std::max(std::max(s.q[j] - r.knee_high_rad, r.knee_low_rad - s.q[j]), 0.0);
-  }
-  sum += r.smoothness_1 * first + r.smoothness_2 * second + (still ? 2.0 : 1.0) * r.pose * pose +
-         r.joint_margin * overrun;
-  const double tilt = std::acos(std::clamp<double>(s.up_z, -1.0, 1.0));
-  sum += r.orientation * tilt * tilt + r.base_vertical * s.vz * s.vz +
-         r.base_roll_pitch * (std::fabs(s.roll_rate) + std::fabs(s.pitch_rate));
-  const double low = std::max(r.height_m - s.body_height, 0.0);
-  sum += r.height * low * low;
-  for (int l = 0; l < kNumLegs; ++l) {
-    if (s.contact[l]) continue;
-    const double lack = std::max(r.clearance_m - s.foot_clearance[l], 0.0);
-    sum += r.clearance * lack * lack * std::sqrt(static_cast<double>(s.foot_speed[l]));
-  }
-  return sum;
+  return energy * ramp.energy * r.energy_speed_mps / (r.energy_offset_mps + way);
 }
 
-/// Reward of a step.
-inline float reward(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
-  return static_cast<float>(
-      r.scale *
-      std::max(positive_reward(s, r) - r.cost_weight * ramp.all * cost(s, r, ramp.energy), 0.0));
+inline double joint_speed_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  return r.joint_speed * s.speed_squared;
+}
+
+inline double speed_excess_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  return r.speed_excess * s.speed_excess;
+}
+
+inline double slip_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  return r.slip * s.slip;
+}
+
+inline double smoothness_1_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  double squares = 0.0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const double change = s.action[j] - s.action_1[j];
+    squares += change * change;
+  }
+  return r.smoothness_1 * squares;
+}
+
+inline double smoothness_2_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  double squares = 0.0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const double change = s.action[j] - s.action_1[j];
+    const double bend = change - (s.action_1[j] - s.action_2[j]);
+    squares += bend * bend;
+  }
+  return r.smoothness_2 * squares;
+}
+
+/// Twice as much when told to stand.
+inline double pose_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  const bool still =
+      std::fabs(s.command[0]) + std::fabs(s.command[1]) + std::fabs(s.command[2]) < 1e-3f;
+  double squares = 0.0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const double off = s.q[j] - s.nominal[j];
+    squares += (j % 3 == 0 ? 1.0 : r.pose_flexion_share) * off * off;
+  }
+  return (still ? 2.0 : 1.0) * r.pose * squares;
+}
+
+inline double joint_margin_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  double overrun = 0.0;
+  for (int j = 2; j < kNumJoints; j += kJointsPerLeg) {
+    overrun += std::max(std::max(s.q[j] - r.knee_high_rad, r.knee_low_rad - s.q[j]), 0.0);
+  }
+  return r.joint_margin * overrun;
+}
+
+inline double orientation_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  const double tilt = std::acos(std::clamp<double>(s.up_z, -1.0, 1.0));
+  return r.orientation * tilt * tilt;
+}
+
+inline double base_vertical_charged(const StepOutcome& s, const RewardSettings& r,
+                                    const CostRamp&) {
+  return r.base_vertical * s.vz * s.vz;
+}
+
+inline double base_roll_pitch_charged(const StepOutcome& s, const RewardSettings& r,
+                                      const CostRamp&) {
+  return r.base_roll_pitch * (std::fabs(s.roll_rate) + std::fabs(s.pitch_rate));
+}
+
+inline double height_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  const double low = std::max(r.height_m - s.body_height, 0.0);
+  return r.height * low * low;
+}
+
+template <int leg>
+double clearance_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+  if (s.contact[leg]) return 0.0;
+  const double lack = std::max(r.clearance_m - s.foot_clearance[leg], 0.0);
+  return r.clearance * lack * lack * std::sqrt(static_cast<double>(s.foot_speed[leg]));
+}
+
+inline constexpr RewardTerm kPaid[] = {
+    {"velocity", velocity_paid, 0},         {"progress", progress_paid, 1}, {"yaw", yaw_paid, 2},
+    {"yaw_progress", yaw_progress_paid, 3}, {"precise", precise_paid, 4},   {"air", air_paid, 5},
+};
+
+inline constexpr RewardTerm kCharged[] = {
+    {"energy", energy_charged, 0},
+    {"joint_speed", joint_speed_charged, 0},
+    {"speed_excess", speed_excess_charged, 0},
+    {"slip", slip_charged, 0},
+    {"smoothness_1", smoothness_1_charged, 1},
+    {"smoothness_2", smoothness_2_charged, 1},
+    {"pose", pose_charged, 1},
+    {"joint_margin", joint_margin_charged, 1},
+    {"orientation", orientation_charged, 2},
+    {"base_vertical", base_vertical_charged, 2},
+    {"base_roll_pitch", base_roll_pitch_charged, 2},
+    {"height", height_charged, 3},
+    {"clearance_lf", clearance_charged<0>, 4},
+    {"clearance_rf", clearance_charged<1>, 5},
+    {"clearance_lh", clearance_charged<2>, 6},
+    {"clearance_rh", clearance_charged<3>, 7},
+};
+
+inline constexpr std::size_t kRewardTerms = std::size(kPaid) + std::size(kCharged);
+
+/// Name of term i, of those paid and then those charged.
+constexpr const char* reward_term_name(std::size_t i) {
+  return i < std::size(kPaid) ? kPaid[i].name : kCharged[i - std::size(kPaid)].name;
+}
+
+/// Sum of the terms; writes each of them to `values`.
+template <std::size_t count>
+double sum_of(const RewardTerm (&terms)[count], const StepOutcome& s, const RewardSettings& r,
+              const CostRamp& ramp, double* values) {
+  double sum = 0.0, group = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0 && terms[i].group != terms[i - 1].group) {
+      sum += group;
+      group = 0.0;
+    }
+    values[i] = terms[i].value(s, r, ramp);
+    group += values[i];
+  }
+  return sum + group;
+}
+
+/// Reward of a step, and what each term puts in: paid above zero, charged below; before the scale
+/// and before what is below zero is cut.
+struct Reward {
+  float value = 0;
+  std::array<double, kRewardTerms> terms{};
+};
+
+inline Reward reward(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
+  Reward out;
+  double* const charged_terms = out.terms.data() + std::size(kPaid);
+  const double paid = sum_of(kPaid, s, r, ramp, out.terms.data());
+  const double charged = sum_of(kCharged, s, r, ramp, charged_terms);
+  const double price = r.cost_weight * ramp.all;
+  for (std::size_t i = 0; i < std::size(kCharged); ++i) charged_terms[i] *= -price;
+  out.value = static_cast<float>(r.scale * std::max(paid - price * charged, 0.0));
+  return out;
 }
 
 }  // namespace sandrunner::train

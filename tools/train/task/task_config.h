@@ -2,84 +2,113 @@
 #pragma once
 
 #include <array>
-#include <string>
 
 #include "rt/base/config_tree.h"
-#include "tools/train/learner/learner.h"
+#include "tools/train/task/reward.h"
 
 namespace sandrunner::train {
 
-// The tables of tools/train/raibo.toml, which gives every value with its source; names as there, SI
-// units.
+// The tables of tools/train/raibo.toml that are about the task; it gives every value with its
+// source. Names as there. A share is between 0 and 1; a spread of 0.1 is a factor between 0.9
+// and 1.1.
 
-struct RunSettings {
-  double transitions = 0;
-  int envs = 0;
-  double checkpoint_interval_s = 0;
-  double settle_share = 0, settle_kl_share = 0;
-};
-
+/// How actions and observations are scaled, and the drives' gains.
 struct PolicySettings {
-  double action_scale_rad = 0, action_clip = 0, kp_nmprad = 0, kd_nmsprad = 0, observation_clip = 0;
+  double action_scale_rad = 0;  ///< joint target less nominal position, for an action of 1
+  double action_clip = 0;       ///< largest |action|
+  double kp_nmprad = 0;
+  double kd_nmsprad = 0;
+  double observation_clip = 0;  ///< largest |input of the network|
+  double body_height_m = 0;     ///< mean of the scale of the estimated body height
 };
 
+/// Lengths, ends and starts of episodes, and pushes.
 struct EpisodeSettings {
-  double length_s = 0, soft_reset_share = 0, soft_reset_new_ground = 0, tilt_end_deg = 0;
-  double reset_joint_rad = 0, reset_tilt_rad = 0, reset_speed_mps = 0, reset_rate_radps = 0;
-  double push_probability = 0, push_speed_mps = 0;
+  double length_s = 0;
+  double soft_reset_share = 0;       ///< of the timeouts: the robot goes on as it is
+  double soft_reset_new_ground = 0;  ///< share of those that go on on other ground
+  double tilt_end_deg = 0;           ///< tilt of the base that ends an episode
+  double reset_joint_rad = 0;        ///< largest start |q - nominal|
+  double reset_tilt_rad = 0;         ///< largest start |roll|, |pitch|
+  double reset_speed_mps = 0;        ///< largest start |velocity|, each axis
+  double reset_rate_radps = 0;       ///< largest start |angular velocity|, each axis
+  double push_probability = 0;       ///< of a push in a policy step
+  double push_speed_mps = 0;         ///< largest change of vx, vy by a push
 };
 
+/// The commands that are drawn, and the curriculum of their speed.
 struct CommandSettings {
-  double speed_start_mps = 0, speed_max_mps = 0, speed_step_mps = 0, forward_share = 0,
-         lateral_mps = 0, lateral_share = 0, yaw_radps = 0, yaw_share = 0, zero_share = 0,
-         in_place_share = 0, change_s = 0, centripetal_mps2 = 0, gate_kernel = 0, gate_falls = 0;
+  double speed_start_mps = 0;   ///< top speed of the commands at the start of the training
+  double speed_max_mps = 0;     ///< and at its end
+  double speed_step_mps = 0;    ///< rise of the top speed in a window that passes the gate
+  double forward_share = 0;     ///< of the commands with vx between 0 and the top speed
+  double lateral_mps = 0;       ///< largest |vy|
+  double lateral_share = 0;     ///< of the commands with vy
+  double yaw_radps = 0;         ///< largest |yaw rate|
+  double yaw_share = 0;         ///< of the commands with a yaw rate
+  double zero_share = 0;        ///< of the commands to stand
+  double in_place_share = 0;    ///< of the commands to turn in place
+  double change_s = 0;          ///< mean time between commands
+  double centripetal_mps2 = 0;  ///< limit of speed times yaw rate
+  double gate_kernel = 0;       ///< least velocity kernel, 0 to 1, at which the top speed rises
+  double gate_falls = 0;        ///< most falls per robot and 4 s at which it does
 };
 
+/// The grounds that are drawn, and the curriculum of their softness. Stiffnesses sigma in N/m^3.
 struct GroundSettings {
-  int rigid_envs = 0, patchy_envs = 0;
-  double patch_length_low_m = 0, patch_length_high_m = 0, patch_rigid_share = 0,
-         patch_loose_share = 0, patch_loose_factor = 0;
-  double roughness_m = 0, roughness_wavelength_m = 0, sigma_flat_low_start = 0, sigma_flat_low = 0,
-         sigma_flat_high = 0, sigma_cone_low_start = 0, sigma_cone_low = 0, sigma_cone_high = 0,
-         softness_exponent = 0, open_step = 0, gate_kernel = 0, gate_falls = 0, friction_low = 0,
-         friction_high = 0, recruitment_spread = 0, cone_angle_spread_deg = 0, inertial_low = 0,
-         inertial_high = 0, stroke_stiffness_high = 0, stroke_damping_high = 0;
+  int rigid_envs = 0;              ///< environments of a block on rigid ground
+  int patchy_envs = 0;             ///< environments of a block on ground that changes on the way
+  double patch_length_low_m = 0;   ///< shortest patch
+  double patch_length_high_m = 0;  ///< longest patch
+  double patch_rigid_share = 0;    ///< of the patches
+  double patch_loose_share = 0;    ///< of the patches of soil that are softer
+  double patch_loose_factor = 0;   ///< most by which they are, a divisor of sigma
+  double roughness_m = 0;          ///< largest standard deviation of rigid ground's height
+  double roughness_wavelength_m = 0;
+  double sigma_flat_low_start = 0;  ///< softest at the start of the training, N/m^3
+  double sigma_flat_low = 0;        ///< softest at its end, N/m^3
+  double sigma_flat_high = 0;       ///< stiffest, N/m^3
+  double sigma_cone_low_start = 0;  ///< N/m^3
+  double sigma_cone_low = 0;        ///< N/m^3
+  double sigma_cone_high = 0;       ///< N/m^3
+  double softness_exponent = 0;     ///< 1: log-uniform; above: more soft soils
+  double open_step = 0;           ///< of the curriculum (0 to 1), in a window that passes the gate
+  double gate_kernel = 0;         ///< as that of the commands
+  double gate_falls = 0;          ///< as that of the commands
+  double friction_low = 0;        ///< coefficient
+  double friction_high = 0;       ///< coefficient
+  double recruitment_spread = 0;  ///< relative
+  double cone_angle_spread_deg = 0;  ///< largest deviation from the usual angle
+  double inertial_low = 0;           ///< least factor of added mass and drag
+  double inertial_high = 0;          ///< largest factor of added mass and drag
+  double stroke_stiffness_high = 0;  ///< largest, N/m
+  double stroke_damping_high = 0;    ///< largest, N s/m
 };
 
+/// How robots differ from the one in the robot's file.
 struct RobotSettings {
-  double base_mass_spread = 0, link_mass_spread = 0, foot_position_m = 0, kp_spread = 0,
-         kd_spread = 0, torque_spread = 0;
-  std::array<double, 3> base_com_m{};
-  std::array<double, 3> latency_ticks{};
-  bool torque_speed_line = false;
+  double base_mass_spread = 0;         ///< relative
+  double link_mass_spread = 0;         ///< relative
+  double foot_position_m = 0;          ///< largest deviation, each axis
+  double kp_spread = 0;                ///< relative
+  double kd_spread = 0;                ///< relative
+  double torque_spread = 0;            ///< of delivered over commanded torque, relative
+  std::array<double, 3> base_com_m{};  ///< largest deviation of the base's centre of mass, x, y, z
+  std::array<double, 3> latency_ticks{};  ///< delays of the action, control ticks of 0.25 ms
+  bool torque_speed_line = false;         ///< whether drives lose torque towards their top speed
 };
 
+/// Standard deviations of the observation noise, but for level and offset.
 struct NoiseSettings {
-  double gravity = 0, angular_velocity_radps = 0, joint_position_rad = 0, joint_velocity_radps = 0,
-         joint_offset_rad = 0, level_high = 0;
+  double gravity = 0;  ///< of each component of the unit vector
+  double angular_velocity_radps = 0;
+  double joint_position_rad = 0;
+  double joint_velocity_radps = 0;
+  double joint_offset_rad = 0;  ///< largest |offset| of a joint's encoder, constant in an episode
+  double level_high = 0;        ///< largest factor of the standard deviations, drawn an episode
 };
 
-struct RewardSettings {
-  double scale = 0, cost_weight = 0, cost_ramp_start = 0, cost_ramp_transitions = 0, cost_end = 0,
-         cost_end_start_transitions = 0, cost_end_transitions = 0, energy_end = 0;
-  double velocity_weight = 0, velocity_width = 0, velocity_width_per_speed2 = 0,
-         progress_weight = 0;
-  double yaw_weight = 0, yaw_width = 0, yaw_progress_weight = 0;
-  double precise_time_s = 0, precise_forward_weight = 0, precise_forward_width = 0,
-         precise_forward_width_per_speed = 0, precise_drift_weight = 0, precise_lateral_width = 0,
-         precise_yaw_width = 0;
-  double air_weight = 0, air_target_s = 0, air_longest_s = 0, stance_longest_s = 0;
-  double torque = 0, power = 0, energy_speed_mps = 0, energy_offset_mps = 0, joint_speed = 0,
-         speed_excess = 0, smoothness_1 = 0, smoothness_2 = 0, orientation = 0, base_vertical = 0,
-         base_roll_pitch = 0, slip = 0, clearance = 0, clearance_m = 0, pose = 0,
-         pose_flexion_share = 0, joint_margin = 0, knee_low_rad = 0, knee_high_rad = 0, height = 0,
-         height_m = 0;
-};
-
-struct TrainConfig {
-  RunSettings run;
-  learner::LearnerConfig learner;
-  int window = 0;
+struct TaskConfig {
   PolicySettings policy;
   EpisodeSettings episode;
   CommandSettings command;
@@ -87,10 +116,10 @@ struct TrainConfig {
   RobotSettings robot;
   NoiseSettings noise;
   RewardSettings reward;
-  std::string effective;  ///< TOML of all values, for the policy's provenance
 };
 
-/// Reads all tables; a missing, unknown or impossible value throws InputError.
-TrainConfig read_train_config(ConfigTree& config);
+/// Reads the tables above; throws InputError for a missing or impossible value.
+TaskConfig read_task_config(ConfigTree& config);
+NoiseSettings read_noise_settings(ConfigTree& config);
 
 }  // namespace sandrunner::train

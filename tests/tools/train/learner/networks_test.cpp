@@ -68,7 +68,7 @@ TEST(ParametersTest, StartAsTheRecipeSays) {
 TEST(ParametersTest, PolicyTensorsHaveTheNamesAndShapesOfAPolicyFile) {
   const ParameterLayout layout(NetworkSizes{}, 80);
   std::map<std::string, std::vector<int>> shapes;
-  for (const NamedTensor& tensor : policy_tensors(layout, initial_parameters(layout, 1, 0.6))) {
+  for (const PolicyTensor& tensor : policy_tensors(layout, initial_parameters(layout, 1, 0.6))) {
     std::size_t count = 1;
     for (const int extent : tensor.shape) count *= static_cast<std::size_t>(extent);
     EXPECT_EQ(tensor.values.size(), count) << tensor.name;
@@ -89,8 +89,8 @@ TEST(ParametersTest, PolicyTensorsHaveTheNamesAndShapesOfAPolicyFile) {
 /// The deployed network written out from PyTorch's documentation, on the exported tensors.
 class PlainPolicy {
  public:
-  explicit PlainPolicy(const std::vector<NamedTensor>& tensors) {
-    for (const NamedTensor& tensor : tensors) {
+  explicit PlainPolicy(const std::vector<PolicyTensor>& tensors) {
+    for (const PolicyTensor& tensor : tensors) {
       tensors_[tensor.name] = std::vector<double>(tensor.values.begin(), tensor.values.end());
     }
     const std::size_t hidden = tensors_.at("encoder.bias_ih").size() / 4;

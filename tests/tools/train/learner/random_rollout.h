@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "tools/train/data/rollout.h"
+#include "tools/train/learner/parameters.h"
 #include "tools/train/learner/random.h"
-#include "tools/train/learner/rollout.h"
 
 namespace sandrunner::learner {
 

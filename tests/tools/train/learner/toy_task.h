@@ -41,7 +41,7 @@ class ToyTask {
         memory_(memory) {
     for (int env = 0; env < learner.rollout().shape.envs; ++env) {
       begin_episode(env);
-      observe(env, 0);
+      observe(env, 0, true);
     }
   }
 
@@ -53,7 +53,7 @@ class ToyTask {
       for (int t = 0; t < rollout.shape.steps; ++t) {
         learner_.act_block(block, t, worker);
         for (int env = block * block_envs; env < (block + 1) * block_envs; ++env) {
-          step(env, t, worker);
+          step(env, t);
         }
       }
     });
@@ -87,7 +87,6 @@ class ToyTask {
     state.gain = (0.6f + 0.6f * unit(16)) * (unit(32) < 0.5f ? -1.0f : 1.0f);
     // Ends of episodes are spread over the windows from the start.
     state.time = state.episode == 1 ? static_cast<std::uint32_t>(env) % kEpisodeSteps : 0;
-    learner_.reset_memory(env);
   }
 
   void privileged(const State& state, float* out) const {
@@ -96,17 +95,17 @@ class ToyTask {
     out[2] = state.x * state.gain;
   }
 
-  void observe(int env, int t) {
+  void observe(int env, int t, bool new_episode) {
     const State& state = states[static_cast<std::size_t>(env)];
     Rollout& rollout = learner_.rollout();
     rollout.observation(t)(kCommandSize, env) = state.x;
     rollout.observation(t)(kCommandSize + 1, env) = state.time == 0 ? state.gain : 0.0f;
     rollout.estimate_target(t)(0, env) = state.gain;
     privileged(state, &rollout.privileged(t)(0, env));
-    if (!memory_) learner_.reset_memory(env);
+    rollout.reset(t, env) = new_episode || !memory_ ? 1 : 0;
   }
 
-  void step(int env, int t, int worker) {
+  void step(int env, int t) {
     State& state = states[static_cast<std::size_t>(env)];
     Rollout& rollout = learner_.rollout();
     state.x += 0.25f * state.gain * std::clamp(rollout.action(t)(0, env), -2.0f, 2.0f);
@@ -117,13 +116,11 @@ class ToyTask {
       rollout.end(t, env) = End::kTerminated;
       begin_episode(env);
     } else if (state.time == kEpisodeSteps) {
-      float values[kToyPrivileged];
-      privileged(state, values);
       rollout.end(t, env) = End::kTimeout;
-      rollout.timeout_value(t, env) = learner_.value(values, worker);
+      privileged(state, &rollout.final_privileged(t)(0, env));
       begin_episode(env);
     }
-    observe(env, t + 1);
+    observe(env, t + 1, rollout.end(t, env) != End::kNone);
   }
 
   Learner& learner_;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program sandrunner-train, run as a user runs it, on a training of a few seconds.
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/inotify.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 
 #include "policy/policy_file.h"
 #include "tests/support/temporary_folder.h"
@@ -14,15 +17,45 @@
 namespace sandrunner {
 namespace {
 
-// 64 robots, 25 windows of 8 steps, a checkpoint as often as there can be one; what comes late in a
-// training comes at once.
+// 64 robots, 25 windows of 8 steps; what comes late in a training comes at once.
 const std::vector<std::string> kShort = {"--set", "run.envs=64",
                                          "--set", "run.transitions=12800",
                                          "--set", "learner.window=8",
                                          "--set", "learner.minibatches=1",
-                                         "--set", "run.checkpoint_interval_s=0.05",
                                          "--set", "reward.cost_end_start_transitions=0",
                                          "--set", "reward.cost_end_transitions=6400"};
+// With a checkpoint after every window.
+const std::vector<std::string> kOften = {"--threads", "1", "--set", "run.checkpoint_interval_s=0"};
+
+// Waits for checkpoints to be written into a folder.
+class CheckpointWatch {
+ public:
+  explicit CheckpointWatch(const std::string& folder) : notify_(::inotify_init1(IN_CLOEXEC)) {
+    std::filesystem::create_directories(folder);
+    EXPECT_GE(::inotify_add_watch(notify_, folder.c_str(), IN_MOVED_TO), 0) << folder;
+  }
+  ~CheckpointWatch() { ::close(notify_); }
+  CheckpointWatch(const CheckpointWatch&) = delete;
+  CheckpointWatch& operator=(const CheckpointWatch&) = delete;
+
+  /// False if there have not been so many more after a minute.
+  bool wait_for(int checkpoints) {
+    pollfd ready{notify_, POLLIN, 0};
+    while (checkpoints > 0 && ::poll(&ready, 1, 60'000) == 1) {
+      alignas(inotify_event) char events[4096];
+      const ssize_t bytes = ::read(notify_, events, sizeof(events));
+      for (ssize_t at = 0; at < bytes;) {
+        const auto& event = *reinterpret_cast<const inotify_event*>(events + at);
+        checkpoints -= std::string_view(event.name) == "checkpoint.bin";
+        at += static_cast<ssize_t>(sizeof(event) + event.len);
+      }
+    }
+    return checkpoints <= 0;
+  }
+
+ private:
+  int notify_;
+};
 
 class TrainCommandTest : public testing::Test {
  protected:
@@ -73,22 +106,36 @@ class TrainCommandTest : public testing::Test {
     EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
     EXPECT_NE(error.find(named), std::string::npos) << error;
   }
+  /// A robot map of the test's own: Raibo under another name, with weaker drives.
+  std::string mule() const {
+    const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+      EXPECT_NE(text.find(from), std::string::npos) << from;
+      for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+        text.replace(at, from.size(), to);
+      }
+      return text;
+    };
+    const std::string raibo = SANDRUNNER_ROBOT_FOLDER "/raibo";
+    write_file(folder_.path("mule.urdf"),
+               changed(read_file(raibo + ".urdf"), "effort=\"63.45\"", "effort=\"41.5\""));
+    write_file(folder_.path("mule.toml"), changed(read_file(raibo + ".toml"), "raibo", "mule"));
+    return folder_.path("mule.toml");
+  }
   const TemporaryFolder folder_;
 };
 
 TEST_F(TrainCommandTest, FiveKillsAndResumesEndInTheWeightsOfAnUninterruptedRun) {
   ASSERT_EQ(run("whole", {"--threads", "1"}), 0);
+  std::vector<std::string> often = kOften;
   for (int kill = 0; kill < 5; ++kill) {
-    const bool begun = std::filesystem::exists(folder_.path("killed") + "/checkpoint.bin");
-    const pid_t child =
-        start("killed", begun ? std::vector<std::string>{"--threads", "1", "--resume"}
-                              : std::vector<std::string>{"--threads", "1"});
-    ::usleep(120'000 + 50'000 * static_cast<unsigned>(kill));
+    CheckpointWatch watch(folder_.path("killed"));
+    const pid_t child = start("killed", often);
+    if (kill == 0) often.push_back("--resume");
+    EXPECT_TRUE(watch.wait_for(1 + kill % 3));
     ::kill(child, SIGKILL);
     EXPECT_EQ(wait_for(child), -SIGKILL) << "the run was over before kill " << kill;
   }
-  ASSERT_TRUE(std::filesystem::exists(folder_.path("killed") + "/checkpoint.bin"));
-  ASSERT_EQ(run("killed", {"--threads", "1", "--resume"}), 0);
+  ASSERT_EQ(run("killed", often), 0);
   expect_same_weights(policy("whole"), policy("killed"));
 }
 
@@ -115,9 +162,32 @@ TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
   expect_refused("a", {"--set", "learner.critic=[128.7]"}, "learner.critic: 128.7");
   expect_refused("a", {"--set", "learner.gamma=1"}, "gamma");
   expect_refused("a", {"--set", "ground.sigma_flat_low_start=1e8"}, "sigma_flat_low_start");
+  expect_refused("a", {"--robot", folder_.path("absent.toml")}, "absent.toml");
   expect_refused("a", {"--config", folder_.path("absent.toml")}, "absent.toml");
   expect_refused("a", {"--resume"}, "checkpoint.bin");
   EXPECT_FALSE(std::filesystem::exists(folder_.path("a")));
+}
+
+TEST_F(TrainCommandTest, PolicyFileNamesTheRobotOfTheMapAndItsTorqueLimit) {
+  const std::vector<std::string> brief = {"--set", "run.transitions=600"};
+  std::vector<std::string> with_mule = brief;
+  with_mule.insert(with_mule.end(), {"--robot", mule()});
+  ASSERT_EQ(run("mule", with_mule), 0) << read_file(folder_.path("err.txt"));
+  const PolicySpec spec = policy("mule").spec;
+  EXPECT_EQ(spec.name, "mule");
+  EXPECT_EQ(spec.provenance.at("robot"), "mule");
+  EXPECT_EQ(spec.torque_limit_nm, 41.5);
+
+  ASSERT_EQ(run("raibo", brief), 0);
+  EXPECT_EQ(policy("raibo").spec.name, "raibo");
+  EXPECT_EQ(policy("raibo").spec.torque_limit_nm, 63.45);
+}
+
+TEST_F(TrainCommandTest, CheckpointOfAnotherRobotIsRefused) {
+  const std::vector<std::string> brief = {"--set", "run.transitions=600"};
+  ASSERT_EQ(run("r", brief), 0);
+  expect_refused("r", {"--resume", "--set", "run.transitions=600", "--robot", mule()},
+                 "another robot than this 'mule'");
 }
 
 TEST_F(TrainCommandTest, FolderThatCannotBeWrittenIsRefusedBeforeTheTraining) {
@@ -127,13 +197,16 @@ TEST_F(TrainCommandTest, FolderThatCannotBeWrittenIsRefusedBeforeTheTraining) {
 
 TEST_F(TrainCommandTest, InterruptKeepsEverythingAndResumeEndsInTheSameWeights) {
   ASSERT_EQ(run("whole", {"--threads", "1"}), 0);
-  const pid_t child = start("stopped", {"--threads", "1"});
-  ::usleep(250'000);
+  CheckpointWatch watch(folder_.path("stopped"));
+  const pid_t child = start("stopped", kOften);
+  EXPECT_TRUE(watch.wait_for(2));
   ::kill(child, SIGINT);
   ASSERT_EQ(wait_for(child), 0);
-  EXPECT_LE(std::stoi(policy("stopped").spec.provenance.at("transitions")), 12800);
+  EXPECT_LT(std::stoi(policy("stopped").spec.provenance.at("transitions")), 12800);
   EXPECT_TRUE(std::filesystem::exists(folder_.path("stopped") + "/curve.csv"));
-  ASSERT_EQ(run("stopped", {"--threads", "1", "--resume"}), 0);
+  std::vector<std::string> again = kOften;
+  again.push_back("--resume");
+  ASSERT_EQ(run("stopped", again), 0);
   expect_same_weights(policy("whole"), policy("stopped"));
 }
 

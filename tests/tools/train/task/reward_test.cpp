@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+
 #include "rt/base/config_tree.h"
-#include "tools/train/embedded.h"
+#include "tools/train/task/embedded.h"
+#include "tools/train/task/task_config.h"
 
 namespace sandrunner::train {
 namespace {
@@ -12,7 +16,7 @@ namespace {
 RewardSettings shipped_settings() {
   ConfigTree tree;
   tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
-  return read_train_config(tree).reward;
+  return read_task_config(tree).reward;
 }
 
 // A robot in its nominal posture that does exactly what it is asked for.
@@ -31,18 +35,21 @@ StepOutcome obedient(float vx, float vy, float wz) {
   return s;
 }
 
-double energy_cost(const StepOutcome& at_rest) {
-  const RewardSettings r = shipped_settings();
-  StepOutcome s = at_rest;
+double paid(const StepOutcome& s, const RewardSettings& r) {
+  std::array<double, kRewardTerms> terms;
+  return sum_of(kPaid, s, r, {}, terms.data());
+}
+
+double energy_cost(StepOutcome s) {
   s.power = 100.0f;
-  return cost(s, r, 1.0) - cost(at_rest, r, 1.0);
+  return energy_charged(s, shipped_settings(), {});
 }
 
 TEST(RewardTest, WhoStandsWhenAskedToGoEarnsLessThanHalfOfWhoGoes) {
   const RewardSettings r = shipped_settings();
   StepOutcome standing = obedient(0.0f, 0.0f, 0.0f);
   standing.command = {1.0f, 0.0f, 0.0f};
-  EXPECT_LT(positive_reward(standing, r), 0.5 * positive_reward(obedient(1.0f, 0.0f, 0.0f), r));
+  EXPECT_LT(paid(standing, r), 0.5 * paid(obedient(1.0f, 0.0f, 0.0f), r));
 }
 
 TEST(RewardTest, EnergyIsChargedByTheWayAndNotByTheTime) {
@@ -66,20 +73,42 @@ TEST(RewardTest, DriftCostsMuchMoreThanTheSwingOfTheGait) {
   StepOutcome swinging = straight, drifting = straight;
   swinging.vy = drifting.vy = 0.1f;
   drifting.drift[1] = 0.1f;
-  EXPECT_LT(positive_reward(drifting, r), positive_reward(swinging, r) - 0.3);
+  EXPECT_LT(paid(drifting, r), paid(swinging, r) - 0.3);
 }
 
 TEST(RewardTest, CostsGrowWithTheirRampAndARewardIsNeverNegative) {
   const RewardSettings r = shipped_settings();
   StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
   s.power = 200.0f;
-  const float early = reward(s, r, {.all = 0.1});
-  const float all = reward(s, r, {.all = 1.0});
-  const float dear = reward(s, r, {.all = 1.0, .energy = 2.0});
+  const float early = reward(s, r, {.all = 0.1}).value;
+  const float all = reward(s, r, {.all = 1.0}).value;
+  const float dear = reward(s, r, {.all = 1.0, .energy = 2.0}).value;
   EXPECT_GT(early, all);
   EXPECT_GT(all, dear);
   s.power = 1e6f;
-  EXPECT_EQ(reward(s, r, {}), 0.0f);
+  EXPECT_EQ(reward(s, r, {}).value, 0.0f);
+}
+
+TEST(RewardTest, TermsAddUpToTheRewardBeforeItsScale) {
+  const RewardSettings r = shipped_settings();
+  StepOutcome s = obedient(1.0f, 0.2f, 0.5f);
+  s.power = 100.0f;
+  s.vz = 0.1f;
+  s.contact[2] = false;
+  s.foot_speed[2] = 1.0f;
+  s.action[3] = 0.4f;
+  const Reward earned = reward(s, r, {.all = 0.7, .energy = 1.5});
+  double sum = 0.0;
+  for (const double term : earned.terms) sum += term;
+  EXPECT_NEAR(earned.value, r.scale * sum, 1e-6);
+  EXPECT_GT(earned.terms[0], 0.0);
+  EXPECT_LT(earned.terms[std::size(kPaid)], 0.0);
+}
+
+TEST(RewardTest, EveryTermHasANameOfItsOwn) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < kRewardTerms; ++i) names.insert(reward_term_name(i));
+  EXPECT_EQ(names.size(), kRewardTerms);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST_P(SymmetryTest, RobotInTheMirrorMovesLikeTheMirrorImage) {
   const auto terrain =
       sim::convert_terrain<float>(sim::make_terrain(description, foot, robot.model));
   const learner::Symmetry symmetry = Task::symmetry();
-  const InputScales scales = make_scales(robot.nominal_rad, 6.0);
+  const InputScales scales = make_scales(robot.nominal_rad, 0.48, 6.0);
 
   sim::RobotState<float> state;
   std::array<sim::BatchDrive<float>, 2> drive;
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Grounds, SymmetryTest,
 TEST(SymmetryShapeTest, ReflectionsAreTheirOwnInverse) {
   const learner::Symmetry s = Task::symmetry();
   EXPECT_EQ(s.observation.index.size(), std::size_t{kObservationSize});
-  EXPECT_EQ(s.action.index.size(), std::size_t{learner::kActionSize});
+  EXPECT_EQ(s.action.index.size(), std::size_t{kNumJoints});
   for (const Reflection& r : {s.observation, s.action}) {
     for (std::size_t i = 0; i < r.index.size(); ++i) {
       EXPECT_EQ(r.index[r.index[i]], static_cast<int>(i));

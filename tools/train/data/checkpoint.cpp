@@ -2,7 +2,7 @@
 // File: magic (8 bytes) | version (u32) | number of sections (u32) | size of the file (u64) |
 // config hash (u64) | architecture | name, bytes of each section | FNV-1a checksum of all before
 // (u64). Little-endian; strings and byte arrays are preceded by their length (u64).
-#include "tools/train/learner/checkpoint.h"
+#include "tools/train/data/checkpoint.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/train/learner/checkpoint.h"
+#include "tools/train/data/checkpoint.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

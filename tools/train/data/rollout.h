@@ -3,12 +3,12 @@
 // needs.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "tools/train/learner/matrix.h"
-#include "tools/train/learner/parameters.h"
+#include "rt/core/messages.h"
 
 namespace sandrunner::learner {
 
@@ -19,8 +19,8 @@ struct RolloutShape {
 };
 
 /// How a step left the episode. A terminated episode has no future reward; after a timeout the
-/// future is worth `timeout_value`. Both cut the advantage; neither clears the policy's memory
-/// (Learner::reset_memory does).
+/// future is worth what the critic says of `final_privileged`. Both cut the advantage; neither
+/// clears the policy's memory (`reset` does).
 enum class End : std::uint8_t { kNone, kTerminated, kTimeout };
 
 /// A vector for every step and environment; (t) is a matrix with one environment a column.
@@ -63,18 +63,19 @@ struct BasicRollout {
         observation(kObservationSize, shape.envs, shape.steps + 1),
         privileged(shape.privileged, shape.envs, shape.steps + 1),
         estimate_target(kEstimateSize, shape.envs, shape.steps + 1),
+        reset(shape.envs, shape.steps + 1),
         reward(shape.envs, shape.steps),
         end(shape.envs, shape.steps),
-        timeout_value(shape.envs, shape.steps),
-        action(kActionSize, shape.envs, shape.steps),
-        mean(kActionSize, shape.envs, shape.steps),
-        mirror_mean(kActionSize, shape.envs, shape.steps),
+        final_privileged(shape.privileged, shape.envs, shape.steps),
+        action(kNumJoints, shape.envs, shape.steps),
+        mean(kNumJoints, shape.envs, shape.steps),
+        mirror_mean(kNumJoints, shape.envs, shape.steps),
         log_prob(shape.envs, shape.steps),
         value(shape.envs, shape.steps + 1),
-        reset(shape.envs, shape.steps),
+        timeout_value(shape.envs, shape.steps),
         initial_h(hidden, shape.envs, 1),
         initial_c(hidden, shape.envs, 1),
-        log_std(Vector<Scalar>::Zero(kActionSize)),
+        log_std(Eigen::Matrix<Scalar, Eigen::Dynamic, 1>::Zero(kNumJoints)),
         advantage(shape.envs, shape.steps),
         value_target(shape.envs, shape.steps) {}
 
@@ -87,26 +88,29 @@ struct BasicRollout {
   VectorField<Scalar, Eigen::Dynamic> privileged;
   /// What the estimator should answer to observation(t), in units of its raw output.
   VectorField<Scalar, kEstimateSize> estimate_target;
+  /// 1: the policy's memory is cleared before step t, because the robot was set up anew; else 0.
+  ValueField<std::uint8_t> reset;
   // ... and after it.
   ValueField<Scalar> reward;
   ValueField<End> end;
-  /// Only for End::kTimeout: value of the state in which the episode was cut (Learner::value).
-  ValueField<Scalar> timeout_value;
+  /// Only for End::kTimeout: input of the critic in the state in which the episode was cut.
+  VectorField<Scalar, Eigen::Dynamic> final_privileged;
 
-  // Written by Learner::act_block.
-  VectorField<Scalar, kActionSize> action;  ///< sampled, in network units
-  VectorField<Scalar, kActionSize> mean;
+  // Written when the policy acts.
+  VectorField<Scalar, kNumJoints> action;  ///< sampled, in network units
+  VectorField<Scalar, kNumJoints> mean;
   /// Mirror image of the policy's answer to the mirror image of the observations: `mean`, if the
   /// policy is symmetric. Zero without a symmetry.
-  VectorField<Scalar, kActionSize> mirror_mean;
+  VectorField<Scalar, kNumJoints> mirror_mean;
   ValueField<Scalar> log_prob;
   ValueField<Scalar> value;
-  ValueField<std::uint8_t> reset;  ///< memory was cleared before step t
+  /// Only for End::kTimeout: the critic's value of `final_privileged`. Written before the update.
+  ValueField<Scalar> timeout_value;
 
   // Of the window as a whole: the policy's memory before step 0, and its log standard deviations.
   VectorField<Scalar, Eigen::Dynamic> initial_h;
   VectorField<Scalar, Eigen::Dynamic> initial_c;
-  Vector<Scalar> log_std;
+  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> log_std;
 
   // Written by compute_gae.
   ValueField<Scalar> advantage;

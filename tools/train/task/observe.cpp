@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Task: what policy, estimator and critic are shown, and how it looks in a mirror.
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/observation.h"
+#include "sim/step/ground_truth.h"
+#include "tools/train/task/task.h"
+
+namespace sandrunner::train {
+
+std::array<float, kEstimateSize> Task::truth(const Env& e,
+                                             const sim::RobotState<float>& state) const {
+  const StateEstimate t = sim::ground_truth(robot_.model, state, e.terrain);
+  std::array<float, kEstimateSize> out;
+  out[0] = static_cast<float>(t.body_height_m);
+  for (int i = 0; i < 3; ++i) out[1 + i] = static_cast<float>(t.velocity_mps[i]);
+  for (int l = 0; l < kNumLegs; ++l) out[4 + l] = static_cast<float>(t.foot_height_m[l]);
+  return out;
+}
+
+void Task::privileged(const Env& e, const sim::RobotState<float>& state,
+                      const sim::BatchReport<float>& report, float* out) const {
+  const sim::RigidState<float>& x = state.rigid;
+  const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
+  const auto clean = make_observation<float>(
+      e.command, {r.r2.x, r.r2.y, r.r2.z},
+      {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z}, x.q, x.qd);
+  for (int i = 0; i < kObservationSize; ++i) *out++ = normalised(scales_, i, clean[i]);
+  const auto estimate = truth(e, state);
+  for (int i = 0; i < kEstimateSize; ++i) {
+    *out++ = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i],
+                        -6.0f, 6.0f);
+  }
+  for (int l = 0; l < kNumLegs; ++l) {
+    *out++ = e.unloaded_steps[l] < kUnloadedSteps ? 1.0f : 0.0f;
+    *out++ = std::min(4.0f * e.air_s[l], 3.0f);
+    *out++ = std::min(4.0f * e.stance_s[l], 3.0f);
+    *out++ = std::clamp(20.0f * report.penetration[l], -3.0f, 3.0f);
+  }
+  for (int j = 0; j < kNumJoints; ++j) *out++ = 0.5f * e.action[j];
+  const auto patch = static_cast<std::size_t>(e.terrain.region_at(x.position.x));
+  for (float f : e.ground_features[patch]) *out++ = f;
+  for (float f : e.robot_features) *out++ = f;
+}
+
+void Task::observe_env(int env, int t, learner::Rollout& rollout) {
+  Env& e = envs_[static_cast<std::size_t>(env)];
+  const sim::RobotState<float> state = batch_.state(env);
+  const sim::BatchReport<float> report = batch_.report(env);
+  const sim::RigidState<float>& x = state.rigid;
+  const NoiseSettings& n = config_.noise;
+  const auto noisy = [&](float value, double sigma) {
+    return value + e.noise_level * static_cast<float>(sigma * normal(env, e));
+  };
+  const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
+  std::array<float, 3> up{noisy(r.r2.x, n.gravity), noisy(r.r2.y, n.gravity),
+                          noisy(r.r2.z, n.gravity)};
+  const float length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
+  for (float& u : up) u /= length;
+  const std::array<float, 3> rate{noisy(x.angular_velocity.x, n.angular_velocity_radps),
+                                  noisy(x.angular_velocity.y, n.angular_velocity_radps),
+                                  noisy(x.angular_velocity.z, n.angular_velocity_radps)};
+  JointArray<float> q, qd;
+  for (int j = 0; j < kNumJoints; ++j) {
+    q[j] = noisy(x.q[j] + e.joint_offset[j], n.joint_position_rad);
+    qd[j] = noisy(x.qd[j], n.joint_velocity_radps);
+  }
+  const auto raw = make_observation<float>(e.command, up, rate, q, qd);
+  auto observation = rollout.observation(t).col(env);
+  for (int i = 0; i < kObservationSize; ++i) observation[i] = normalised(scales_, i, raw[i]);
+  privileged(e, state, report, rollout.privileged(t).col(env).data());
+  const auto estimate = truth(e, state);
+  auto target = rollout.estimate_target(t).col(env);
+  for (int i = 0; i < kEstimateSize; ++i) {
+    target[i] = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i],
+                           -6.0f, 6.0f);
+  }
+}
+
+void Task::observe(int block, int t, learner::Rollout& rollout) {
+  for (int i = 0; i < block_envs_; ++i) observe_env(block * block_envs_ + i, t, rollout);
+}
+
+learner::Symmetry Task::symmetry() {
+  learner::Symmetry s;
+  const auto add = [](learner::Reflection& to, std::initializer_list<float> signs) {
+    for (const float sign : signs) {
+      to.index.push_back(static_cast<int>(to.index.size()));
+      to.sign.push_back(sign);
+    }
+  };
+  // A group of values of each leg: those of the leg on the other side.
+  const auto add_legs = [](learner::Reflection& to, std::initializer_list<float> signs) {
+    const auto first = static_cast<int>(to.index.size()), width = static_cast<int>(signs.size());
+    for (const int other : {1, 0, 3, 2}) {
+      int i = 0;
+      for (const float sign : signs) {
+        to.index.push_back(first + other * width + i++);
+        to.sign.push_back(sign);
+      }
+    }
+  };
+  add(s.observation, {1, -1, -1});      // command vx, vy, wz
+  add(s.observation, {1, -1, 1});       // gravity
+  add(s.observation, {-1, 1, -1});      // angular velocity
+  add_legs(s.observation, {-1, 1, 1});  // joint positions less nominal, and velocities
+  add_legs(s.observation, {-1, 1, 1});
+  add_legs(s.action, {-1, 1, 1});
+  return s;
+}
+
+}  // namespace sandrunner::train

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Settings as tables: a row says the key, the member and the range of a number.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+
+#include "rt/base/config_tree.h"
+#include "rt/base/errors.h"
+
+namespace sandrunner::train {
+
+/// A number of a configuration table: its key, where it goes, and its range, ends included.
+template <typename Settings>
+struct NumberSetting {
+  const char* key;
+  double Settings::*member;
+  double min, max;
+};
+
+/// For numbers without an upper limit of their own.
+inline constexpr double kNoLimit = 1e9;
+
+/// Every setting must be given: throws InputError if `key` is not.
+inline void require_key(const ConfigTree& config, const std::string& key) {
+  if (!config.has(key)) throw InputError(fmt::format("training config: '{}' is missing", key));
+}
+
+/// Reads all rows of `numbers` from the table `table`. Throws InputError for a number that is
+/// missing or out of its range.
+template <typename Settings, std::size_t rows>
+void read_numbers(ConfigTree& config, const std::string& table,
+                  const NumberSetting<Settings> (&numbers)[rows], Settings& settings) {
+  for (const NumberSetting<Settings>& number : numbers) {
+    const std::string key = table + "." + number.key;
+    require_key(config, key);
+    settings.*number.member = config.number(key, 0.0, number.min, number.max);
+  }
+}
+
+/// As read_numbers, for one integer.
+inline int read_integer(ConfigTree& config, const std::string& key, int min, int max) {
+  require_key(config, key);
+  return static_cast<int>(config.integer(key, 0, min, max));
+}
+
+/// Throws InputError if the value of `low_key` is above that of `high_key`.
+inline void require_order(const char* low_key, double low, const char* high_key, double high) {
+  if (low > high) {
+    throw InputError(
+        fmt::format("training config: {} = {} above {} = {}", low_key, low, high_key, high));
+  }
+}
+
+}  // namespace sandrunner::train

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/train/train_config.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "rt/base/errors.h"
+#include "sim/batch/batch.h"
+#include "tools/train/task/settings.h"
+
+namespace sandrunner::train {
+namespace {
+
+using R = RunSettings;
+constexpr NumberSetting<R> kRun[] = {
+    {"transitions", &R::transitions, 1.0, 1e13},
+    {"checkpoint_interval_s", &R::checkpoint_interval_s, 0.0, 1e6},
+    {"settle_share", &R::settle_share, 0.0, 1.0},
+    {"settle_kl_share", &R::settle_kl_share, 1e-3, 1.0},
+};
+
+using L = learner::LearnerConfig;
+constexpr NumberSetting<L> kLearner[] = {
+    {"gamma", &L::gamma, 0.0, 1.0},
+    {"lambda", &L::lambda, 0.0, 1.0},
+    {"kl_target", &L::kl_target, 1e-6, 10.0},
+    {"learning_rate_start", &L::learning_rate_start, 1e-9, 1.0},
+    {"learning_rate_min", &L::learning_rate_min, 1e-9, 1.0},
+    {"learning_rate_max", &L::learning_rate_max, 1e-9, 1.0},
+    {"max_gradient_norm", &L::max_gradient_norm, 1e-6, 1e6},
+    {"action_std_start", &L::action_std_start, 1e-3, 10.0},
+    {"action_std_min", &L::action_std_min, 1e-3, 10.0},
+};
+
+constexpr NumberSetting<learner::LossConfig> kLoss[] = {
+    {"estimate_weight", &learner::LossConfig::estimate_weight, 0.0, 1e3},
+    {"symmetry_weight", &learner::LossConfig::symmetry_weight, 0.0, 1e3},
+};
+
+std::vector<int> read_widths(ConfigTree& config, const std::string& key) {
+  require_key(config, key);
+  std::vector<int> widths;
+  for (const double width : config.numbers(key, {}, ConfigTree::kAnySize, 1.0, 4096.0)) {
+    if (width != std::floor(width)) {
+      throw InputError(fmt::format("{}: {}, expected whole numbers", key, width));
+    }
+    widths.push_back(static_cast<int>(width));
+  }
+  return widths;
+}
+
+learner::LearnerConfig read_learner_config(ConfigTree& config) {
+  learner::LearnerConfig l;
+  l.block_envs = read_integer(config, "learner.block_envs", 1, 1 << 16);
+  l.minibatches = read_integer(config, "learner.minibatches", 1, 1024);
+  l.epochs = read_integer(config, "learner.epochs", 1, 100);
+  l.average_updates = read_integer(config, "learner.average_updates", 1, 1 << 20);
+  read_numbers(config, "learner", kLearner, l);
+  l.network.critic = read_widths(config, "learner.critic");
+  read_numbers(config, "learner", kLoss, l.loss);
+  return l;
+}
+
+// What one table asks of another.
+void check_blocks(const TrainConfig& c) {
+  const int block_envs = c.learner.block_envs;
+  if (block_envs % static_cast<int>(sim::BatchWidth::kSixteen) != 0) {
+    throw InputError(fmt::format(
+        "training config: learner.block_envs = {}, expected a multiple of 16, the robots of a pack",
+        block_envs));
+  }
+  if (c.run.envs % block_envs != 0) {
+    throw InputError(fmt::format(
+        "training config: run.envs = {}, expected a multiple of learner.block_envs = {}",
+        c.run.envs, block_envs));
+  }
+  const int special = c.task.ground.rigid_envs + c.task.ground.patchy_envs;
+  if (special > block_envs) {
+    throw InputError(fmt::format(
+        "training config: ground.rigid_envs + ground.patchy_envs = {}, expected at most "
+        "learner.block_envs = {}",
+        special, block_envs));
+  }
+}
+
+}  // namespace
+
+TrainConfig read_train_config(ConfigTree& config) {
+  TrainConfig c;
+  c.run.envs = read_integer(config, "run.envs", 1, 1 << 20);
+  read_numbers(config, "run", kRun, c.run);
+  c.window = read_integer(config, "learner.window", 1, 4096);
+  c.learner = read_learner_config(config);
+  c.task = read_task_config(config);
+  check_blocks(c);
+  config.reject_unknown();
+  c.effective = config.effective();
+  return c;
+}
+
+}  // namespace sandrunner::train

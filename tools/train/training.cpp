@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/train/training.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "rt/base/build.h"
+#include "rt/base/errors.h"
+#include "rt/base/standard_error.h"
+
+namespace sandrunner::train {
+namespace {
+
+using Names = std::array<char, 1024>;
+
+constexpr int kMostFallbacks = 5;
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+// What a checkpoint belongs to: another configuration, seed or robot would not continue to the same
+// weights.
+constexpr std::uint64_t kHashStart = 14695981039346656037u;
+
+std::uint64_t fnv1a(std::string_view bytes, std::uint64_t h) {
+  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return h;
+}
+
+std::uint64_t hash_of(const sim::Robot& robot) {
+  const auto bytes = [](const auto& figures) {  // doubles without padding
+    return std::string_view(reinterpret_cast<const char*>(&figures), sizeof(figures));
+  };
+  std::uint64_t h = fnv1a(robot.description.name, kHashStart);
+  h = fnv1a(bytes(robot.model), h);
+  h = fnv1a(bytes(robot.nominal_rad), h);
+  return fnv1a(bytes(robot.nominal_height_m), h);
+}
+
+}  // namespace
+
+Training::Training(const TrainConfig& config, const sim::Robot& robot,
+                   const TrainingOptions& options)
+    : config_(config),
+      robot_(robot),
+      options_(options),
+      pool_(options.threads),
+      task_(config.task, robot, {config.run.envs, config.learner.block_envs}, options.seed),
+      learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
+               options.seed, pool_, Task::symmetry()),
+      checkpoint_path_(checkpoint_path(options.out)),
+      config_hash_(fnv1a(config.effective, kHashStart ^ options.seed)),
+      robot_hash_(hash_of(robot)),
+      builds_(build_commit()),
+      processors_(processor_name()) {}
+
+void Training::start() {
+  pool_.run(learner_.blocks(),
+            [&](int block, int) { task_.observe(block, 0, learner_.rollout()); });
+}
+
+void Training::resume() {
+  const learner::Checkpoint checkpoint = learner::load_checkpoint(checkpoint_path_);
+  if (checkpoint.config_hash != config_hash_) {
+    throw InputError(fmt::format(
+        "{}: was made with another config or seed; continue with the same ones", checkpoint_path_));
+  }
+  std::uint64_t robot = 0;
+  checkpoint.get("run.robot", &robot, 1);
+  if (robot != robot_hash_) {
+    throw InputError(
+        fmt::format("{}: was made with another robot than this '{}'; continue with the same one",
+                    checkpoint_path_, robot_.description.name));
+  }
+  restore(checkpoint);
+  checkpoint.get("run.cpu_seconds", &cpu_before_s_, 1);
+  // Everyone who had a hand in the weights.
+  for (const auto& [section, now] :
+       {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
+    Names names{};
+    checkpoint.get(section, names.data(), names.size());
+    const std::string before = names.data();
+    const bool known = (", " + before + ", ").find(", " + *now + ", ") != std::string::npos;
+    *now = known ? before : before + ", " + *now;
+  }
+}
+
+void Training::restore(const learner::Checkpoint& checkpoint) {
+  learner_.load(checkpoint);
+  task_.load(checkpoint);
+  progress_.load(checkpoint);
+}
+
+void Training::save() {
+  learner::Checkpoint checkpoint;
+  learner_.save(checkpoint);
+  task_.save(checkpoint);
+  progress_.save(checkpoint);
+  const double cpu_s = cpu_before_s_ + cpu_seconds();
+  checkpoint.put("run.cpu_seconds", &cpu_s, 1);
+  checkpoint.put("run.robot", &robot_hash_, 1);
+  for (const auto& [section, text] :
+       {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
+    Names names{};
+    text->copy(names.data(), names.size() - 1);
+    checkpoint.put(section, names.data(), names.size());
+  }
+  checkpoint.config_hash = config_hash_;
+  learner::save_checkpoint(checkpoint, checkpoint_path_);
+  write_policy_file(options_.out + "/policy.safetensors", policy_file());
+  progress_.write(options_.out);
+  saved_at_s_ = wall_seconds();
+  fallbacks_ = 0;
+}
+
+void Training::step_window() {
+  pool_.run(learner_.blocks(), [&](int block, int worker) {
+    for (int t = 0; t < config_.window; ++t) {
+      learner_.act_block(block, t, worker);
+      task_.step(block, t, learner_.rollout());
+    }
+  });
+}
+
+void Training::run(const std::atomic<bool>& interrupted) {
+  saved_at_s_ = wall_seconds();
+  const double start_s = wall_seconds();
+  const auto transitions = [&] { return static_cast<double>(learner_.transitions()); };
+  const double before = transitions(), all = config_.run.transitions;
+  while (transitions() < all && !interrupted) {
+    const double t0_s = wall_seconds();
+    step_window();
+    const double t1_s = wall_seconds();
+    learner_.set_kl_target(kl_target());
+    learner_.set_symmetry_weight(config_.learner.loss.symmetry_weight * task_.late());
+    const learner::UpdateStats update = learner_.update();
+    const double t2_s = wall_seconds();
+    if (!update.finite) {
+      fall_back();
+      continue;
+    }
+    const double done = transitions();
+    const WindowStats window = task_.end_window(done);
+    const ProgressRow row = make_row(window, update, t1_s - t0_s, t2_s - t0_s);
+    progress_.add(row);
+    const double rate = (done - before) / (t2_s - start_s);
+    if (learner_.updates() % 10 == 1 || done >= all) {
+      fmt::print("{}\n", Progress::line(row, (all - done) / rate));
+      std::fflush(stdout);
+    }
+    if (t2_s - saved_at_s_ > config_.run.checkpoint_interval_s) save();
+  }
+  if (transitions() > before) save();
+}
+
+// Smaller and smaller updates in the last part: the policy settles.
+double Training::kl_target() const {
+  const RunSettings& run = config_.run;
+  const double left = (run.transitions - static_cast<double>(learner_.transitions())) /
+                      std::max(run.transitions * run.settle_share, 1.0);
+  return std::clamp(left, run.settle_kl_share, 1.0) * config_.learner.kl_target;
+}
+
+void Training::fall_back() {
+  if (!std::filesystem::exists(checkpoint_path_)) {
+    throw std::runtime_error("an update is not finite, before the first checkpoint");
+  }
+  if (++fallbacks_ > kMostFallbacks) {
+    throw std::runtime_error(fmt::format(
+        "no finite update from {} on, with smaller and smaller learning rates", checkpoint_path_));
+  }
+  to_standard_error(fmt::format("update {} is not finite: back to {}, slower\n", learner_.updates(),
+                                checkpoint_path_));
+  restore(learner::load_checkpoint(checkpoint_path_));
+  // The same steps would end in the same bits.
+  for (int i = 0; i < fallbacks_; ++i) learner_.halve_learning_rate();
+}
+
+ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateStats& update,
+                               double simulation_s, double total_s) const {
+  ProgressRow r;
+  r.iteration = static_cast<double>(learner_.updates());
+  r.transitions = static_cast<double>(learner_.transitions());
+  r.core_hours = (cpu_before_s_ + cpu_seconds()) / 3600.0;
+  r.transitions_per_s = config_.run.envs * config_.window / total_s;
+  r.simulation_share = simulation_s / total_s;
+  r.window = window;
+  const auto& deviation = task_.scales().estimate_deviation;
+  r.estimate_vx_rms_mps = update.estimate_rms[1] * static_cast<double>(deviation[1]);
+  r.estimate_height_rms_m = update.estimate_rms[0] * static_cast<double>(deviation[0]);
+  r.command_speed_mps = task_.curriculum().speed_mps;
+  r.ground_open = task_.curriculum().ground;
+  r.learning_rate = update.learning_rate;
+  r.kl = update.kl;
+  r.action_std = update.action_std;
+  r.asymmetry = update.asymmetry;
+  r.explained_variance = update.explained_variance;
+  return r;
+}
+
+PolicyFile Training::policy_file() const {
+  PolicyFile file;
+  const PolicySettings& policy = config_.task.policy;
+  PolicySpec& spec = file.spec;
+  spec.name = robot_.description.name;
+  spec.nominal_position_rad = robot_.nominal_rad;
+  spec.action_scale_rad = policy.action_scale_rad;
+  spec.action_clip = policy.action_clip;
+  spec.kp_nmprad = policy.kp_nmprad;
+  spec.kd_nmsprad = policy.kd_nmsprad;
+  // One limit for all joints; where the robot's own are lower, they hold besides.
+  spec.torque_limit_nm = *std::ranges::max_element(robot_.model.torque_limit_nm);
+  spec.yaw_command_clip_mps2 = config_.task.command.centripetal_mps2;
+  const InputScales& scales = task_.scales();
+  for (int i = 0; i < kEstimateSize; ++i) {
+    spec.estimate_mean[i] = scales.estimate_mean[i];
+    spec.estimate_variance[i] = scales.estimate_deviation[i] * scales.estimate_deviation[i];
+  }
+  spec.provenance = {
+      {"config", config_.effective},
+      {"robot", robot_.description.name},
+      {"seed", std::to_string(options_.seed)},
+      {"threads", std::to_string(options_.threads)},
+      {"transitions", std::to_string(learner_.transitions())},
+      {"core_hours", fmt::format("{:.3f}", (cpu_before_s_ + cpu_seconds()) / 3600.0)},
+      {"processor", processors_},
+      {"commit", builds_},
+      {"origin", "sandrunner-train, from random weights"}};
+  NetworkParameters& p = file.parameters;
+  p.observation_clip = scales.clip;
+  p.observation_mean.assign(scales.mean.begin(), scales.mean.end());
+  for (const float d : scales.inverse_deviation) {
+    p.observation_variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
+  }
+  const auto tensors = learner::policy_tensors(learner_.layout(), learner_.averaged());
+  for (const NamedTensor& to : tensors_of(p)) {
+    for (const learner::PolicyTensor& from : tensors) {
+      if (from.name == to.name) *to.values = from.values;
+    }
+  }
+  file.golden = make_golden_example(p);
+  return file;
+}
+
+}  // namespace sandrunner::train
