@@ -40,7 +40,7 @@ RecordingInfo info_of(const std::string& path, const McapReader& reader) {
   for (const McapAttachment& attachment : reader.attachments()) {
     if (attachment.name == kConfigAttachment) info.config = attachment.data;
     if (attachment.name == kPolicyAttachment) info.policy = attachment.data;
-    if (attachment.name == kRobotAttachment) info.robot = attachment.data;
+    if (attachment.name == kRobotAttachment) info.robot.urdf = attachment.data;
     if (attachment.name == kStateAttachment) info.state = attachment.data;
   }
   return info;

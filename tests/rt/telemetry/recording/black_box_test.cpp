@@ -31,7 +31,7 @@ class BlackBoxTest : public RecordingProgramTest {
     info_.clock = "lockstep";
     info_.config = config_.effective;
     info_.policy = shipped_policy_text();
-    info_.robot = config_.robot.description.urdf;
+    info_.robot = config_.robot.description;
     info_.start_time_ns = 1'700'000'000'000'000'000;
     command_.velocity.vx_mps = 1.0;
   }

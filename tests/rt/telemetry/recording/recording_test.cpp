@@ -9,7 +9,9 @@
 #include "rt/telemetry/recording/cdr.h"
 #include "rt/telemetry/recording/recording_file.h"
 #include "tests/rt/support.h"
+#include "tests/rt/telemetry/example_tick.h"
 #include "tests/rt/telemetry/recording/recording_program.h"
+#include "tests/rt/telemetry/renamed_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -40,7 +42,7 @@ TEST_F(RecordingTest, HoldsEveryTickAndReplaysBitForBit) {
   EXPECT_EQ(contents.info.clock, "lockstep");
   EXPECT_EQ(contents.info.start_mode, "walk");
   EXPECT_NE(contents.info.config.find("sim"), std::string::npos);
-  EXPECT_NE(contents.info.robot.find("<robot"), std::string::npos);
+  EXPECT_NE(contents.info.robot.urdf.find("<robot"), std::string::npos);
   EXPECT_EQ(contents.info.policy, shipped_policy_text());
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0);
   EXPECT_EQ(output(), "2000 ticks and 50 policy steps compared: every bit agrees\n");
@@ -62,6 +64,25 @@ TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
   const std::string without = hash();
   run(SANDRUNNER_PROGRAM, walk + "--record '" + folder_.path("") + "'");
   EXPECT_EQ(hash(), without);
+}
+
+TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
+  const TemporaryFolder robot;
+  record("--set robot=" + write_renamed_robot(robot));
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
+  McapReader reader(path());
+  const McapMessage* message = nullptr;
+  std::map<std::string, std::string> content;  // by topic
+  while ((message = reader.next())) {
+    content[reader.channels().at(message->channel_id).topic] = {
+        reinterpret_cast<const char*>(message->data.data()), message->data.size()};
+  }
+  EXPECT_EQ(reader.attachments().back().data, read_file(robot.path("example.urdf")));
+  const RobotDescription expected = example_robot();
+  for (const std::string& name : expected.joint_names) {
+    EXPECT_NE(content["/joint_states"].find(name + '\0'), std::string::npos) << name;
+  }
+  EXPECT_NE(content["/tf"].find(expected.base_link), std::string::npos);
 }
 
 TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
