@@ -66,7 +66,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
   const auto own = [&](const char* topic, const char* name, const std::string& idl) {
     return file_.add_channel(file_.add_schema(name, "omgidl", idl), topic, "cdr", qos());
   };
-  channels_.ticks = own(kTicksTopic, "sandrunner::TickBatch", tick_idl());
+  channels_.ticks = own(kTicksTopic, "sandrunner::TickRecordBatch", tick_idl());
   channels_.events = own(kEventsTopic, "sandrunner::Event", kEventIdl);
   const auto ros = [&](const RosTopic& topic) {
     return file_.add_channel(file_.add_schema(topic.schema, "ros2msg", topic.text), topic.topic,

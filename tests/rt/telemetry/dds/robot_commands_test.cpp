@@ -93,7 +93,7 @@ class RobotCommandsTest : public testing::Test {
   /// How fast the robot really went.
   double speed_mps(double from_s, double to_s) const {
     return mean(from_s, to_s,
-                [](const TickRecord& tick) { return tick.simulated.truth.velocity_mps[0]; });
+                [](const TickRecord& tick) { return tick.truth.state.velocity_mps[0]; });
   }
   /// The first time from `from_s` on at which the controller was given this velocity.
   double first_s(double from_s, double vx_mps) const {

@@ -125,7 +125,7 @@ TEST(TelemetryTest, TheDescriptionReachesAPeerThatComesLater) {
   EXPECT_EQ(text, example_robot().urdf);
 }
 
-TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsAndTimes) {
+TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsTimesAndTheGatesCounters) {
   Published setup;
   const auto reader =
       setup.peer.reader("rt/diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc);
@@ -134,10 +134,13 @@ TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsAndTimes) {
     for (std::uint64_t tick = 0; tick <= 12000; ++tick) {
       TickRecord record = example_tick(tick);
       if (tick == 6000) record.skipped = 3;
+      std::uint64_t count = 100;
+      for (const GateCounterName& counter : kGateCounters) record.counters.*counter.ticks = count++;
       if (tick > 8000) {
         record.output.mode = Mode::kFault;
         record.output.faults =
             static_cast<std::uint64_t>(Fault::kTilt) | static_cast<std::uint64_t>(Fault::kImuStale);
+        record.output.fault_joints = 1u << 0 | 1u << 11;
       }
       telemetry.add(record);
     }
@@ -156,9 +159,14 @@ TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsAndTimes) {
   EXPECT_EQ(levels, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(values["mode"], "fault");
   EXPECT_EQ(values["faults"], "imu_stale, tilt");
+  EXPECT_EQ(values["fault_joints"], "FL_hip, RR_calf");
   EXPECT_EQ(values["tick"], "12000");
   EXPECT_EQ(values["slots_missed"], "3");
   EXPECT_EQ(values["tick_late_us"], "p50 2.0, p99 2.0, p99.9 2.0, max 2.0");
+  std::uint64_t count = 100;
+  for (const GateCounterName& counter : kGateCounters) {
+    EXPECT_EQ(values["ticks_" + std::string(counter.name)], std::to_string(count++));
+  }
 }
 
 TEST(TelemetryTest, EveryTickIsInTheBatchesOnceAndInOrder) {

@@ -222,6 +222,28 @@ TEST_F(RecordingTest, FoxgloveLayoutShowsWhatExists) {
   EXPECT_GE(shown, 12);
 }
 
+TEST_F(RecordingTest, TicksInAnotherLayoutAreRefusedInOneLine) {
+  {
+    McapWriter writer(path());
+    writer.write_metadata({kRunMetadata,
+                           {{"build", "another"},
+                            {"start_mode", "walk"},
+                            {"clock", "lockstep"},
+                            {"start_time_ns", "0"}}});
+    const std::uint16_t schema =
+        writer.add_schema("sandrunner::TickBatch", "omgidl", "module sandrunner {};");
+    writer.write_message({.channel_id = writer.add_channel(schema, kTicksTopic, "cdr", {}),
+                          .sequence = 1,
+                          .log_time_ns = 0,
+                          .publish_time_ns = 0,
+                          .data = CdrWriter().bytes()});
+    writer.close();
+  }
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 2);
+  EXPECT_EQ(output(), "sandrunner-replay: " + path() +
+                          ": found ticks in the layout of another build, expected this build's\n");
+}
+
 TEST_F(RecordingTest, FileThatIsNoRecordingIsBadInput) {
   write_file(folder_.path("none.mcap"), "not a recording");
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("none.mcap")), 2);
