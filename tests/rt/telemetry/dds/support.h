@@ -221,11 +221,11 @@ class Asker {
         requests_(peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc)) {}
 
   /// The reply; "no reply" as its reason if none came.
-  sandrunner_ModeReply ask(const std::string& wish) {
-    sandrunner_ModeRequest request{};
-    request.id = ++id_;
-    wish.copy(request.request, sizeof request.request - 1);
-    dds_write(requests_, &request);
+  sandrunner_ModeReply ask(const std::string& request) {
+    sandrunner_ModeRequest message{};
+    message.id = ++id_;
+    request.copy(message.request, sizeof message.request - 1);
+    dds_write(requests_, &message);
     sandrunner_ModeReply reply{};
     std::string("no reply").copy(reply.reason, sizeof reply.reason - 1);
     wait_until([&] {
