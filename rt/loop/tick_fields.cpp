@@ -149,7 +149,7 @@ std::string tick_word_name(std::size_t word) {
 }
 
 std::string tick_idl() {
-  std::string idl = "module sandrunner {\n  struct Tick {\n";
+  std::string idl = "module sandrunner {\n  struct TickRecord {\n";
   for (const TickField& field : kFields) {
     const char* const type = field.kind == 'd'   ? "double"
                              : field.kind == 'u' ? "unsigned long long"
@@ -158,8 +158,8 @@ std::string tick_idl() {
                             : fmt::format("    {} {}[{}];\n", type, field.name, field.words);
   }
   return idl +
-         "  };\n  struct TickBatch {\n    unsigned long long sequence_number;\n"
-         "    sequence<Tick> ticks;\n  };\n};\n";
+         "  };\n  struct TickRecordBatch {\n    unsigned long long sequence_number;\n"
+         "    sequence<TickRecord> ticks;\n  };\n};\n";
 }
 
 }  // namespace sandrunner

@@ -16,8 +16,8 @@ class DdsBridge {
   DdsBridge(const ProcessConfig& config, bool live)
       : participant_(config.dds), operator_(config.dds.stale_ticks()) {
     if (live) inbox_ = std::make_unique<CommandInbox>(participant_, config.dds, true, operator_);
-    telemetry_ = std::make_unique<Telemetry>(participant_, config.dds,
-                                             config.robot.description.urdf, inbox_.get());
+    telemetry_ = std::make_unique<Telemetry>(participant_, config.dds, config.robot.description,
+                                             inbox_.get());
   }
 
   void begin(std::int64_t start_time_ns) noexcept { telemetry_->begin(start_time_ns); }

@@ -17,7 +17,7 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
   info.clock = options.realtime ? "realtime" : "lockstep";
   info.config = config.effective;
   info.policy = policy;
-  info.robot = config.robot.description.urdf;
+  info.robot = config.robot.description;
   return info;
 }
 

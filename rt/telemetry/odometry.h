@@ -20,11 +20,8 @@ class Odometry {
   const Vector3& velocity_mps() const noexcept { return velocity_mps_; }  ///< body frame
   const Vector3& angular_velocity_radps() const noexcept { return angular_velocity_radps_; }
 
-  // Variances. They only grow: nothing that the robot senses tells it where it is.
-  double horizontal_variance_m2() const noexcept { return horizontal_variance_m2_; }
-  double yaw_variance_rad2() const noexcept { return yaw_variance_rad2_; }
-
-  /// 6 x 6 by rows, as in nav_msgs/Odometry: x, y, z, then about these axes.
+  /// 6 x 6 by rows, as in nav_msgs/Odometry: x, y, z, then about these axes. The variances of x, y
+  /// and yaw only grow: nothing that the robot senses tells it where it is.
   std::array<double, 36> pose_covariance() const noexcept;
   std::array<double, 36> twist_covariance() const noexcept;
 
@@ -37,10 +34,6 @@ class Odometry {
   Vector3 angular_velocity_radps_{};
   double horizontal_variance_m2_ = 0.0, yaw_variance_rad2_ = 0.0;
 };
-
-/// Frames of the pose and of the twist.
-inline constexpr const char* kOdomFrame = "odom";
-inline constexpr const char* kBaseFrame = "base";
 
 /// Assumed errors: those of the estimated velocity (standard deviation, correlated over a second),
 /// and the drift of the IMU's yaw (random walk).

@@ -302,6 +302,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
       nominal_height > 0.0 ? nominal_height : standing_height(m, robot.nominal_rad);
   robot.lying_height_m = standing_height(m, robot.lying_rad);
   robot.description.urdf = urdf_text;
+  robot.description.base_link = base;
   robot.description.leg_names = leg_names;
   return robot;
 }

@@ -5,16 +5,16 @@
 
 namespace sandrunner::ctl {
 
-std::optional<VelocityCommand> CommandPacer::due(const std::optional<VelocityCommand>& wish,
+std::optional<VelocityCommand> CommandPacer::due(const std::optional<VelocityCommand>& wanted,
                                                  std::int64_t now_ns) {
-  const bool first_zero = !wish && !stopping_;
-  stopping_ = !wish;
-  if (wish) zeros_left_ = kZeros;
+  const bool first_zero = !wanted && !stopping_;
+  stopping_ = !wanted;
+  if (wanted) zeros_left_ = kZeros;
   if (zeros_left_ == 0 || (now_ns < next_ns_ && !first_zero)) return std::nullopt;
   // On the grid while it is kept; after a pause or a stall a new one begins.
   const bool late = now_ns - next_ns_ >= kCommandPeriod_ns;
   next_ns_ = (late || first_zero ? now_ns : next_ns_) + kCommandPeriod_ns;
-  if (wish) return wish;
+  if (wanted) return wanted;
   --zeros_left_;
   return VelocityCommand{};
 }

@@ -12,8 +12,8 @@ namespace sandrunner::ctl {
 /// them at once; then nothing, so that another publisher can have the robot. No clock inside.
 class CommandPacer {
  public:
-  /// `wish`: what is steered at `now_ns`. Returns what is to be sent now.
-  std::optional<VelocityCommand> due(const std::optional<VelocityCommand>& wish,
+  /// `wanted`: what is steered at `now_ns`. Returns what is to be sent now.
+  std::optional<VelocityCommand> due(const std::optional<VelocityCommand>& wanted,
                                      std::int64_t now_ns);
   /// Whether zeros are still to be sent, once nobody steers.
   bool busy() const noexcept { return zeros_left_ > 0; }

@@ -129,9 +129,9 @@ class Drive {
       asked_.clear();
     }
     const double scale = 0.1 * keys_.scale_tenths();
-    std::optional<VelocityCommand> wish = keys_.command(now_ns);
-    if (!wish && gamepad_) wish = gamepad_->command(scale);
-    send(wish);
+    std::optional<VelocityCommand> wanted = keys_.command(now_ns);
+    if (!wanted && gamepad_) wanted = gamepad_->command(scale);
+    send(wanted);
     reader_.take_into(view_);
     if (now_ns < next_line_ns_) return;
     next_line_ns_ = now_ns + 200 * kMs_ns;
@@ -142,8 +142,8 @@ class Drive {
   // A line that stays, above the one that changes.
   static void report(const std::string& text) { say("\r\x1b[K" + text + "\n"); }
 
-  void send(const std::optional<VelocityCommand>& wish) {
-    if (const auto command = pacer_.due(wish, steady_ns())) writer_.send(*command);
+  void send(const std::optional<VelocityCommand>& wanted) {
+    if (const auto command = pacer_.due(wanted, steady_ns())) writer_.send(*command);
   }
 
   Interrupt& interrupt_;

@@ -40,9 +40,8 @@ void check(const Options& o) {
     if (o.for_s && !(*o.for_s > 0.0 && *o.for_s <= 86400.0)) {
       throw InputError(fmt::format("--for: found {}, expected above 0 to 86400 s", *o.for_s));
     }
-  } else if (o.subcommand == "mode" && !wish_from(o.mode)) {
-    throw InputError(
-        fmt::format("mode: found '{}', expected stand, walk, stop, damp or reset_fault", o.mode));
+  } else if (o.subcommand == "mode" && !is_request(o.mode)) {
+    throw InputError(fmt::format("mode: found '{}', expected {}", o.mode, kRequestNames));
   } else if (o.subcommand == "watch") {
     find_topic(o.topic, o.dds);
     if (o.count < 0) {
@@ -84,9 +83,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
                                    ->type_name("S")
                                    ->always_capture_default(false);
   CLI::App* mode = app.add_subcommand("mode", "ask for a mode and print the answer");
-  mode->add_option("REQUEST", o.mode, "stand, walk, stop, damp or reset_fault")
-      ->required()
-      ->always_capture_default(false);
+  mode->add_option("REQUEST", o.mode, kRequestNames)->required()->always_capture_default(false);
   CLI::App* watch = app.add_subcommand("watch", "print each message of a topic, a line each");
   watch->add_option("TOPIC", o.topic, topic_names())->required()->always_capture_default(false);
   watch->add_option("--count", o.count, "end after so many; 0: Ctrl-C ends it")->type_name("N");

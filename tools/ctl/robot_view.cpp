@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "rt/base/errors.h"
+#include "rt/base/quantile.h"
 #include "rt/core/messages.h"
 #include "rt/telemetry/dds/diagnostics.h"
 #include "tools/ctl/message_text.h"
@@ -112,16 +113,10 @@ std::string RobotView::command(std::int64_t now_ns) const {
 
 std::string RobotView::recent(std::size_t part) const {
   if (times_.empty()) return "-";
-  std::vector<std::uint32_t> values;
-  for (const auto& time : times_) values.push_back(time[part]);
-  const auto quantile_us = [&](double share) {
-    const auto at = values.begin() +
-                    static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return 1e-3 * *at;
-  };
-  const double p50_us = quantile_us(0.5);
-  return fmt::format("p50 {:.1f}, p99 {:.1f}", p50_us, quantile_us(0.99));
+  std::vector<double> values_us;
+  for (const auto& time_ns : times_) values_us.push_back(1e-3 * time_ns[part]);
+  std::ranges::sort(values_us);
+  return fmt::format("p50 {:.1f}, p99 {:.1f}", quantile(values_us, 0.5), quantile(values_us, 0.99));
 }
 
 std::string RobotView::line(std::int64_t now_ns) const {

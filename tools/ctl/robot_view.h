@@ -46,8 +46,6 @@ class RobotView {
   /// Mode, faults and command in one line; "no robot" if none is alive.
   std::string line(std::int64_t now_ns) const;
 
-  std::uint64_t lost_messages() const noexcept { return lost_messages_; }
-
  private:
   std::string value(const std::string& key) const;  // of the diagnostics; "-": none
   bool has_tick(std::int64_t now_ns) const;         // not older than a second

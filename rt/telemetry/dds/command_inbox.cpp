@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/telemetry/dds/command_inbox.h"
 
+#include <fmt/format.h>
 #include <pthread.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstring>
+#include <string>
 
 #include "rt/core/mode_machine.h"
 #include "rt/telemetry/dds/ros.h"
@@ -22,6 +24,7 @@ constexpr int kVelocityDepth = 100;
 // The controller answers within a tick; one that does not in this time is not running.
 constexpr auto kAnswerTime = std::chrono::milliseconds(20);
 constexpr auto kLookEvery = std::chrono::microseconds(250);
+constexpr const char* kNoAnswer = "the controller does not answer";
 
 std::int64_t steady_ns() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -106,9 +109,9 @@ void CommandInbox::take_velocity() {
                               : *static_cast<geometry_msgs_msg_dds__Twist_*>(sample));
       const CommandVerdict verdict = gate_.judge(twist, info.publication_handle, steady_ns());
       if (verdict == CommandVerdict::kAccepted) {
-        wish_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
-        ++wish_.velocity_number;
-        operator_.wish(wish_);
+        asked_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
+        ++asked_.velocity_number;
+        operator_.ask(asked_);
       }
       ++velocities_[static_cast<std::size_t>(verdict)];
     }
@@ -131,9 +134,8 @@ void CommandInbox::take_requests() {
 }
 
 void CommandInbox::answer(std::uint64_t id, std::string_view request) {
-  const std::optional<Wish> wish = wish_from(request);
-  const char* const refusal =
-      wish ? follow(*wish) : "unknown, expected stand, walk, stop, damp or reset_fault";
+  const std::string unknown = fmt::format("unknown, expected {}", kRequestNames);
+  const char* const refusal = is_request(request) ? follow(request) : unknown.c_str();
   ++answers_[refusal ? 0 : 1];
   sandrunner_ModeReply reply{};
   reply.id = id;
@@ -143,37 +145,37 @@ void CommandInbox::answer(std::uint64_t id, std::string_view request) {
   dds_write(replies_, &reply);
 }
 
-const char* CommandInbox::follow(Wish wish) {
-  // What calms the robot waits for a controller that does not answer; until it has come, nothing
-  // but a harder stop takes its place.
+const char* CommandInbox::follow(std::string_view request) {
+  // A stop or damp waits for a controller that does not answer; until the controller has taken it,
+  // nothing but a damp replaces it.
   const bool waiting = calming_number_ > operator_.considered();
-  if (waiting && wish != Wish::kDamp) return "the controller does not answer";
-  const WishDecision decision = decide(wish, operator_.mode(), can_walk_);
+  if (waiting && request != "damp") return kNoAnswer;
+  const RequestDecision decision = decide(request, operator_.mode(), can_walk_);
   if (decision.refusal) return decision.refusal;
-  if (wish == Wish::kStop || wish == Wish::kDamp) {
-    wish_.velocity = {};
-    ++wish_.velocity_number;
+  if (decision.calms) {
+    asked_.velocity = {};
+    ++asked_.velocity_number;
   }
   if (decision.request != ModeRequest::kNone) {
-    wish_.request = decision.request;
-    ++wish_.request_number;
-    if (wish == Wish::kStop || wish == Wish::kDamp) calming_number_ = wish_.request_number;
+    asked_.request = decision.request;
+    ++asked_.request_number;
+    if (decision.calms) calming_number_ = asked_.request_number;
   }
-  operator_.wish(wish_);
+  operator_.ask(asked_);
   const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
-  while (operator_.considered() != wish_.request_number) {
+  while (operator_.considered() != asked_.request_number) {
     if (std::chrono::steady_clock::now() > deadline) {
-      // Who was told no is not to see the robot move later; what calms it still holds.
-      if (wish != Wish::kStop && wish != Wish::kDamp) {
-        wish_.request = ModeRequest::kNone;
-        ++wish_.request_number;
-        operator_.wish(wish_);
+      // An operator who was refused must not see the robot move later; a stop or damp still holds.
+      if (!decision.calms) {
+        asked_.request = ModeRequest::kNone;
+        ++asked_.request_number;
+        operator_.ask(asked_);
       }
-      return "the controller does not answer";
+      return kNoAnswer;
     }
     std::this_thread::sleep_for(kLookEvery);
   }
-  return failure(wish, operator_.mode());
+  return failure(decision.request, operator_.mode());
 }
 
 }  // namespace sandrunner

@@ -42,12 +42,12 @@ class CommandInbox {
   void take_velocity();
   void take_requests();
   void answer(std::uint64_t id, std::string_view request);
-  const char* follow(Wish wish);  // why not; null: done
+  const char* follow(std::string_view request);  // why not; null: done
 
   DdsOperator& operator_;
   const bool stamped_, can_walk_;
   CommandGate gate_;
-  OperatorWish wish_;
+  OperatorRequests asked_;
   std::uint64_t calming_number_ = 0;  // of the latest request that calms the robot
   dds_entity_t cmd_vel_, requests_, replies_, wake_, waitset_;
   std::array<std::atomic<std::uint64_t>, 4> velocities_{};  // by CommandVerdict

@@ -6,20 +6,20 @@
 namespace sandrunner {
 
 OperatorCommand DdsOperator::command(std::uint64_t tick) noexcept {
-  const OperatorWish& wish = wishes_.read();
+  const OperatorRequests& asked = asked_.read();
   const bool first = next_tick_ == 0;  // the controller's first step considers no request
-  if (wish.velocity_number != velocity_number_) {
-    velocity_number_ = wish.velocity_number;
+  if (asked.velocity_number != velocity_number_) {
+    velocity_number_ = asked.velocity_number;
     // If slots were missed, the command may have come in the first one of them.
     arrival_tick_ = first ? tick : std::min(next_tick_, tick);
-    command_.velocity = wish.velocity;
+    command_.velocity = asked.velocity;
   }
   next_tick_ = tick + 1;
   if (velocity_number_ == 0 || tick - arrival_tick_ > stale_ticks_) command_.velocity = {};
   command_.tick = arrival_tick_;
-  if (!interrupted_ && !first && wish.request_number != request_number_) {
-    request_number_ = wish.request_number;
-    command_.request = wish.request;
+  if (!interrupted_ && !first && asked.request_number != request_number_) {
+    request_number_ = asked.request_number;
+    command_.request = asked.request;
     ++command_.request_id;
   }
   return command_;

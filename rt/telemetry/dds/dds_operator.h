@@ -9,8 +9,8 @@
 
 namespace sandrunner {
 
-/// What the operators want, all told.
-struct OperatorWish {
+/// What operators ask for: the latest velocity and the latest request.
+struct OperatorRequests {
   VelocityCommand velocity;
   std::uint64_t velocity_number = 0;  ///< counts the velocity commands; 0: none yet
   ModeRequest request = ModeRequest::kNone;
@@ -31,7 +31,7 @@ class DdsOperator final : public OperatorInput {
   OperatorVerdict advance(const TickFacts& facts) noexcept override;
 
   // From one other thread:
-  void wish(const OperatorWish& wish) noexcept { wishes_.write(wish); }
+  void ask(const OperatorRequests& asked) noexcept { asked_.write(asked); }
   /// Number of the newest request that the controller has considered.
   std::uint64_t considered() const noexcept { return considered_.load(std::memory_order_acquire); }
   /// Mode of the controller, at least as new as considered().
@@ -39,7 +39,7 @@ class DdsOperator final : public OperatorInput {
 
  private:
   const std::uint64_t stale_ticks_;
-  TripleBuffer<OperatorWish> wishes_;
+  TripleBuffer<OperatorRequests> asked_;
   // Control thread:
   std::uint64_t velocity_number_ = 0, request_number_ = 0;  // latest that was seen
   std::uint64_t next_tick_ = 0;                             // the one after the last; 0: none yet

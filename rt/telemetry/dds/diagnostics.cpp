@@ -19,26 +19,35 @@ std::string histogram_text(const LogHistogram& h) {
                      us(h.quantile_ns(0.99)), us(h.quantile_ns(0.999)), us(h.max_ns()));
 }
 
-}  // namespace
-
-std::string fault_names(std::uint64_t faults) {
+/// "a, c" for the bits 0 and 2; "none".
+template <typename Name>
+std::string names_of_bits(std::uint64_t bits, int size, const Name& name) {
   std::string names;
-  for (int bit = 0; bit < kNumFaults; ++bit) {
-    const std::uint64_t fault = std::uint64_t{1} << bit;
-    if ((faults & fault) == 0) continue;
+  for (int bit = 0; bit < size; ++bit) {
+    if ((bits >> bit & 1) == 0) continue;
     if (!names.empty()) names += ", ";
-    names += fault_name(static_cast<Fault>(fault));
+    names += name(bit);
   }
   return names.empty() ? "none" : names;
 }
 
-Diagnostics::Diagnostics(const DdsParticipant& participant)
+}  // namespace
+
+std::string fault_names(std::uint64_t faults) {
+  return names_of_bits(faults, kNumFaults, [](int bit) {
+    return fault_name(static_cast<Fault>(std::uint64_t{1} << bit));
+  });
+}
+
+Diagnostics::Diagnostics(const DdsParticipant& participant, const RobotDescription& robot)
     : writer_(participant.writer("rt/diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc,
-                                 kDepth)) {}
+                                 kDepth)),
+      joint_names_(robot.joint_names) {}
 
 void Diagnostics::add(const TickRecord& tick) noexcept {
   mode_ = tick.output.mode;
   faults_ = tick.output.faults;
+  fault_joints_ = faults_ != 0 ? tick.output.fault_joints : 0;  // which outlives a reset
   tick_ = tick.input.sensors.tick;
   ++ticks_;
   skipped_ += tick.skipped;
@@ -52,21 +61,23 @@ void Diagnostics::add(const TickRecord& tick) noexcept {
 Diagnostics::Values Diagnostics::values(const CommandCounts& commands,
                                         std::uint64_t failed_writes) const {
   Values values = {{"mode", mode_name(mode_)},
-          {"faults", fault_names(faults_)},
-          {"tick", std::to_string(tick_)},
-          {"ticks_done", std::to_string(ticks_)},
-          {"slots_missed", std::to_string(skipped_)},
-          {"tick_late_us", histogram_text(late_)},
-          {"read_us", histogram_text(read_)},
-          {"control_us", histogram_text(control_)},
-          {"write_us", histogram_text(write_)},
-          {"commands_accepted", std::to_string(commands.accepted)},
-          {"commands_not_finite", std::to_string(commands.not_finite)},
-          {"commands_absurd", std::to_string(commands.absurd)},
-          {"commands_of_other_publisher", std::to_string(commands.other_publisher)},
-          {"requests_accepted", std::to_string(commands.requests_accepted)},
-          {"requests_refused", std::to_string(commands.requests_refused)},
-          {"messages_not_written", std::to_string(failed_writes)}};
+                   {"faults", fault_names(faults_)},
+                   {"fault_joints", names_of_bits(fault_joints_, kNumJoints,
+                                                  [&](int j) { return joint_names_[j]; })},
+                   {"tick", std::to_string(tick_)},
+                   {"ticks_done", std::to_string(ticks_)},
+                   {"slots_missed", std::to_string(skipped_)},
+                   {"tick_late_us", histogram_text(late_)},
+                   {"read_us", histogram_text(read_)},
+                   {"control_us", histogram_text(control_)},
+                   {"write_us", histogram_text(write_)},
+                   {"commands_accepted", std::to_string(commands.accepted)},
+                   {"commands_not_finite", std::to_string(commands.not_finite)},
+                   {"commands_absurd", std::to_string(commands.absurd)},
+                   {"commands_of_other_publisher", std::to_string(commands.other_publisher)},
+                   {"requests_accepted", std::to_string(commands.requests_accepted)},
+                   {"requests_refused", std::to_string(commands.requests_refused)},
+                   {"messages_not_written", std::to_string(failed_writes)}};
   for (const GateCounterName& counter : kGateCounters) {
     values.emplace_back(fmt::format("ticks_{}", counter.name),
                         std::to_string(counters_.*counter.ticks));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rt/core/log_histogram.h"
+#include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/command_inbox.h"
 #include "rt/telemetry/dds/participant.h"
@@ -19,8 +20,8 @@ namespace sandrunner {
 /// latched, else warning while slots were missed since the last message.
 class Diagnostics {
  public:
-  /// Throws InputError.
-  explicit Diagnostics(const DdsParticipant& participant);
+  /// `robot`: names of the joints that a fault is about. Throws InputError.
+  Diagnostics(const DdsParticipant& participant, const RobotDescription& robot);
 
   void add(const TickRecord& tick) noexcept;
   /// `stamp_ns` since 1970; `failed_writes`: of all topics so far. False: could not be written.
@@ -31,8 +32,10 @@ class Diagnostics {
   Values values(const CommandCounts& commands, std::uint64_t failed_writes) const;
 
   dds_entity_t writer_;
+  const JointArray<std::string> joint_names_;
   Mode mode_ = Mode::kPassive;
-  std::uint64_t faults_ = 0, tick_ = 0, ticks_ = 0, skipped_ = 0, skipped_before_ = 0;
+  std::uint64_t faults_ = 0, fault_joints_ = 0, tick_ = 0, ticks_ = 0, skipped_ = 0,
+                skipped_before_ = 0;
   GateCounters counters_;
   LogHistogram late_, read_, control_, write_;
 };

@@ -1,30 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <string_view>
 
 #include "rt/core/messages.h"
 
 namespace sandrunner {
 
-/// What an operator may ask for over DDS, by name.
-enum class Wish { kStand, kWalk, kStop, kDamp, kResetFault };
+/// What an operator may request over DDS, by name.
+inline constexpr const char* kRequestNames = "stand, walk, stop, damp or reset_fault";
+bool is_request(std::string_view name) noexcept;
 
-/// "stand", "walk", "stop", "damp", "reset_fault"; nothing for another text.
-std::optional<Wish> wish_from(std::string_view text) noexcept;
-
-/// What to do about a wish.
-struct WishDecision {
-  ModeRequest request = ModeRequest::kNone;  ///< to be passed on; kNone: nothing
+/// What to do about a request.
+struct RequestDecision {
+  ModeRequest request = ModeRequest::kNone;  ///< for the controller; kNone: there is nothing to do
+  bool calms = false;                        ///< it ends the motion: stop and damp
   const char* refusal = nullptr;             ///< why not; null: accepted
 };
 
-/// Decides in `mode`. Stop is the controlled stop of a walking robot and else nothing: it makes no
-/// robot stand up. `can_walk`: there is a policy.
-WishDecision decide(Wish wish, Mode mode, bool can_walk) noexcept;
+/// Decides in `mode`; `name` is one of the above. "stop" is the controlled stop of a walking robot
+/// and does nothing in other modes: it makes no robot stand up. `can_walk`: there is a policy.
+RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept;
 
-/// Why a wish that was passed on did not come true, judged by the mode after it; null: it did.
-const char* failure(Wish wish, Mode after) noexcept;
+/// Why a request had no effect, judged by the mode of the controller after it; null: it had.
+const char* failure(ModeRequest request, Mode after) noexcept;
 
 }  // namespace sandrunner

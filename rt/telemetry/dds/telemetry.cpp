@@ -11,13 +11,11 @@ constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
 }  // namespace
 
 Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-                     const std::string& robot_description, const CommandInbox* inbox,
-                     std::int64_t start_ns)
+                     const RobotDescription& robot, const CommandInbox* inbox)
     : ros_hz_(static_cast<std::uint64_t>(config.ros_hz)),
       inbox_(inbox),
-      ros_(participant, robot_description),
-      diagnostics_(participant),
-      start_ns_(start_ns) {
+      ros_(participant, robot),
+      diagnostics_(participant, robot) {
   if (config.ticks) batches_.emplace(participant);
 }
 

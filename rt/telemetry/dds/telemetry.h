@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
+#include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/command_inbox.h"
 #include "rt/telemetry/dds/diagnostics.h"
@@ -21,22 +21,20 @@ namespace sandrunner {
 class Telemetry {
  public:
   /// `participant` must outlive it; `inbox` (may be null) too: its counts are published.
-  /// `robot_description`: URDF. `start_ns`: wall clock of tick 0, ns since 1970; 0: taken at the
-  /// first add(). Throws InputError.
+  /// Throws InputError.
   Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-            const std::string& robot_description, const CommandInbox* inbox,
-            std::int64_t start_ns = 0);
+            const RobotDescription& robot, const CommandInbox* inbox);
   /// Publishes the last ticks.
   ~Telemetry();
   Telemetry(const Telemetry&) = delete;
   Telemetry& operator=(const Telemetry&) = delete;
 
-  /// `start_ns` as above. Before the first add().
+  /// `start_ns`: wall clock of tick 0, ns since 1970; without it, taken at the first add(). Before
+  /// the first add().
   void begin(std::int64_t start_ns) noexcept { start_ns_ = start_ns; }
   /// Every tick, in order.
   void add(const TickRecord& tick);
 
-  std::uint64_t batches() const noexcept { return batches_ ? batches_->count() : 0; }
   /// Messages that could not be written.
   std::uint64_t failed_writes() const noexcept { return failed_writes_; }
 
@@ -47,7 +45,7 @@ class Telemetry {
   Diagnostics diagnostics_;
   std::optional<TickBatches> batches_;
   Odometry odometry_;
-  std::int64_t start_ns_;
+  std::int64_t start_ns_ = 0;
   std::uint64_t last_tick_ = 0, failed_writes_ = 0;
 };
 

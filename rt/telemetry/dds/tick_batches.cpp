@@ -79,6 +79,4 @@ bool TickBatches::flush() {
   return written;
 }
 
-std::uint64_t TickBatches::count() const noexcept { return batch_->message.sequence_number; }
-
 }  // namespace sandrunner

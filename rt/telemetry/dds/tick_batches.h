@@ -25,8 +25,6 @@ class TickBatches {
   bool add(const TickRecord& tick, std::int64_t stamp_ns);
   /// Writes what is left, for the end. False: that failed.
   bool flush();
-  /// Messages so far.
-  std::uint64_t count() const noexcept;
 
  private:
   struct Batch;

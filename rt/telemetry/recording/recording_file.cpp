@@ -40,7 +40,7 @@ RecordingInfo info_of(const std::string& path, const McapReader& reader) {
   for (const McapAttachment& attachment : reader.attachments()) {
     if (attachment.name == kConfigAttachment) info.config = attachment.data;
     if (attachment.name == kPolicyAttachment) info.policy = attachment.data;
-    if (attachment.name == kRobotAttachment) info.robot = attachment.data;
+    if (attachment.name == kRobotAttachment) info.robot.urdf = attachment.data;
     if (attachment.name == kStateAttachment) info.state = attachment.data;
   }
   return info;
@@ -65,7 +65,8 @@ RecordingContents read_recording(const std::string& path,
     const McapChannel& channel = reader.channels().at(message->channel_id);
     if (channel.topic != kTicksTopic) continue;
     if (reader.schemas().at(channel.schema_id).data != tick_idl()) {
-      throw InputError(fmt::format("{}: its ticks are laid out otherwise than this build's", path));
+      throw InputError(fmt::format(
+          "{}: found ticks in the layout of another build, expected this build's", path));
     }
     CdrReader cdr(message->data);
     const auto batch = cdr.number<std::uint64_t>();

@@ -8,7 +8,7 @@
 
 #include "rt/core/mode_machine.h"
 #include "rt/loop/tick_fields.h"
-#include "rt/telemetry/recording/ros_messages.h"
+#include "rt/telemetry/recording/ros_cdr.h"
 
 namespace sandrunner {
 namespace {
@@ -41,7 +41,10 @@ McapMap qos() { return {{"offered_qos_profiles", ""}}; }
 }  // namespace
 
 RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& info)
-    : start_time_ns_(info.start_time_ns), file_(path), in_the_middle_(info.first_tick > 0) {
+    : start_time_ns_(info.start_time_ns),
+      robot_(info.robot),
+      file_(path),
+      in_the_middle_(info.first_tick > 0) {
   file_.write_metadata({kRunMetadata,
                         {{"build", info.build},
                          {"start_mode", info.start_mode},
@@ -58,12 +61,12 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
   };
   attach(kConfigAttachment, "application/toml", info.config);
   attach(kPolicyAttachment, "application/octet-stream", info.policy);
-  attach(kRobotAttachment, "application/xml", info.robot);
+  attach(kRobotAttachment, "application/xml", info.robot.urdf);
   attach(kStateAttachment, "application/octet-stream", info.state);
   const auto own = [&](const char* topic, const char* name, const std::string& idl) {
     return file_.add_channel(file_.add_schema(name, "omgidl", idl), topic, "cdr", qos());
   };
-  channels_.ticks = own(kTicksTopic, "sandrunner::TickBatch", tick_idl());
+  channels_.ticks = own(kTicksTopic, "sandrunner::TickRecordBatch", tick_idl());
   channels_.events = own(kEventsTopic, "sandrunner::Event", kEventIdl);
   const auto ros = [&](const RosTopic& topic) {
     return file_.add_channel(file_.add_schema(topic.schema, "ros2msg", topic.text), topic.topic,
@@ -86,12 +89,12 @@ void RecordingWriter::write(std::span<const TickRecord> ticks) {
 void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
   const std::uint64_t first = batch.front().input.sensors.tick;
   const auto message = [&](std::uint16_t channel, std::uint64_t sequence, std::uint64_t tick,
-                           const CdrWriter& cdr) {
+                           const CdrWriter& content) {
     file_.write_message({.channel_id = channel,
                          .sequence = static_cast<std::uint32_t>(sequence),
                          .log_time_ns = time_ns(tick),
                          .publish_time_ns = time_ns(tick),
-                         .data = cdr.bytes()});
+                         .data = content.bytes()});
   };
   CdrWriter ticks;
   ticks.number(++batches_).number(static_cast<std::uint32_t>(batch.size()));
@@ -105,10 +108,10 @@ void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
     if (number % kTicksPerPolicyStep != 0) continue;
     const auto now = static_cast<std::int64_t>(time_ns(number));
     const std::uint64_t sequence = number / kTicksPerPolicyStep;
-    message(channels_.joint_states, sequence, number, joint_state_message(tick, now));
-    message(channels_.imu, sequence, number, imu_message(tick, now));
-    message(channels_.odometry, sequence, number, odometry_message(odometry_, now));
-    message(channels_.transforms, sequence, number, transform_message(odometry_, now));
+    message(channels_.joint_states, sequence, number, cdr(joint_state_message(tick, robot_, now)));
+    message(channels_.imu, sequence, number, cdr(imu_message(tick, robot_, now)));
+    message(channels_.odometry, sequence, number, cdr(odometry_message(odometry_, robot_, now)));
+    message(channels_.transforms, sequence, number, cdr(transform_message(odometry_, robot_, now)));
   }
   if (first - last_flush_tick_ >= kControlHz / 2) {
     file_.flush();

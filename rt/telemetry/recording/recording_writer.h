@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
 #include "rt/telemetry/odometry.h"
@@ -18,7 +19,7 @@ struct RecordingInfo {
   std::string clock;               ///< "lockstep" or "realtime"
   std::string config;              ///< effective settings, TOML
   std::string policy;              ///< the policy file, whole; empty: none
-  std::string robot;               ///< robot description, URDF
+  RobotDescription robot;          ///< a recording that is read gives its URDF only
   std::int64_t start_time_ns = 0;  ///< of tick 0, since 1970
   /// Where the recording begins: 0 at the start of the run. Else it replays from `state`, and not
   /// at all if that is empty.
@@ -52,6 +53,7 @@ class RecordingWriter {
   std::uint64_t time_ns(std::uint64_t tick) const noexcept;
 
   const std::int64_t start_time_ns_;
+  const RobotDescription robot_;
   McapWriter file_;
   struct Channels {
     std::uint16_t ticks = 0, events = 0, joint_states = 0, imu = 0, odometry = 0, transforms = 0;

@@ -159,10 +159,10 @@ TEST(CtlProgramTest, WatchPrintsEachMessageOfEachTopicInOneLine) {
   const DdsConfig config = test_config();
   FakeRobot robot(config);
   const std::pair<const char*, const char*> kCases[] = {
-      {"rt/joint_states", "  LF_HFE 0.1"},
+      {"rt/joint_states", "  FL_thigh 0.1"},
       {"rt/imu/data", "turning 0.100 0.200 0.300 rad/s"},
       {"rt/odom", "velocity 0.000 0.000 0.000 m/s"},
-      {"rt/tf", "odom to base: "},
+      {"rt/tf", "odom to trunk: "},
       {"rt/diagnostics", "sandrunner ok: passive; mode=passive; faults=none;"},
       {"sandrunner/ticks", "mode passive  faults none  command 0.90 -0.10 0.20"}};
   for (const auto& [topic, part] : kCases) {
@@ -173,7 +173,7 @@ TEST(CtlProgramTest, WatchPrintsEachMessageOfEachTopicInOneLine) {
     EXPECT_EQ(ended.err, "");
   }
   const Ended ended = run({"watch", "rt/robot_description", "--count", "1"}, config);
-  EXPECT_EQ(ended.out, "<robot name=\"fake\"/>\n");  // came before; its line break is none here
+  EXPECT_EQ(ended.out, "<robot name=\"example\"/>\n");  // came before; its line break is none here
 }
 
 TEST(CtlProgramTest, WatchSeesEveryTickMessageInOrder) {

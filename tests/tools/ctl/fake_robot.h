@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/rt/telemetry/dds/example_tick.h"
 #include "tests/rt/telemetry/dds/support.h"
+#include "tests/rt/telemetry/example_tick.h"
 
 namespace sandrunner::ctl {
 
@@ -17,7 +17,7 @@ class FakeRobot {
  public:
   explicit FakeRobot(const DdsConfig& config)
       : setup_(config),
-        telemetry_(setup_.participant, config, "<robot\nname=\"fake\"/>", &setup_.inbox),
+        telemetry_(setup_.participant, config, example_robot(), &setup_.inbox),
         thread_([this] { publish(); }) {}
   ~FakeRobot() {
     end_ = true;

@@ -98,13 +98,13 @@ TEST(KeysFromTest, LeavesSpecialKeysOutAndLowersLetters) {
 }
 
 // Looks every `step_ns` from `from_ns` to before `to_ns`; returns the times at which it sent.
-std::vector<std::int64_t> sent(CommandPacer& pacer, const std::optional<VelocityCommand>& wish,
+std::vector<std::int64_t> sent(CommandPacer& pacer, const std::optional<VelocityCommand>& wanted,
                                std::int64_t from_ns, std::int64_t to_ns, std::int64_t step_ns) {
   std::vector<std::int64_t> times;
   for (std::int64_t t = from_ns; t < to_ns; t += step_ns) {
-    const auto command = pacer.due(wish, t);
+    const auto command = pacer.due(wanted, t);
     if (!command) continue;
-    EXPECT_EQ(command->vx_mps, wish ? wish->vx_mps : 0.0);
+    EXPECT_EQ(command->vx_mps, wanted ? wanted->vx_mps : 0.0);
     times.push_back(t);
   }
   return times;
@@ -136,18 +136,18 @@ TEST(CommandPacerTest, AtTheEndZeroAtOnceFiveTimesThenNothing) {
 
 TEST(CommandPacerTest, AfterAStallOneCommandAndNoBurst) {
   CommandPacer pacer;
-  const VelocityCommand wish{.vx_mps = 0.5};
-  sent(pacer, wish, 0, 60 * kMs, kMs);
-  const auto times = sent(pacer, wish, 1000 * kMs, 1100 * kMs, kMs);
+  const VelocityCommand wanted{.vx_mps = 0.5};
+  sent(pacer, wanted, 0, 60 * kMs, kMs);
+  const auto times = sent(pacer, wanted, 1000 * kMs, 1100 * kMs, kMs);
   EXPECT_EQ(times, (std::vector<std::int64_t>{1000 * kMs, 1050 * kMs}));
 }
 
 TEST(CommandPacerTest, SteeringAgainDuringTheZerosGoesOn) {
   CommandPacer pacer;
-  const VelocityCommand wish{.vx_mps = 0.5};
-  sent(pacer, wish, 0, 60 * kMs, kMs);
+  const VelocityCommand wanted{.vx_mps = 0.5};
+  sent(pacer, wanted, 0, 60 * kMs, kMs);
   sent(pacer, std::nullopt, 60 * kMs, 150 * kMs, kMs);
-  EXPECT_EQ(sent(pacer, wish, 150 * kMs, 250 * kMs, kMs).size(), 2u);
+  EXPECT_EQ(sent(pacer, wanted, 150 * kMs, 250 * kMs, kMs).size(), 2u);
   EXPECT_EQ(sent(pacer, std::nullopt, 250 * kMs, 2000 * kMs, kMs).size(), 5u);
 }
 

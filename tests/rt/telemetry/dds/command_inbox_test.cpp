@@ -122,9 +122,9 @@ TEST(CommandInboxTest, RepliesSayWhyNot) {
   LiveSetup setup;
   Peer peer(setup.config);
   Asker asker(peer);
-  const auto refused = [&](const char* wish, const char* reason) {
-    const sandrunner_ModeReply reply = asker.ask(wish);
-    EXPECT_FALSE(reply.accepted) << wish;
+  const auto refused = [&](const char* request, const char* reason) {
+    const sandrunner_ModeReply reply = asker.ask(request);
+    EXPECT_FALSE(reply.accepted) << request;
     EXPECT_STREQ(reply.reason, reason);
     EXPECT_STREQ(reply.mode, mode_name(setup.robot.mode()));
   };
@@ -160,15 +160,15 @@ TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
 
 TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLater) {
   const DdsConfig config = test_config();
-  for (const auto& [wish, later] :
+  for (const auto& [request, later] :
        {std::pair("stand", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
     DdsParticipant participant(config);
     DdsOperator op(config.stale_ticks());
     CommandInbox inbox(participant, config, true, op);
     Peer peer(config);
-    EXPECT_STREQ(Asker(peer).ask(wish).reason, "the controller does not answer");
+    EXPECT_STREQ(Asker(peer).ask(request).reason, "the controller does not answer");
     op.command(0);
-    EXPECT_EQ(op.command(1).request, later) << wish;  // what calms the robot still holds
+    EXPECT_EQ(op.command(1).request, later) << request;  // what calms the robot still holds
   }
 }
 
@@ -179,8 +179,8 @@ TEST(CommandInboxTest, ADampThatWaitsForTheControllerIsNotReplacedByAWalk) {
   CommandInbox inbox(participant, config, true, op);
   Peer peer(config);
   Asker asker(peer);
-  for (const char* wish : {"damp", "stand", "walk"}) {
-    EXPECT_STREQ(asker.ask(wish).reason, "the controller does not answer") << wish;
+  for (const char* request : {"damp", "stand", "walk"}) {
+    EXPECT_STREQ(asker.ask(request).reason, "the controller does not answer") << request;
   }
   op.command(0);
   EXPECT_EQ(op.command(1).request, ModeRequest::kDamp);

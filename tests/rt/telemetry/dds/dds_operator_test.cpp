@@ -23,7 +23,7 @@ TEST(DdsOperatorTest, ARobotWhoseOperatorSaysNothingStaysPassive) {
 TEST(DdsOperatorTest, AVelocityAgesInTicksFromWhenItWasFirstSeen) {
   DdsOperator op(kStale_ticks);
   op.command(99);
-  op.wish({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
+  op.ask({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
   EXPECT_EQ(op.command(100).velocity.vx_mps, 1.0);
   const OperatorCommand last = op.command(100 + kStale_ticks);
   EXPECT_EQ(last.velocity.vx_mps, 1.0);
@@ -35,12 +35,12 @@ TEST(DdsOperatorTest, AVelocityAgesInTicksFromWhenItWasFirstSeen) {
 
 TEST(DdsOperatorTest, ARequestDoesNotRefreshTheVelocity) {
   DdsOperator op(kStale_ticks);
-  OperatorWish wish{.velocity = {.vx_mps = 1.0}, .velocity_number = 1};
-  op.wish(wish);
+  OperatorRequests asked{.velocity = {.vx_mps = 1.0}, .velocity_number = 1};
+  op.ask(asked);
   op.command(0);
-  wish.request = ModeRequest::kDamp;
-  wish.request_number = 1;
-  op.wish(wish);
+  asked.request = ModeRequest::kDamp;
+  asked.request_number = 1;
+  op.ask(asked);
   const OperatorCommand command = op.command(kStale_ticks + 1);
   EXPECT_EQ(command.velocity.vx_mps, 0.0);
   EXPECT_EQ(command.request, ModeRequest::kDamp);
@@ -49,13 +49,13 @@ TEST(DdsOperatorTest, ARequestDoesNotRefreshTheVelocity) {
 TEST(DdsOperatorTest, ACommandThatCameDuringMissedSlotsIsAsOldAsTheFirstOfThem) {
   DdsOperator op(kStale_ticks);
   op.command(10);
-  op.wish({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
+  op.ask({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
   EXPECT_EQ(op.command(1000).tick, 11u);
 }
 
 TEST(DdsOperatorTest, TheControllersFirstStepGetsNoRequestAndTheNextOneDoes) {
   DdsOperator op(kStale_ticks);
-  op.wish({.velocity = {}, .request = ModeRequest::kStand, .request_number = 1});
+  op.ask({.velocity = {}, .request = ModeRequest::kStand, .request_number = 1});
   EXPECT_EQ(op.command(0).request_id, 0u);
   op.advance({.mode = Mode::kPassive});
   EXPECT_EQ(op.considered(), 0u);
@@ -69,7 +69,7 @@ TEST(DdsOperatorTest, AnInterruptDampsForHalfASecondAndTakesNoMoreRequests) {
   DdsOperator op(kStale_ticks);
   op.command(0);
   EXPECT_TRUE(op.advance({.mode = Mode::kStand, .interrupted = true}).running);
-  op.wish({.velocity = {}, .request = ModeRequest::kWalk, .request_number = 1});
+  op.ask({.velocity = {}, .request = ModeRequest::kWalk, .request_number = 1});
   const OperatorCommand command = op.command(1);
   EXPECT_EQ(command.request, ModeRequest::kDamp);
   EXPECT_EQ(command.request_id, 1u);

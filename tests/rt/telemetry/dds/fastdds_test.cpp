@@ -5,16 +5,16 @@
 #include <sstream>
 
 #include "tests/rt/telemetry/dds/child.h"
-#include "tests/rt/telemetry/dds/example_tick.h"
 #include "tests/rt/telemetry/dds/support.h"
+#include "tests/rt/telemetry/example_tick.h"
 
 namespace sandrunner {
 namespace {
 
 TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   LiveSetup setup;
-  Telemetry telemetry(setup.participant, setup.config, "<robot name=\"raibo\"/>", &setup.inbox,
-                      kExampleStart_ns);
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.inbox);
+  telemetry.begin(kExampleStart_ns);
   {
     Peer peer(setup.config);
     Asker asker(peer);
@@ -48,7 +48,7 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   const auto has = [&](const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
   };
-  has("<robot name=\"raibo\"/>");
+  has(example_robot().urdf);
   // The stamp says which tick it is; the last joint's position says the same.
   const auto at = text.find("joint_states ");
   int count = 0;
@@ -56,18 +56,19 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   ASSERT_EQ(std::sscanf(text.c_str() + at, "joint_states %d stamp %lf", &count, &stamp_s), 2);
   const double tick = (stamp_s - 1'700'000'000.9) * kControlHz;
   std::ostringstream joints;
-  joints << "frame base names 12";
+  joints << "frame trunk names 12";
   for (int j = 0; j < kNumJoints; ++j) {
     char values[100];
-    std::snprintf(values, sizeof values, " %s %.6f %d.000000 %d.000000", kJointNames[j],
-                  0.1 * j + 1e-6 * std::round(tick), 1 + j, -2 - j);
+    std::snprintf(values, sizeof values, " %s %.6f %d.000000 %d.000000",
+                  example_robot().joint_names[j].c_str(), 0.1 * j + 1e-6 * std::round(tick), 1 + j,
+                  -2 - j);
     joints << values;
   }
   has(joints.str());
   has(" wxyz 0.707107 0.000000 0.000000 0.707107 gyro 0.100 0.200 0.300 acc 0.400 0.500 9.800\n");
-  has(" frames odom base y ");
+  has(" frames odom trunk y ");
   has(" z 0.450 vx 0.800 yaw_variance 0.0000");
-  has(" odom base y ");
+  has(" odom trunk y ");
   has(" w 0.707107\n");
   has(" sandrunner level 0 message walk mode=walk faults=none ");
 }

@@ -112,10 +112,10 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
     Peer operators(config);
     Asker asker(operators);
     const dds_entity_t twist = operators.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
-    for (const char* wish : {"stand", "walk"}) {  // the process starts, and the robot stands up
+    for (const char* request : {"stand", "walk"}) {  // the process starts, and the robot stands up
       ASSERT_TRUE(wait_until([&] {
         sleep_s(0.05);
-        return asker.ask(wish).accepted;
+        return asker.ask(request).accepted;
       }));
     }
     for (int step = 0; step < 75; ++step) {

@@ -6,9 +6,11 @@
 #include <limits>
 #include <memory>
 
+#include "rt/run/dds_bridge.h"
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/dds/child.h"
 #include "tests/rt/telemetry/dds/support.h"
+#include "tests/rt/telemetry/renamed_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -43,7 +45,7 @@ class RobotCommandsTest : public testing::Test {
         participant_(config_.dds),
         op_(config_.dds.stale_ticks()),
         inbox_(participant_, config_.dds, true, op_),
-        telemetry_(participant_, config_.dds, config_.robot.description.urdf, &inbox_),
+        telemetry_(participant_, config_.dds, config_.robot.description, &inbox_),
         peer_(config_.dds) {}
 
   /// In Walk from the first tick on, for this long; `at` is called every few milliseconds.
@@ -91,7 +93,7 @@ class RobotCommandsTest : public testing::Test {
   /// How fast the robot really went.
   double speed_mps(double from_s, double to_s) const {
     return mean(from_s, to_s,
-                [](const TickRecord& tick) { return tick.simulated.truth.velocity_mps[0]; });
+                [](const TickRecord& tick) { return tick.truth.state.velocity_mps[0]; });
   }
   /// The first time from `from_s` on at which the controller was given this velocity.
   double first_s(double from_s, double vx_mps) const {
@@ -188,6 +190,40 @@ TEST_F(RobotCommandsTest, TheSecondPublisherIsRefusedUntilTheFirstIsSilent) {
   EXPECT_GT(counts.accepted, first_accepted + 60);
   EXPECT_NEAR(speed_mps(0.9, 1.5), 0.6, 0.15);
   EXPECT_NEAR(speed_mps(3.0, 4.0), -0.4, 0.15);
+}
+
+TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
+  const TemporaryFolder folder;
+  const ProcessConfig config =
+      config_of("rigid", {"robot=" + write_renamed_robot(folder),
+                          "dds.domain=" + std::to_string(test_config().domain)});
+  DdsBridge bridge(config, false);
+  Peer peer(config.dds);
+  const auto descriptions =
+      peer.reader("rt/robot_description", std_msgs_msg_dds__String__desc, true);
+  const auto joints = peer.reader("rt/joint_states", sensor_msgs_msg_dds__JointState__desc);
+  const auto transforms = peer.reader("rt/tf", tf2_msgs_msg_dds__TFMessage__desc);
+  for (std::uint64_t tick = 0; tick <= kTicksPerPolicyStep; ++tick) bridge.add(example_tick(tick));
+  EXPECT_EQ(take<std_msgs_msg_dds__String_>(
+                descriptions,
+                [&](const auto& m) { EXPECT_EQ(m.data, read_file(folder.path("example.urdf"))); }),
+            1);
+  const RobotDescription expected = example_robot();
+  EXPECT_EQ(take<sensor_msgs_msg_dds__JointState_>(
+                joints,
+                [&](const auto& m) {
+                  EXPECT_STREQ(m.header.frame_id, expected.base_link.c_str());
+                  const std::vector<std::string> names(m.name._buffer,
+                                                       m.name._buffer + m.name._length);
+                  EXPECT_TRUE(std::ranges::equal(names, expected.joint_names));
+                }),
+            1);
+  EXPECT_EQ(take<tf2_msgs_msg_dds__TFMessage_>(transforms,
+                                               [&](const auto& m) {
+                                                 EXPECT_EQ(m.transforms._buffer[0].child_frame_id,
+                                                           expected.base_link);
+                                               }),
+            1);
 }
 
 }  // namespace

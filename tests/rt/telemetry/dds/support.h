@@ -6,6 +6,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -22,6 +23,7 @@
 #include "rt/telemetry/dds/sandrunner.h"
 #include "rt/telemetry/dds/telemetry.h"
 #include "tests/rt/core/fake_robot.h"
+#include "tests/rt/telemetry/example_tick.h"
 
 namespace sandrunner {
 
@@ -126,6 +128,26 @@ inline void drive(dds_entity_t writer, double vx_mps) {
   dds_write(writer, &twist);
 }
 
+/// Publishes examples at the control loop's rate, from this tick on; returns the longest time that
+/// one add() took, in s.
+inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double duration_s) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const std::uint64_t ticks = ticks_from_s(duration_s);
+  double longest_s = 0.0;
+  for (std::uint64_t done = 0; done < ticks;) {
+    const std::chrono::duration<double> time = Clock::now() - start;
+    for (const std::uint64_t due = std::min(ticks, ticks_from_s(time.count())); done < due;
+         ++done) {
+      const auto before = Clock::now();
+      telemetry.add(example_tick(first_tick + done));
+      longest_s = std::max(longest_s, std::chrono::duration<double>(Clock::now() - before).count());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return longest_s;
+}
+
 /// A robot on 4 kHz of real time that does what a DdsOperator wants, in a thread of its own.
 class LiveRobot {
  public:
@@ -199,11 +221,11 @@ class Asker {
         requests_(peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc)) {}
 
   /// The reply; "no reply" as its reason if none came.
-  sandrunner_ModeReply ask(const std::string& wish) {
-    sandrunner_ModeRequest request{};
-    request.id = ++id_;
-    wish.copy(request.request, sizeof request.request - 1);
-    dds_write(requests_, &request);
+  sandrunner_ModeReply ask(const std::string& request) {
+    sandrunner_ModeRequest message{};
+    message.id = ++id_;
+    request.copy(message.request, sizeof message.request - 1);
+    dds_write(requests_, &message);
     sandrunner_ModeReply reply{};
     std::string("no reply").copy(reply.reason, sizeof reply.reason - 1);
     wait_until([&] {

@@ -5,8 +5,8 @@
 
 #include <map>
 
-#include "tests/rt/telemetry/dds/example_tick.h"
 #include "tests/rt/telemetry/dds/support.h"
+#include "tests/rt/telemetry/example_tick.h"
 
 namespace sandrunner {
 namespace {
@@ -15,7 +15,8 @@ namespace {
 struct Published {
   Published() : config(test_config()), participant(config), peer(config) {}
   void publish(std::uint64_t ticks) {
-    Telemetry telemetry(participant, config, "<robot/>", nullptr, kExampleStart_ns);
+    Telemetry telemetry(participant, config, example_robot(), nullptr);
+    telemetry.begin(kExampleStart_ns);
     for (std::uint64_t tick = 0; tick < ticks; ++tick) telemetry.add(example_tick(tick));
     EXPECT_EQ(telemetry.failed_writes(), 0u);
   }
@@ -24,15 +25,17 @@ struct Published {
   Peer peer;
 };
 
-TEST(TelemetryTest, JointStatesHaveNamesValuesStampsAndTheRateThatWasAskedFor) {
+TEST(TelemetryTest, JointStatesHaveTheRobotsNamesValuesStampsAndTheRateThatWasAskedFor) {
   Published setup;
   const auto reader = setup.peer.reader("rt/joint_states", sensor_msgs_msg_dds__JointState__desc);
   setup.publish(4001);
+  const RobotDescription robot = example_robot();
   int n = 0;
   const int count = take<sensor_msgs_msg_dds__JointState_>(
       reader, [&](const sensor_msgs_msg_dds__JointState_& m) {
         const std::uint64_t tick = 40 * static_cast<std::uint64_t>(++n);
         const std::int64_t stamp_ns = kExampleStart_ns + static_cast<std::int64_t>(tick) * 250'000;
+        EXPECT_STREQ(m.header.frame_id, "trunk");
         EXPECT_EQ(m.header.stamp.sec, stamp_ns / 1'000'000'000);
         EXPECT_EQ(m.header.stamp.nanosec, stamp_ns % 1'000'000'000);
         ASSERT_EQ(m.name._length, 12u);
@@ -40,7 +43,7 @@ TEST(TelemetryTest, JointStatesHaveNamesValuesStampsAndTheRateThatWasAskedFor) {
         ASSERT_EQ(m.velocity._length, 12u);
         ASSERT_EQ(m.effort._length, 12u);
         for (int j = 0; j < 12; ++j) {
-          EXPECT_STREQ(m.name._buffer[j], kJointNames[j]);
+          EXPECT_STREQ(m.name._buffer[j], robot.joint_names[j].c_str());
           EXPECT_EQ(m.position._buffer[j], 0.1 * j + 1e-6 * static_cast<double>(tick));
           EXPECT_EQ(m.velocity._buffer[j], 1.0 + j);
           EXPECT_EQ(m.effort._buffer[j], -2.0 - j);
@@ -54,7 +57,7 @@ TEST(TelemetryTest, ImuIsWhatTheSensorSaid) {
   const auto reader = setup.peer.reader("rt/imu/data", sensor_msgs_msg_dds__Imu__desc);
   setup.publish(41);
   const int count = take<sensor_msgs_msg_dds__Imu_>(reader, [](const sensor_msgs_msg_dds__Imu_& m) {
-    EXPECT_STREQ(m.header.frame_id, "base");
+    EXPECT_STREQ(m.header.frame_id, "trunk");
     EXPECT_EQ(m.orientation.w, 0.70710678118654752);
     EXPECT_EQ(m.orientation.x, 0.0);
     EXPECT_EQ(m.orientation.z, 0.70710678118654752);
@@ -74,7 +77,7 @@ TEST(TelemetryTest, OdometryAndTfIntegrateTheEstimatedVelocityInTheWorld) {
   const int count =
       take<nav_msgs_msg_dds__Odometry_>(odom, [&](const nav_msgs_msg_dds__Odometry_& m) {
         EXPECT_STREQ(m.header.frame_id, "odom");
-        EXPECT_STREQ(m.child_frame_id, "base");
+        EXPECT_STREQ(m.child_frame_id, "trunk");
         EXPECT_GT(m.pose.covariance[0], last_variance_m2);
         EXPECT_GT(m.pose.covariance[35], 0.0);
         last_variance_m2 = m.pose.covariance[0];
@@ -90,7 +93,7 @@ TEST(TelemetryTest, OdometryAndTfIntegrateTheEstimatedVelocityInTheWorld) {
   take<tf2_msgs_msg_dds__TFMessage_>(tf, [&](const tf2_msgs_msg_dds__TFMessage_& m) {
     ASSERT_EQ(m.transforms._length, 1u);
     EXPECT_STREQ(m.transforms._buffer[0].header.frame_id, "odom");
-    EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "base");
+    EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "trunk");
     tf_y_m = m.transforms._buffer[0].transform.translation.y;
     EXPECT_EQ(m.transforms._buffer[0].transform.rotation.w, 0.70710678118654752);
   });
@@ -106,7 +109,7 @@ TEST(TelemetryTest, OutsideWalkOldEstimatesDoNotMoveTheRobot) {
   }
   EXPECT_EQ(odometry.position_m(), Vector3{});
   EXPECT_EQ(odometry.velocity_mps(), Vector3{});
-  EXPECT_EQ(odometry.horizontal_variance_m2(), 0.0);
+  EXPECT_EQ(odometry.pose_covariance()[0], 0.0);
 }
 
 TEST(TelemetryTest, TheDescriptionReachesAPeerThatComesLater) {
@@ -119,22 +122,25 @@ TEST(TelemetryTest, TheDescriptionReachesAPeerThatComesLater) {
     return take<std_msgs_msg_dds__String_>(
                reader, [&](const std_msgs_msg_dds__String_& m) { text = m.data; }) > 0;
   }));
-  EXPECT_EQ(text, "<robot/>");
+  EXPECT_EQ(text, example_robot().urdf);
 }
 
-TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsAndTimes) {
+TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsTimesAndTheGatesCounters) {
   Published setup;
   const auto reader =
       setup.peer.reader("rt/diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc);
   {
-    Telemetry telemetry(setup.participant, setup.config, "", nullptr, kExampleStart_ns);
+    Telemetry telemetry(setup.participant, setup.config, example_robot(), nullptr);
     for (std::uint64_t tick = 0; tick <= 12000; ++tick) {
       TickRecord record = example_tick(tick);
       if (tick == 6000) record.skipped = 3;
+      std::uint64_t count = 100;
+      for (const GateCounterName& counter : kGateCounters) record.counters.*counter.ticks = count++;
       if (tick > 8000) {
         record.output.mode = Mode::kFault;
         record.output.faults =
             static_cast<std::uint64_t>(Fault::kTilt) | static_cast<std::uint64_t>(Fault::kImuStale);
+        record.output.fault_joints = 1u << 0 | 1u << 11;
       }
       telemetry.add(record);
     }
@@ -153,9 +159,14 @@ TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsAndTimes) {
   EXPECT_EQ(levels, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(values["mode"], "fault");
   EXPECT_EQ(values["faults"], "imu_stale, tilt");
+  EXPECT_EQ(values["fault_joints"], "FL_hip, RR_calf");
   EXPECT_EQ(values["tick"], "12000");
   EXPECT_EQ(values["slots_missed"], "3");
   EXPECT_EQ(values["tick_late_us"], "p50 2.0, p99 2.0, p99.9 2.0, max 2.0");
+  std::uint64_t count = 100;
+  for (const GateCounterName& counter : kGateCounters) {
+    EXPECT_EQ(values["ticks_" + std::string(counter.name)], std::to_string(count++));
+  }
 }
 
 TEST(TelemetryTest, EveryTickIsInTheBatchesOnceAndInOrder) {

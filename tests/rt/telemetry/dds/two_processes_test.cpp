@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "tests/rt/telemetry/dds/child.h"
-#include "tests/rt/telemetry/dds/example_tick.h"
 #include "tests/rt/telemetry/dds/support.h"
+#include "tests/rt/telemetry/example_tick.h"
 
 namespace sandrunner {
 namespace {
@@ -34,7 +34,7 @@ TEST(TwoProcessesTest, APublisherThatIsKilledLosesTheCommandAfterTheStaleTime) {
 TEST(TwoProcessesTest, AStoppedSubscriberHoldsUpNobodyAndALiveOneMissesNothing) {
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
-  Telemetry telemetry(participant, config, "", nullptr, kExampleStart_ns);
+  Telemetry telemetry(participant, config, example_robot(), nullptr);
   Child live(peer_command(config, {"watch", "6"}));
   Child stopped(peer_command(config, {"watch", "60"}));
   publish_for(telemetry, 0, 1.0);
@@ -137,7 +137,7 @@ TEST_F(SecurityTest, AViewerMayNotCommandButSeesTheTelemetry) {
   DdsConfig config = test_config();
   config.security_dir = folder("ours");
   DdsParticipant participant(config);
-  Telemetry telemetry(participant, config, "", nullptr, kExampleStart_ns);
+  Telemetry telemetry(participant, config, example_robot(), nullptr);
   Child viewer(peer_command(config, {"watch", "2", folder("ours"), "viewer"}));
   publish_for(telemetry, 0, 2.0);
   EXPECT_GT(viewer.number("batches"), 50);

@@ -11,7 +11,7 @@ const bytes = new Uint8Array(fs.readFileSync(path));
 // Topic, schema and number of messages of it; an event: at least that the robot walks.
 const batches = Math.ceil(ticks / 40);
 const expectedTopics = {
-  "/sandrunner/ticks": ["sandrunner::TickBatch", "omgidl", batches],
+  "/sandrunner/ticks": ["sandrunner::TickRecordBatch", "omgidl", batches],
   "/sandrunner/events": ["sandrunner::Event", "omgidl", undefined],
   "/joint_states": ["sensor_msgs/msg/JointState", "ros2msg", batches],
   "/imu/data": ["sensor_msgs/msg/Imu", "ros2msg", batches],
@@ -21,7 +21,7 @@ const expectedTopics = {
 
 // 64-bit words of a tick by the schema that the file brings along.
 function wordsOfTick(idl) {
-  const fields = idl.split("struct Tick {")[1].split("}")[0].trim().split("\n");
+  const fields = idl.split("struct TickRecord {")[1].split("}")[0].trim().split("\n");
   return fields.reduce((sum, field) => {
     const match = /^\s*(?:double|(?:unsigned )?long long) \w+(?:\[(\d+)\])?;$/.exec(field);
     assert.ok(match, field);

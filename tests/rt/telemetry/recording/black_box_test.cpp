@@ -31,7 +31,7 @@ class BlackBoxTest : public RecordingProgramTest {
     info_.clock = "lockstep";
     info_.config = config_.effective;
     info_.policy = shipped_policy_text();
-    info_.robot = config_.robot.description.urdf;
+    info_.robot = config_.robot.description;
     info_.start_time_ns = 1'700'000'000'000'000'000;
     command_.velocity.vx_mps = 1.0;
   }
@@ -50,11 +50,10 @@ class BlackBoxTest : public RecordingProgramTest {
       if (faults.contains(tick))
         command.velocity.wz_radps = std::numeric_limits<double>::quiet_NaN();
       TickRecord record;
-      note_before(simulator_, record);
       loop_.tick(command);
       record.input = loop_.input();
       record.output = loop_.output();
-      note_after(simulator_, record);
+      record.has_truth = simulator_.truth(record.truth) ? 1 : 0;
       if (tick >= lost_.first && tick < lost_.second) continue;
       box_->add(record);
     }

@@ -9,7 +9,9 @@
 #include "rt/telemetry/recording/cdr.h"
 #include "rt/telemetry/recording/recording_file.h"
 #include "tests/rt/support.h"
+#include "tests/rt/telemetry/example_tick.h"
 #include "tests/rt/telemetry/recording/recording_program.h"
+#include "tests/rt/telemetry/renamed_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -40,7 +42,7 @@ TEST_F(RecordingTest, HoldsEveryTickAndReplaysBitForBit) {
   EXPECT_EQ(contents.info.clock, "lockstep");
   EXPECT_EQ(contents.info.start_mode, "walk");
   EXPECT_NE(contents.info.config.find("sim"), std::string::npos);
-  EXPECT_NE(contents.info.robot.find("<robot"), std::string::npos);
+  EXPECT_NE(contents.info.robot.urdf.find("<robot"), std::string::npos);
   EXPECT_EQ(contents.info.policy, shipped_policy_text());
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0);
   EXPECT_EQ(output(), "2000 ticks and 50 policy steps compared: every bit agrees\n");
@@ -62,6 +64,25 @@ TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
   const std::string without = hash();
   run(SANDRUNNER_PROGRAM, walk + "--record '" + folder_.path("") + "'");
   EXPECT_EQ(hash(), without);
+}
+
+TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
+  const TemporaryFolder robot;
+  record("--set robot=" + write_renamed_robot(robot));
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
+  McapReader reader(path());
+  const McapMessage* message = nullptr;
+  std::map<std::string, std::string> content;  // by topic
+  while ((message = reader.next())) {
+    content[reader.channels().at(message->channel_id).topic] = {
+        reinterpret_cast<const char*>(message->data.data()), message->data.size()};
+  }
+  EXPECT_EQ(reader.attachments().back().data, read_file(robot.path("example.urdf")));
+  const RobotDescription expected = example_robot();
+  for (const std::string& name : expected.joint_names) {
+    EXPECT_NE(content["/joint_states"].find(name + '\0'), std::string::npos) << name;
+  }
+  EXPECT_NE(content["/tf"].find(expected.base_link), std::string::npos);
 }
 
 TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
@@ -199,6 +220,28 @@ TEST_F(RecordingTest, FoxgloveLayoutShowsWhatExists) {
     ++shown;
   }
   EXPECT_GE(shown, 12);
+}
+
+TEST_F(RecordingTest, TicksInAnotherLayoutAreRefusedInOneLine) {
+  {
+    McapWriter writer(path());
+    writer.write_metadata({kRunMetadata,
+                           {{"build", "another"},
+                            {"start_mode", "walk"},
+                            {"clock", "lockstep"},
+                            {"start_time_ns", "0"}}});
+    const std::uint16_t schema =
+        writer.add_schema("sandrunner::TickBatch", "omgidl", "module sandrunner {};");
+    writer.write_message({.channel_id = writer.add_channel(schema, kTicksTopic, "cdr", {}),
+                          .sequence = 1,
+                          .log_time_ns = 0,
+                          .publish_time_ns = 0,
+                          .data = CdrWriter().bytes()});
+    writer.close();
+  }
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 2);
+  EXPECT_EQ(output(), "sandrunner-replay: " + path() +
+                          ": found ticks in the layout of another build, expected this build's\n");
 }
 
 TEST_F(RecordingTest, FileThatIsNoRecordingIsBadInput) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// node check_rtps.mjs DDS_PEER: lets DDS_PEER publish the telemetry of ../example_tick.h, receives it with @foxglove/rtps,
+// node check_rtps.mjs DDS_PEER: lets DDS_PEER publish the telemetry of ../../example_tick.h, receives it with @foxglove/rtps,
 // a third implementation of the wire protocol, and decodes it with the message definitions of ROS 2 Humble.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -36,13 +36,13 @@ function withParts(name) {
   return [...all].map(([type, d]) => ({ name: type === name ? undefined : type, definitions: d.definitions }));
 }
 
-const joints = ["LF", "RF", "LH", "RH"].flatMap((leg) => ["HAA", "HFE", "KFE"].map((j) => `${leg}_${j}`));
+const joints = ["FL", "FR", "RL", "RR"].flatMap((leg) => ["hip", "thigh", "calf"].map((j) => `${leg}_${j}`));
 const near = (a, b, what) => assert.ok(Math.abs(a - b) < 1e-9, `${what}: found ${a}, expected ${b}`);
 const half = Math.SQRT1_2;
 const checks = {
   "rt/joint_states": ["sensor_msgs/JointState", (m) => {
     assert.deepEqual(m.name, joints);
-    assert.equal(m.header.frame_id, "base");
+    assert.equal(m.header.frame_id, "trunk");
     const first = m.position[0];
     assert.ok(first > 0.0);
     joints.forEach((_, j) => {
@@ -60,7 +60,7 @@ const checks = {
   }],
   "rt/odom": ["nav_msgs/Odometry", (m) => {
     assert.equal(m.header.frame_id, "odom");
-    assert.equal(m.child_frame_id, "base");
+    assert.equal(m.child_frame_id, "trunk");
     assert.ok(m.pose.pose.position.y > 0.0);
     assert.ok(m.pose.covariance[35] > 0.0);
     near(m.pose.pose.position.z, 0.45, "z");
@@ -70,7 +70,7 @@ const checks = {
   }],
   "rt/tf": ["tf2_msgs/TFMessage", (m) => {
     assert.equal(m.transforms.length, 1);
-    assert.equal(m.transforms[0].child_frame_id, "base");
+    assert.equal(m.transforms[0].child_frame_id, "trunk");
     near(m.transforms[0].transform.rotation.z, half, "z");
   }],
   "rt/diagnostics": ["diagnostic_msgs/DiagnosticArray", (m) => {
@@ -79,7 +79,7 @@ const checks = {
     assert.equal(m.status[0].level, 0);
     assert.deepEqual(m.status[0].values[0], { key: "mode", value: "walk" });
   }],
-  "rt/robot_description": ["std_msgs/String", (m) => assert.equal(m.data, "<robot/>")],
+  "rt/robot_description": ["std_msgs/String", (m) => assert.match(m.data, /^<robot\nname="example"/)],
 };
 
 const participant = new rtps.Participant({

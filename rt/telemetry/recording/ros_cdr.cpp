@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/recording/ros_messages.h"
+#include "rt/telemetry/recording/ros_cdr.h"
 
 #include <array>
 #include <vector>
@@ -22,15 +22,22 @@ constexpr const char* kHeader = "builtin_interfaces/Time stamp\nstring frame_id\
 constexpr const char* kVector3 = "float64 x\nfloat64 y\nfloat64 z\n";
 constexpr const char* kQuaternion = "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
 
-void header(CdrWriter& out, std::int64_t time_ns, const char* frame) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  out.number(static_cast<std::int32_t>(time_ns / kSecond));
-  out.number(static_cast<std::uint32_t>(time_ns % kSecond));
-  out.text(frame);
+void put(CdrWriter& out, const RosHeader& header) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  out.number(static_cast<std::int32_t>(header.stamp_ns / kSecond_ns));
+  out.number(static_cast<std::uint32_t>(header.stamp_ns % kSecond_ns));
+  out.text(header.frame);
 }
 
-void quaternion(CdrWriter& out, const std::array<double, 4>& wxyz) {
+void put_quaternion(CdrWriter& out, const std::array<double, 4>& wxyz) {
   out.number(wxyz[1]).number(wxyz[2]).number(wxyz[3]).number(wxyz[0]);
+}
+
+/// A TransformStamped; the head of an Odometry has the same layout.
+void put(CdrWriter& out, const TransformMessage& message) {
+  put(out, message.header);
+  out.text(message.child_frame).numbers(message.translation);
+  put_quaternion(out, message.rotation_wxyz);
 }
 
 }  // namespace
@@ -84,46 +91,38 @@ RosTopic transform_topic() {
                       {"geometry_msgs/Quaternion", kQuaternion}})};
 }
 
-CdrWriter joint_state_message(const TickRecord& tick, std::int64_t time_ns) {
-  const JointState& joints = tick.input.sensors.joints;
+CdrWriter cdr(const JointStateMessage& message) {
   CdrWriter out;
-  header(out, time_ns, kBaseFrame);
+  put(out, message.header);
   out.number(std::uint32_t{kNumJoints});
-  for (const char* name : kJointNames) out.text(name);
-  out.sequence(joints.position_rad).sequence(joints.velocity_radps).sequence(joints.torque_nm);
+  for (const std::string& name : message.names) out.text(name);
+  out.sequence(message.position).sequence(message.velocity).sequence(message.effort);
   return out;
 }
 
-CdrWriter imu_message(const TickRecord& tick, std::int64_t time_ns) {
-  const ImuSample& imu = tick.input.sensors.imu;
+CdrWriter cdr(const ImuMessage& message) {
   constexpr std::array<double, 9> kUnknown{};
   CdrWriter out;
-  header(out, time_ns, kBaseFrame);
-  quaternion(out, imu.orientation_wxyz);
-  out.numbers(kUnknown).numbers(imu.angular_velocity_radps).numbers(kUnknown);
-  out.numbers(imu.linear_acceleration_mps2).numbers(kUnknown);
+  put(out, message.header);
+  put_quaternion(out, message.orientation_wxyz);
+  out.numbers(kUnknown).numbers(message.angular_velocity).numbers(kUnknown);
+  out.numbers(message.linear_acceleration).numbers(kUnknown);
   return out;
 }
 
-CdrWriter odometry_message(const Odometry& odometry, std::int64_t time_ns) {
+CdrWriter cdr(const OdometryMessage& message) {
   CdrWriter out;
-  header(out, time_ns, kOdomFrame);
-  out.text(kBaseFrame);
-  out.numbers(odometry.position_m());
-  quaternion(out, odometry.orientation_wxyz());
-  out.numbers(odometry.pose_covariance());
-  out.numbers(odometry.velocity_mps()).numbers(odometry.angular_velocity_radps());
-  out.numbers(odometry.twist_covariance());
+  put(out, message.pose);
+  out.numbers(message.pose_covariance);
+  out.numbers(message.linear_velocity).numbers(message.angular_velocity);
+  out.numbers(message.twist_covariance);
   return out;
 }
 
-CdrWriter transform_message(const Odometry& odometry, std::int64_t time_ns) {
+CdrWriter cdr(const TransformMessage& message) {
   CdrWriter out;
   out.number(std::uint32_t{1});
-  header(out, time_ns, kOdomFrame);
-  out.text(kBaseFrame);
-  out.numbers(odometry.position_m());
-  quaternion(out, odometry.orientation_wxyz());
+  put(out, message);
   return out;
 }
 

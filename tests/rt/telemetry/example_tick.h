@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-#include <thread>
+#include <cstdint>
 
+#include "rt/core/robot_description.h"
 #include "rt/core/safety_gate.h"
 #include "rt/loop/tick_record.h"
-#include "rt/telemetry/dds/telemetry.h"
 
 namespace sandrunner {
+
+/// A robot with names of its own.
+inline RobotDescription example_robot() {
+  return {.name = "example",
+          .base_link = "trunk",
+          .leg_names = {"FL", "FR", "RL", "RR"},
+          .joint_names = {"FL_hip", "FL_thigh", "FL_calf", "FR_hip", "FR_thigh", "FR_calf",
+                          "RL_hip", "RL_thigh", "RL_calf", "RR_hip", "RR_thigh", "RR_calf"},
+          .urdf = "<robot\nname=\"example\"/>"};
+}
 
 inline constexpr std::int64_t kExampleStart_ns = 1'700'000'000'900'000'000;
 
@@ -44,26 +52,6 @@ inline TickRecord example_tick(std::uint64_t tick) {
   r.output.policy_input.command = {.vx_mps = 0.9, .vy_mps = -0.1, .wz_radps = 0.2};
   r.timing = {.late_ns = 2000, .read_ns = 3000, .control_ns = 4000, .write_ns = 5000};
   return r;
-}
-
-/// Publishes examples at the control loop's rate, from this tick on; returns the longest time that
-/// one add() took, in s.
-inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double duration_s) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  const std::uint64_t ticks = ticks_from_s(duration_s);
-  double longest_s = 0.0;
-  for (std::uint64_t done = 0; done < ticks;) {
-    const std::chrono::duration<double> time = Clock::now() - start;
-    for (const std::uint64_t due = std::min(ticks, ticks_from_s(time.count())); done < due;
-         ++done) {
-      const auto before = Clock::now();
-      telemetry.add(example_tick(first_tick + done));
-      longest_s = std::max(longest_s, std::chrono::duration<double>(Clock::now() - before).count());
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return longest_s;
 }
 
 }  // namespace sandrunner

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ROS 2 messages of a recording: schema texts and contents.
+// The ROS 2 messages of a recording as bytes, and the texts of their schemas.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
-#include "rt/loop/tick_record.h"
-#include "rt/telemetry/odometry.h"
 #include "rt/telemetry/recording/cdr.h"
+#include "rt/telemetry/ros_messages.h"
 
 namespace sandrunner {
 
@@ -23,10 +21,10 @@ RosTopic imu_topic();
 RosTopic odometry_topic();
 RosTopic transform_topic();
 
-// Contents at a tick; `time_ns` since 1970.
-CdrWriter joint_state_message(const TickRecord& tick, std::int64_t time_ns);
-CdrWriter imu_message(const TickRecord& tick, std::int64_t time_ns);
-CdrWriter odometry_message(const Odometry& odometry, std::int64_t time_ns);
-CdrWriter transform_message(const Odometry& odometry, std::int64_t time_ns);
+CdrWriter cdr(const JointStateMessage& message);
+CdrWriter cdr(const ImuMessage& message);
+CdrWriter cdr(const OdometryMessage& message);
+/// As the only one of a tf2_msgs/TFMessage.
+CdrWriter cdr(const TransformMessage& message);
 
 }  // namespace sandrunner

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the robot's ROS 2 messages contain, whoever serialises them: recordings
+// (recording/ros_cdr.h) and DDS (dds/ros_publisher.h). Stamps are in ns since 1970, not negative.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "rt/core/robot_description.h"
+#include "rt/loop/tick_record.h"
+#include "rt/telemetry/odometry.h"
+
+namespace sandrunner {
+
+/// Frame in which the odometry starts at the origin.
+inline constexpr const char* kOdometryFrame = "odom";
+
+/// std_msgs/Header.
+struct RosHeader {
+  std::int64_t stamp_ns = 0;
+  std::string frame;
+};
+
+/// sensor_msgs/JointState: rad, rad/s, Nm.
+struct JointStateMessage {
+  RosHeader header;
+  JointArray<std::string> names;
+  JointArray<double> position, velocity, effort;
+};
+
+/// sensor_msgs/Imu, body frame. Its covariances are all zero, which in ROS means: not known.
+struct ImuMessage {
+  RosHeader header;
+  std::array<double, 4> orientation_wxyz;
+  Vector3 angular_velocity, linear_acceleration;
+};
+
+/// geometry_msgs/TransformStamped: where the child frame is in the header's.
+struct TransformMessage {
+  RosHeader header;
+  std::string child_frame;
+  Vector3 translation;
+  std::array<double, 4> rotation_wxyz;
+};
+
+/// nav_msgs/Odometry: the pose as in the transform, the twist in the child frame.
+struct OdometryMessage {
+  TransformMessage pose;
+  std::array<double, 36> pose_covariance;
+  Vector3 linear_velocity, angular_velocity;
+  std::array<double, 36> twist_covariance;
+};
+
+JointStateMessage joint_state_message(const TickRecord& tick, const RobotDescription& robot,
+                                      std::int64_t stamp_ns);
+ImuMessage imu_message(const TickRecord& tick, const RobotDescription& robot,
+                       std::int64_t stamp_ns);
+/// The base link in the frame "odom".
+TransformMessage transform_message(const Odometry& odometry, const RobotDescription& robot,
+                                   std::int64_t stamp_ns);
+OdometryMessage odometry_message(const Odometry& odometry, const RobotDescription& robot,
+                                 std::int64_t stamp_ns);
+
+}  // namespace sandrunner
