@@ -3,14 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <limits>
 
-#include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 #include "rt/core/mode_machine.h"
 
 namespace sandrunner {
@@ -78,26 +74,15 @@ std::vector<std::string> csv_columns(const RunScene& scene) {
 }
 
 void write_csv(const RunRecord& record, const std::string& path) {
-  const std::string part = path + ".part";
-  errno = 0;
-  std::ofstream file(part, std::ios::binary);
-  file << fmt::format("{}\n", fmt::join(csv_columns(record.scene), ","));
-  std::string row;
+  std::string text = fmt::format("{}\n", fmt::join(csv_columns(record.scene), ","));
   for (const RunSample& sample : record.samples) {
-    row.clear();
-    fmt::format_to(std::back_inserter(row), "{:.9g},{}", sample.t_s, mode_name(sample.mode));
+    fmt::format_to(std::back_inserter(text), "{:.9g},{}", sample.t_s, mode_name(sample.mode));
     for_each_column(sample, record.scene, [&](const std::string&, double value) {
-      fmt::format_to(std::back_inserter(row), ",{:.9g}", value);
+      fmt::format_to(std::back_inserter(text), ",{:.9g}", value);
     });
-    file << row << '\n';
+    text += '\n';
   }
-  file.close();
-  if (!file || std::rename(part.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
-    std::remove(part.c_str());
-    throw InputError(
-        fmt::format("{}: cannot be written ({}), expected a path for a CSV", path, reason));
-  }
+  write_file(path, text);
 }
 
 }  // namespace sandrunner

@@ -86,7 +86,7 @@ void Progress::write(const std::string& dir) const {
     }
     csv += "\n";
   }
-  write_text(csv, dir + "/curve.csv");
+  write_file(dir + "/curve.csv", csv);
   if (rows_.size() < 2) return;
 
   plot::Figure figure;
