@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
