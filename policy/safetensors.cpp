@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "policy/safetensors.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -17,6 +15,7 @@
 #include <utility>
 
 #include "policy/text.h"
+#include "rt/base/output_files.h"
 
 namespace sandrunner {
 namespace {
@@ -26,10 +25,6 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 using Json = nlohmann::json;
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;  // a policy has half a megabyte
-
-[[noreturn]] void fail_with_errno(const std::string& path, const char* what) {
-  fail_file(path, "{}: {}", what, std::generic_category().message(errno));
-}
 
 /// Parses the header; a key that occurs twice in one object is an error.
 Json parse_header(const std::string& path, std::string_view text) {
@@ -128,52 +123,6 @@ std::map<std::string, std::string> read_metadata(const std::string& path, const 
   return metadata;
 }
 
-/// File that vanishes unless it is renamed to its final name.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& target)
-      : target_(target), path_(target + ".partial-" + std::to_string(::getpid())) {
-    std::error_code error;
-    const auto status = std::filesystem::status(target, error);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-      fail_file(target, "cannot be written: exists and is not a regular file");
-    }
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) fail_with_errno(target, "cannot be written");
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!kept_) ::unlink(path_.c_str());
-  }
-
-  void write(const char* bytes, std::size_t size) {
-    while (size > 0) {
-      const ssize_t written = ::write(descriptor_, bytes, size);
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail_with_errno(target_, "cannot be written");
-      bytes += written;
-      size -= static_cast<std::size_t>(written);
-    }
-  }
-
-  void keep() {
-    if (::fsync(descriptor_) != 0) fail_with_errno(target_, "cannot be written");
-    const int closed = ::close(std::exchange(descriptor_, -1));
-    if (closed != 0 || ::rename(path_.c_str(), target_.c_str()) != 0) {
-      fail_with_errno(target_, "cannot be written");
-    }
-    kept_ = true;
-  }
-
- private:
-  std::string target_;
-  std::string path_;
-  int descriptor_ = -1;
-  bool kept_ = false;
-};
-
 }  // namespace
 
 std::string read_safetensors_bytes(const std::string& path) {
@@ -188,7 +137,7 @@ std::string read_safetensors_bytes(const std::string& path) {
   }
   std::string bytes(size, '\0');
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) fail_with_errno(path, "cannot be read");
+  if (!stream) fail_file(path, "cannot be read: {}", std::generic_category().message(errno));
   stream.read(bytes.data(), static_cast<std::streamsize>(size));
   if (stream.gcount() != static_cast<std::streamsize>(size))
     fail_file(path, "changed while it was read");
@@ -263,13 +212,13 @@ void write_safetensors(const std::string& path, const TensorFile& file) {
   }
   text.resize((text.size() + 7) / 8 * 8, ' ');  // the data are aligned
 
-  TemporaryFile output(path);
+  WholeFile output(path);
   const std::uint64_t header_bytes = text.size();
-  output.write(reinterpret_cast<const char*>(&header_bytes), sizeof(header_bytes));
-  output.write(text.data(), text.size());
+  output.write({reinterpret_cast<const char*>(&header_bytes), sizeof(header_bytes)});
+  output.write(text);
   for (const auto& [name, tensor] : file.tensors) {
-    output.write(reinterpret_cast<const char*>(tensor.values.data()),
-                 sizeof(float) * tensor.values.size());
+    output.write({reinterpret_cast<const char*>(tensor.values.data()),
+                  sizeof(float) * tensor.values.size()});
   }
   output.keep();
 }

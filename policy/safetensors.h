@@ -35,8 +35,8 @@ std::string read_safetensors_bytes(const std::string& path);
 /// The same from memory; `name` stands for the file in errors.
 TensorFile parse_safetensors(std::string_view bytes, const std::string& name);
 
-/// Writes a temporary file beside `path` and renames it, so that `path` is whole or untouched.
-/// Throws InputError if the target cannot be written or a tensor is malformed.
+/// Afterwards the file is whole, or as it was and InputError is thrown: it cannot be written, or a
+/// tensor is malformed.
 void write_safetensors(const std::string& path, const TensorFile& file);
 
 }  // namespace sandrunner

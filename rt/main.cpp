@@ -53,8 +53,8 @@ std::string recording_line(const RecordingResult& r, const std::string& dir) {
 std::string write_results(const RunResult& result, const RunInfo& info,
                           const std::string& effective, const std::string& folder) {
   const std::string dir = folder + "/";
-  write_text(summary_json(result, info), dir + "summary.json");
-  write_text(effective, dir + "config.toml");
+  write_file(dir + "summary.json", summary_json(result, info));
+  write_file(dir + "config.toml", effective);
   write_csv(result.record, dir + "run.csv");
   draw_run_plot(result.record, dir + "run.png");
   std::string line =

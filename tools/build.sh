@@ -1,18 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing and builds everything in release, into build/release. Says what it does on stderr; says
+# tools/build.sh [sandrunner]: installs what is missing and builds everything, or the program sandrunner alone, which
+# needs half the packages and a fifth of the time, in release, into build/release. Says what it does on stderr; says
 # nothing if nothing is to be done.
 set -euo pipefail
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/release
-bash "$root/tools/install_packages.sh"
+what=${1:-all}
+bash "$root/tools/install_packages.sh" "$what"
 
-# Configured, and for this very folder (a copied tree brings the build of its original along)?
-if [[ ! -f $build/build.ninja ]] ||
-  ! grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
-  (cd "$root" && cmake --fresh --preset release) >&2
+# Configured for this very folder (a copied tree brings the build of its original along), and for all that is asked for?
+cached() { grep -qsxF "$1" "$build/CMakeCache.txt"; }
+configure=(cmake --preset release)
+[[ $what == all ]] || configure+=(-D SANDRUNNER_ALL=OFF)
+if [[ ! -f $build/build.ninja ]] || ! cached "CMAKE_HOME_DIRECTORY:INTERNAL=$root"; then
+  (cd "$root" && "${configure[@]}" --fresh) >&2
+elif [[ $what == all ]] && ! cached SANDRUNNER_ALL:BOOL=ON; then
+  (cd "$root" && "${configure[@]}") >&2
 fi
-if [[ $(ninja -C "$build" -n) != *"no work to do"* ]]; then
-  cmake --build "$build" >&2
+if [[ $(ninja -C "$build" -n "$what") != *"no work to do"* ]]; then
+  cmake --build "$build" --target "$what" >&2
 fi

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs the Debian packages that the build, the programs and the tests need and that are missing. If none is
-# missing it only asks dpkg: no network, no rights, a fraction of a second.
+# tools/install_packages.sh [sandrunner]: installs the Debian packages that are missing of those that everything needs,
+# or the program sandrunner alone. If none is missing it only asks dpkg: no network, no rights, a fraction of a second.
 set -euo pipefail
 
 packages=(
-  # tools; fonts-dejavu-core is what the pictures are lettered with
+  # fonts-dejavu-core is what the pictures are lettered with
   g++ cmake ninja-build pkg-config git fonts-dejavu-core
-  # libraries of the programs
-  libeigen3-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libzstd-dev zlib1g-dev
-  # libraries of tests and benches
-  libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy
+)
+# Trainer, benches and tests. The last line is a DDS peer that is not ours, and what generates its code.
+[[ ${1:-all} == sandrunner ]] || packages+=(
+  libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
 

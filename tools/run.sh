@@ -5,5 +5,5 @@
 set -euo pipefail
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
-bash "$root/tools/build.sh"
+bash "$root/tools/build.sh" sandrunner
 exec "$root/build/release/bin/sandrunner" "$@"

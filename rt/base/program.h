@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every program of the project does alike: read its command line, report errors, exit.
+// What every program of the project does alike: report errors, exit.
 #pragma once
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -13,20 +12,6 @@
 #include "rt/base/standard_error.h"
 
 namespace sandrunner {
-
-/// Reads the command line. False: --help or --version was asked for and answered. Throws
-/// InputError.
-inline bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {
-    app.exit(done);
-    return false;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
-  }
-  return true;
-}
 
 /// Runs `body`, which returns the exit code, as the whole of a program: an error becomes one line
 /// that begins with the program's name, and an exit code; so does an output that nobody takes.

@@ -7,12 +7,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // Fontconfig keeps its configuration until the process ends, behind pointers that the leak check
@@ -238,19 +238,16 @@ void Canvas::text(double x_px, double y_px, const std::string& text, double size
 }
 
 void Canvas::save_png(const std::string& path) const {
-  const std::string part = path + ".part";
+  WholeFile file(path);
   cairo_status_t status = cairo_status(cairo());
   if (status == CAIRO_STATUS_SUCCESS) {
-    status = cairo_surface_write_to_png(surface_.get(), part.c_str());
-  }
-  if (status == CAIRO_STATUS_SUCCESS && std::rename(part.c_str(), path.c_str()) != 0) {
-    status = CAIRO_STATUS_WRITE_ERROR;
+    status = cairo_surface_write_to_png(surface_.get(), file.part_path().c_str());
   }
   if (status != CAIRO_STATUS_SUCCESS) {
-    std::remove(part.c_str());
-    throw InputError(fmt::format("{}: cannot be written ({}), expected a path for a PNG", path,
-                                 cairo_status_to_string(status)));
+    throw InputError(
+        fmt::format("{}: cannot be written ({})", path, cairo_status_to_string(status)));
   }
+  file.keep();
 }
 
 std::vector<double> ticks(double begin, double end, int most) {

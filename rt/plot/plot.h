@@ -30,8 +30,7 @@ class Canvas {
   void text(double x_px, double y_px, const std::string& text, double size_px, double anchor,
             const Color& color = kInk, bool bold = false) const;
   double text_width(const std::string& text, double size_px, bool bold = false) const;
-  /// Writes a file beside `path` and renames it, so that no half picture is left; InputError if it
-  /// cannot.
+  /// The file is whole or not there; InputError if it cannot be written.
   void save_png(const std::string& path) const;
 
  private:

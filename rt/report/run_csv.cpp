@@ -3,27 +3,22 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <functional>
 #include <limits>
 
-#include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 #include "rt/core/mode_machine.h"
 
 namespace sandrunner {
 namespace {
 
 /// Calls `column(name, value)` for every column of a sample: names and values cannot part.
-template <typename Column>
-void for_each_column(const RunSample& s, const RunScene& scene, const Column& add) {
+void for_each_column(const RunSample& s, const RunScene& scene,
+                     const std::function<void(const std::string&, double)>& column) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  const auto column = [&](std::string name, double value) { add(std::move(name), value); };
   // What only the truth tells.
-  const auto truth = [&](std::string name, double value) {
-    add(std::move(name), s.has_truth ? value : kUnknown);
+  const auto truth = [&](const std::string& name, double value) {
+    column(name, s.has_truth ? value : kUnknown);
   };
   const auto vector = [&](const std::string& name, const std::string& unit, const Vector3& v) {
     for (std::size_t i = 0; i < 3; ++i) truth(name + "_" + "xyz"[i] + unit, v[i]);
@@ -73,31 +68,20 @@ void for_each_column(const RunSample& s, const RunScene& scene, const Column& ad
 std::vector<std::string> csv_columns(const RunScene& scene) {
   std::vector<std::string> names = {"t_s", "mode"};
   for_each_column(RunSample{}, scene,
-                  [&](std::string name, double) { names.push_back(std::move(name)); });
+                  [&](const std::string& name, double) { names.push_back(name); });
   return names;
 }
 
 void write_csv(const RunRecord& record, const std::string& path) {
-  const std::string part = path + ".part";
-  errno = 0;
-  std::ofstream file(part, std::ios::binary);
-  file << fmt::format("{}\n", fmt::join(csv_columns(record.scene), ","));
-  std::string row;
+  std::string text = fmt::format("{}\n", fmt::join(csv_columns(record.scene), ","));
   for (const RunSample& sample : record.samples) {
-    row.clear();
-    fmt::format_to(std::back_inserter(row), "{:.9g},{}", sample.t_s, mode_name(sample.mode));
+    text += fmt::format("{:.9g},{}", sample.t_s, mode_name(sample.mode));
     for_each_column(sample, record.scene, [&](const std::string&, double value) {
-      fmt::format_to(std::back_inserter(row), ",{:.9g}", value);
+      text += fmt::format(",{:.9g}", value);
     });
-    file << row << '\n';
+    text += '\n';
   }
-  file.close();
-  if (!file || std::rename(part.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
-    std::remove(part.c_str());
-    throw InputError(
-        fmt::format("{}: cannot be written ({}), expected a path for a CSV", path, reason));
-  }
+  write_file(path, text);
 }
 
 }  // namespace sandrunner

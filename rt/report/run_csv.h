@@ -12,8 +12,7 @@ namespace sandrunner {
 std::vector<std::string> csv_columns(const RunScene& scene);
 
 /// Writes the samples, one row each, under a header of `csv_columns`. Estimates that do not exist
-/// are "nan". Writes a file beside `path` and renames it, so that no half file is left; InputError
-/// if it cannot.
+/// are "nan". The file is whole or not there; InputError if it cannot be written.
 void write_csv(const RunRecord& record, const std::string& path);
 
 }  // namespace sandrunner

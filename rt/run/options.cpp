@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
-#include "rt/base/program.h"
 #include "sim/ground/terrain_description.h"
 
 namespace sandrunner {

@@ -9,6 +9,8 @@
 #include <iterator>
 #include <string>
 
+#include "rt/base/output_files.h"
+
 namespace sandrunner {
 
 /// A folder of its own for one test, removed at the end.
@@ -35,10 +37,6 @@ class TemporaryFolder {
 inline std::string read_file(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void write_file(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
 }
 
 }  // namespace sandrunner

@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "tools/bench/batch_bench.h"
 #include "tools/bench/contact_bench.h"
@@ -39,7 +41,8 @@ int run(int argc, char** argv) {
   }
 
   if (!parse_command_line(app, argc, argv)) return kExitOk;
-  std::optional<bench::ReportFile> file;
+  // Made now: a place that cannot be written is found before the measurement.
+  std::optional<WholeFile> file;
   if (!json_path.empty()) file.emplace(json_path);
   bench::Report report;
   if (batch->parsed()) report = bench::run_batch_bench(rounds);
@@ -51,7 +54,10 @@ int run(int argc, char** argv) {
     bench::run_wakeup_bench(rounds, report);
   }
   print(report);
-  if (file) file->write(report);
+  if (file) {
+    file->write(to_json(report));
+    file->keep();
+  }
   return kExitOk;
 }
 

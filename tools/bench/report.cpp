@@ -3,12 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-
-#include "rt/base/errors.h"
 
 namespace sandrunner::bench {
 
@@ -34,18 +30,7 @@ std::string processor_name() {
   return "unknown";
 }
 
-ReportFile::ReportFile(std::string path) : path_(std::move(path)), part_(path_ + ".part") {
-  if (std::filesystem::is_directory(path_) || !std::ofstream(part_)) {
-    throw InputError(fmt::format("--json: '{}' cannot be written", path_));
-  }
-}
-
-ReportFile::~ReportFile() {
-  std::error_code ignored;
-  std::filesystem::remove(part_, ignored);
-}
-
-void ReportFile::write(const Report& report) {
+std::string to_json(const Report& report) {
   nlohmann::ordered_json json;
   for (const auto& [name, text] : report.facts) json[name] = text;
   const auto values = [](const Quartiles& q) {
@@ -54,12 +39,7 @@ void ReportFile::write(const Report& report) {
   };
   for (const auto& [name, q] : report.ratios) json[name] = values(q);
   for (const auto& [name, q] : report.rates) json["rates"][name] = values(q);
-  std::ofstream out(part_);
-  out << json.dump(2) << '\n';
-  out.close();
-  if (!out || std::rename(part_.c_str(), path_.c_str()) != 0) {
-    throw InputError(fmt::format("--json: '{}' cannot be written", path_));
-  }
+  return json.dump(2) + '\n';
 }
 
 }  // namespace sandrunner::bench

@@ -21,20 +21,6 @@ void print(const Report& report);
 /// Model name of the processor, "unknown" where the system does not tell.
 std::string processor_name();
 
-/// A file that takes a report: opened at once, so that a place that cannot be written is found
-/// before the measurement, and under its own name only when complete.
-class ReportFile {
- public:
-  /// Throws InputError.
-  explicit ReportFile(std::string path);
-  ~ReportFile();
-  ReportFile(const ReportFile&) = delete;
-  ReportFile& operator=(const ReportFile&) = delete;
-  /// Throws InputError.
-  void write(const Report& report);
-
- private:
-  std::string path_, part_;
-};
+std::string to_json(const Report& report);
 
 }  // namespace sandrunner::bench

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
-#include "rt/base/program.h"
 #include "rt/telemetry/dds/command_gate.h"
 #include "rt/telemetry/dds/mode_requests.h"
 #include "tools/ctl/topics.h"

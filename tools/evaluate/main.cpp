@@ -87,10 +87,10 @@ int run(int argc, char** argv) {
   // All at the end, so that no file of this evaluation lies beside one of another.
   if (out) {
     for (const PartResults& part : results.parts) {
-      write_text(part_csv(part, results.policies), dir + part.part.name + ".csv");
+      write_file(dir + part.part.name + ".csv", part_csv(part, results.policies));
       draw_part(part, results.policies, options->out_dir);
     }
-    write_text(results_json(results, robot.description.name, *options), dir + "evaluation.json");
+    write_file(dir + "evaluation.json", results_json(results, robot.description.name, *options));
     fmt::print("wrote evaluation.json and the parts' files into {}\n", options->out_dir);
   }
   return kExitOk;

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
-#include "rt/base/program.h"
 
 namespace sandrunner::evaluate {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "policy/policy_file.h"
 #include "policy/text.h"
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
 #include "rt/base/program.h"
 

@@ -13,6 +13,7 @@
 
 #include "policy/policy_file.h"
 #include "rt/base/build.h"
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "rt/base/command_line.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"

@@ -94,7 +94,7 @@ void Progress::write(const std::string& dir) const {
     for (const double term : row.window.terms) csv += fmt::format(",{:.6g}", term);
     csv += "\n";
   }
-  write_text(csv, dir + "/curve.csv");
+  write_file(dir + "/curve.csv", csv);
   if (rows_.size() < 2) return;
 
   plot::Figure figure;

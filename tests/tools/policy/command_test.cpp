@@ -103,8 +103,9 @@ TEST_F(CommandTest, BadInputIsOneLineAndExitCodeTwo) {
   expect_bad_input("info garbage", "'garbage': 7 bytes are too few");
   expect_bad_input("info weights", "not a policy file");
   expect_bad_input("import garbage --out policy", "'garbage': ");
-  expect_bad_input("import weights --out absent/policy", "'absent/policy': cannot be written");
-  expect_bad_input("import weights --out .", "'.': cannot be written");
+  expect_bad_input("import weights --out absent/policy",
+                   "absent/policy: cannot be written (No such file");
+  expect_bad_input("import weights --out .", ".: cannot be written (not a regular file)");
   expect_bad_input("import weights --out policy --name \"$(printf '\\377')\"", "UTF-8");
   EXPECT_FALSE(std::filesystem::exists(folder_.path("policy")));
 }
