@@ -12,7 +12,6 @@
 
 namespace sandrunner {
 
-inline constexpr int kCommandSize = 3;
 /// The encoder sees the observation without its command.
 inline constexpr int kEncoderInputSize = kObservationSize - kCommandSize;
 inline constexpr int kHiddenSize = 64;

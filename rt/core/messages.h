@@ -29,6 +29,7 @@ inline constexpr double kGravity_mps2 = 9.81;
 
 /// Numbers of the network's input and estimate (paper, "Controller structure").
 inline constexpr int kObservationSize = 33;
+inline constexpr int kCommandSize = 3;  ///< the first of them: vx, vy, yaw rate
 inline constexpr int kEstimateSize = 8;
 
 inline constexpr std::array<const char*, kNumLegs> kLegNames = {"LF", "RF", "LH", "RH"};

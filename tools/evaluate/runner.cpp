@@ -2,20 +2,19 @@
 #include "tools/evaluate/runner.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
-#include <exception>
 #include <mutex>
-#include <thread>
 
 #include "estimator/observation.h"
+#include "rt/base/worker_pool.h"
 #include "rt/core/command_shaping.h"
-#include "rt/core/floating_point.h"
 #include "sim/lanes/random.h"
 #include "sim/step/actuator.h"
 #include "sim/step/divergence.h"
 #include "sim/step/ground_truth.h"
+#include "tools/train/task/embedded.h"
+#include "tools/train/task/task_config.h"
 
 namespace sandrunner::evaluate {
 namespace {
@@ -23,18 +22,22 @@ namespace {
 enum Stream : std::uint64_t { kNoiseStream = 11, kPushStream = 12 };
 constexpr std::uint64_t kDrawsPerStep = 64;
 
-// Standard deviations of the training's observation noise (tools/train/raibo.toml).
-constexpr double kGravityNoise = 0.03, kRateNoise_radps = 0.1, kPositionNoise_rad = 0.02,
-                 kVelocityNoise_radps = 0.3;
+train::NoiseSettings training_noise() {
+  ConfigTree tree;
+  tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
+  return train::read_noise_settings(tree);
+}
 
 // The robots of one pack from start to end.
 class PackRun {
  public:
   PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, Policy& policy,
-          const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count)
+          const RunnerSettings& settings, const RobotFacts& facts,
+          const train::NoiseSettings& noise, const Trial* trials, int count)
       : robot_(robot),
         policy_(policy),
         facts_(facts),
+        noise_(noise),
         trials_(trials),
         batch_(static_cast<int>(settings.width), foot, sim::StepSettings{}, settings.width),
         lanes_(static_cast<std::size_t>(count)) {
@@ -158,12 +161,12 @@ class PackRun {
         return static_cast<float>(trial.noise_scale * sigma *
                                   sim::random_normal(trial.seed, kNoiseStream, counter++));
       };
-      for (float& u : up) u += noise(kGravityNoise);
+      for (float& u : up) u += noise(noise_.gravity);
       const float length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
       for (float& u : up) u /= length;
-      for (float& w : rate) w += noise(kRateNoise_radps);
-      for (float& v : q) v += noise(kPositionNoise_rad);
-      for (float& v : qd) v += noise(kVelocityNoise_radps);
+      for (float& w : rate) w += noise(noise_.angular_velocity_radps);
+      for (float& v : q) v += noise(noise_.joint_position_rad);
+      for (float& v : qd) v += noise(noise_.joint_velocity_radps);
     }
     return make_observation<float>(
         {static_cast<float>(command.vx_mps), static_cast<float>(command.vy_mps),
@@ -211,6 +214,7 @@ class PackRun {
   const sim::Robot& robot_;
   Policy& policy_;
   const RobotFacts& facts_;
+  const train::NoiseSettings& noise_;
   const Trial* trials_;
   sim::Batch batch_;
   std::vector<Lane> lanes_;
@@ -242,35 +246,23 @@ std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootPro
                                      const std::function<void(std::size_t)>& progress) {
   const auto width = static_cast<std::size_t>(settings.width);
   const RobotFacts facts = robot_facts(robot, policy.spec());
+  const train::NoiseSettings noise = training_noise();
   std::vector<TrialFigures> figures(trials.size());
-  std::atomic<std::size_t> next{0};
+  WorkerPool pool(settings.threads);
+  // One for each worker; they share the weights.
+  std::vector<Policy> policies(static_cast<std::size_t>(settings.threads), policy);
   std::size_t done = 0;
-  std::mutex mutex;  // of `done`, `error` and the call of `progress`
-  std::exception_ptr error;
-  const auto work = [&] {
-    flush_denormals_to_zero();
-    try {
-      Policy own = policy;  // shares the weights
-      while (true) {
-        const std::size_t first = next.fetch_add(width);
-        if (first >= trials.size()) return;
-        const std::size_t count = std::min(width, trials.size() - first);
-        PackRun(robot, foot, own, settings, facts, trials.data() + first, static_cast<int>(count))
-            .run(figures.data() + first);
-        const std::lock_guard lock(mutex);
-        done += count;
-        if (progress) progress(done);
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!error) error = std::current_exception();
-      next = trials.size();
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int t = 0; t < settings.threads; ++t) threads.emplace_back(work);
-  for (std::thread& thread : threads) thread.join();
-  if (error) std::rethrow_exception(error);
+  std::mutex mutex;  // of `done` and the call of `progress`
+  pool.run(static_cast<int>((trials.size() + width - 1) / width), [&](int pack, int worker) {
+    const std::size_t first = static_cast<std::size_t>(pack) * width;
+    const std::size_t count = std::min(width, trials.size() - first);
+    PackRun(robot, foot, policies[static_cast<std::size_t>(worker)], settings, facts, noise,
+            trials.data() + first, static_cast<int>(count))
+        .run(figures.data() + first);
+    const std::lock_guard lock(mutex);
+    done += count;
+    if (progress) progress(done);
+  });
   return figures;
 }
 

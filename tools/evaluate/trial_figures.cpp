@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimator/heading.h"
 #include "rt/base/quantile.h"
 
 namespace sandrunner::evaluate {
@@ -38,10 +39,10 @@ void TrialRecorder::begin_period(const sim::RobotState<float>& state, const Stat
   const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
   Period p;
   p.distance = static_cast<float>(distance_m_);
-  const float forward = std::sqrt(r.r0.x * r.r0.x + r.r1.x * r.r1.x);
-  const float c = r.r0.x / forward, s = r.r1.x / forward;
-  p.vx = c * x.velocity.x + s * x.velocity.y;
-  p.vy = c * x.velocity.y - s * x.velocity.x;
+  const Horizontal<float> velocity =
+      components_along(heading_direction<float>({r.r0.x, r.r1.x}), {x.velocity.x, x.velocity.y});
+  p.vx = velocity[0];
+  p.vy = velocity[1];
   p.yaw_rate = dot(r.r2, x.angular_velocity);
   p.height = static_cast<float>(truth.body_height_m);
   p.tilt2 = static_cast<float>(square(std::acos(std::clamp(r.r2.z, -1.0f, 1.0f))));

@@ -52,7 +52,7 @@ class Training {
   TrainConfig config_;
   sim::Robot robot_;
   TrainingOptions options_;
-  learner::WorkerPool pool_;
+  WorkerPool pool_;
   Task task_;
   learner::Learner learner_;
   Progress progress_;

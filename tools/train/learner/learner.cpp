@@ -225,7 +225,7 @@ std::vector<int> Learner::shuffled_blocks(int epoch) const {
   const std::uint64_t round = counters_.updates * static_cast<std::uint64_t>(config_.epochs) +
                               static_cast<std::uint64_t>(epoch);
   for (std::size_t i = order.size() - 1; i > 0; --i) {
-    const std::uint64_t bits = random_bits(counters_.seed, Stream::kShuffle, round, i);
+    const std::uint64_t bits = counter_bits(counters_.seed, Stream::kShuffle, round, i);
     std::swap(order[i], order[static_cast<std::size_t>(bits % (i + 1))]);
   }
   return order;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "rt/base/worker_pool.h"
 #include "tools/train/data/checkpoint.h"
 #include "tools/train/data/rollout.h"
 #include "tools/train/data/symmetry.h"
@@ -14,7 +15,6 @@
 #include "tools/train/learner/block_pass.h"
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/parameters.h"
-#include "tools/train/learner/worker_pool.h"
 
 namespace sandrunner::learner {
 

@@ -15,7 +15,6 @@ namespace sandrunner::learner {
 
 /// Observation = [command | proprioception]; the encoder sees the second part, the actor also the
 /// first.
-inline constexpr int kCommandSize = 3;
 inline constexpr int kProprioceptionSize = kObservationSize - kCommandSize;
 inline constexpr int kActionSize = kNumJoints;
 

@@ -24,8 +24,8 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
 }
 
 /// 64 uniform bits of counter (a, b).
-constexpr std::uint64_t random_bits(std::uint64_t seed, Stream stream, std::uint64_t a,
-                                    std::uint64_t b) {
+constexpr std::uint64_t counter_bits(std::uint64_t seed, Stream stream, std::uint64_t a,
+                                     std::uint64_t b) {
   const std::uint64_t key = mix_bits(mix_bits(seed) + static_cast<std::uint64_t>(stream));
   return mix_bits(mix_bits(key + a) + b);
 }
@@ -33,7 +33,7 @@ constexpr std::uint64_t random_bits(std::uint64_t seed, Stream stream, std::uint
 /// Two independent standard normal values of counter (a, b) (Box and Muller 1958), |value| < 5.8.
 inline std::pair<float, float> random_normal_pair(std::uint64_t seed, Stream stream,
                                                   std::uint64_t a, std::uint64_t b) {
-  const std::uint64_t bits = random_bits(seed, stream, a, b);
+  const std::uint64_t bits = counter_bits(seed, stream, a, b);
   constexpr float kUnit = 0x1p-24f;
   const float u = (static_cast<float>(bits >> 40) + 1.0f) * kUnit;        // (0, 1]
   const float v = static_cast<float>((bits >> 8) & 0xffffffULL) * kUnit;  // [0, 1)

@@ -11,6 +11,10 @@
 namespace sandrunner::train {
 namespace {
 
+// Short of pi in their last digits: with all of them the draws, and so the weights of every seed,
+// would be others.
+constexpr double kHalfTurn_rad = 3.14159265, kDegree_rad = 3.14159265358979 / 180.0;
+
 // Log-uniform between low and high; an exponent above 1 draws more often near low.
 double log_between(double low, double high, double share, double exponent) {
   return low * std::pow(high / low, std::pow(share, exponent));
@@ -78,8 +82,7 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
       p.sigma_cone_npm3 /= looser;
     }
     p.recruitment *= uniform(env, e, 1.0 - g.recruitment_spread, 1.0 + g.recruitment_spread);
-    p.cone_angle_rad +=
-        uniform(env, e, -1.0, 1.0) * g.cone_angle_spread_deg * (3.14159265358979 / 180.0);
+    p.cone_angle_rad += uniform(env, e, -1.0, 1.0) * g.cone_angle_spread_deg * kDegree_rad;
     inertial = uniform(env, e, g.inertial_low, g.inertial_high);
     p.grain_density_kgpm3 *= inertial;
     p.stroke_stiffness_npm = uniform(env, e, 50.0, std::fmax(50.0, g.stroke_stiffness_high));
@@ -183,7 +186,7 @@ void Task::hard_reset(int env, Env& e) {
   const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
   x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
   // Any heading: in small steps, which keep the series of `integrate` accurate.
-  const float yaw = draw(3.14159265);
+  const float yaw = draw(kHalfTurn_rad);
   for (int i = 0; i < 8; ++i) {
     x.orientation = sim::integrate(x.orientation, sim::Vec3<float>{0.0f, 0.0f, yaw / 8.0f});
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -179,7 +180,7 @@ TEST(LearnerTest, SampledActionsHaveTheStatedMeanAndDeviation) {
   int count = 0;
   const Rollout& rollout = training.learner.rollout();
   const double expected_norm =
-      kActionSize * (std::log(0.6) + 0.5 * std::log(2.0 * 3.14159265358979));
+      kActionSize * (std::log(0.6) + 0.5 * std::log(2.0 * std::numbers::pi));
   training.task.run_window();
   for (int t = 0; t < kSmallShape.steps; ++t) {
     for (int env = 0; env < kSmallShape.envs; ++env) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "tools/train/data/rollout.h"
@@ -49,7 +50,7 @@ BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int hidden) {
     fill(rollout.mean(t), 0.05);
     fill(rollout.mirror_mean(t), 0.3);
     for (int env = 0; env < shape.envs; ++env) {
-      double log_prob = -0.5 * kActionSize * std::log(2.0 * 3.14159265358979);
+      double log_prob = -0.5 * kActionSize * std::log(2.0 * std::numbers::pi);
       for (int k = 0; k < kActionSize; ++k) {
         const double z = normal();
         const auto log_std = static_cast<double>(rollout.log_std(k));

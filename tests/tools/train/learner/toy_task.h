@@ -79,7 +79,7 @@ class ToyTask {
     State& state = states[static_cast<std::size_t>(env)];
     ++state.episode;
     const std::uint64_t bits =
-        random_bits(99, Stream::kInitialization, static_cast<std::uint64_t>(env), state.episode);
+        counter_bits(99, Stream::kInitialization, static_cast<std::uint64_t>(env), state.episode);
     const auto unit = [&](int shift) {
       return static_cast<float>((bits >> shift) & 0xffff) / 65536.0f;
     };

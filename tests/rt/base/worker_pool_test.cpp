@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/train/learner/worker_pool.h"
+#include "rt/base/worker_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace sandrunner::learner {
+namespace sandrunner {
 namespace {
 
 TEST(WorkerPoolTest, RunsEveryTaskOnceAndWaitsForAll) {
@@ -47,4 +47,4 @@ TEST(WorkerPoolTest, FlushesDenormalsInEveryWorker) {
 }
 
 }  // namespace
-}  // namespace sandrunner::learner
+}  // namespace sandrunner

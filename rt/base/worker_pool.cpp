@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/train/learner/worker_pool.h"
-
-#include <immintrin.h>
+#include "rt/base/worker_pool.h"
 
 #include <utility>
 
-namespace sandrunner::learner {
+#include "rt/core/floating_point.h"
+
+namespace sandrunner {
 
 WorkerPool::WorkerPool(int threads) {
   for (int worker = 0; worker < threads; ++worker) {
@@ -34,7 +34,7 @@ void WorkerPool::run(int tasks, const std::function<void(int, int)>& function) {
 }
 
 void WorkerPool::work(int worker) {
-  _mm_setcsr(_mm_getcsr() | _MM_FLUSH_ZERO_ON | 0x0040 /* denormals are zero */);
+  flush_denormals_to_zero();
   std::unique_lock lock(mutex_);
   while (true) {
     work_available_.wait(lock, [this] { return stop_ || next_task_ < tasks_; });
@@ -58,4 +58,4 @@ void WorkerPool::work(int worker) {
   }
 }
 
-}  // namespace sandrunner::learner
+}  // namespace sandrunner

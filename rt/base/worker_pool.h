@@ -8,11 +8,11 @@
 #include <thread>
 #include <vector>
 
-namespace sandrunner::learner {
+namespace sandrunner {
 
 /// Threads that are created once and then given batches of tasks. Which thread runs which task is
 /// not determined: results must be written by task, never by worker. In the workers denormal
-/// numbers are zero (FTZ, DAZ): they occur in Adam's moments and cost a hundred cycles each.
+/// numbers are zero, as the simulator, and Adam's moments for their speed, ask for.
 class WorkerPool {
  public:
   explicit WorkerPool(int threads);
@@ -42,4 +42,4 @@ class WorkerPool {
   std::vector<std::thread> threads_;
 };
 
-}  // namespace sandrunner::learner
+}  // namespace sandrunner
