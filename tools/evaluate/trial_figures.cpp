@@ -116,7 +116,7 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
   f.power_w = sum.power / n;
   f.torque_squared_nm2 = sum.torque2 / n;
   const double power = f.power_w + f.torque_squared_nm2 / square(facts.motor_constant);
-  const double weight_n = facts.mass_kg * sim::kGravity_mps2;
+  const double weight_n = facts.mass_kg * kGravity_mps2;
   if (f.horizontal_speed_mps >= 0.05) f.cot = power / (weight_n * f.horizontal_speed_mps);
   if (std::fabs(f.yaw_rate_radps) >= 0.05) {
     f.turning_cot = power / (weight_n * facts.foot_diagonal_m * std::fabs(f.yaw_rate_radps));
@@ -162,7 +162,7 @@ void TrialRecorder::track_figures(const Trial& trial, const RobotFacts& facts,
     power += periods_[i].power + periods_[i].torque2 / square(facts.motor_constant);
   }
   power /= static_cast<double>(end - begin);
-  f.track_cot = power / (facts.mass_kg * sim::kGravity_mps2 * f.track_speed_mps);
+  f.track_cot = power / (facts.mass_kg * kGravity_mps2 * f.track_speed_mps);
   // A gait cycle of this run in whole periods.
   double cycle_s = kUsualGaitCycle_s;
   if (f.stride_hz > 0.0) {

@@ -8,6 +8,7 @@
 
 #include "rt/core/floating_point.h"
 #include "rt/run/run.h"
+#include "rt/run/scene.h"
 #include "support.h"
 
 namespace sandrunner::evaluate {
@@ -138,11 +139,21 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     sim::add_terrain_layer(tree, ground);
     const ProcessConfig config = read_process_config(tree, &policy.spec());
     const std::atomic<bool> interrupt{false};
-    const RunResult process =
-        run_lockstep(config, &policy, CommandSource("1.5,0,0"),
-                     {.walk_s = 5.0, .start_walking = true}, false, interrupt, {});
+    const CommandSource command("1.5,0,0");
+    sim::Simulator simulator(config.robot, config.simulator);
+    const RunResult process = run_in_lockstep({.robot = simulator,
+                                               .controller = config.controller,
+                                               .policy = &policy,
+                                               .command = command,
+                                               .plan = {.walk_s = 5.0, .start_walking = true},
+                                               .scene = scene_of(config, policy.spec().name),
+                                               .progress = {},
+                         .tap = {},
+                         .interrupt = interrupt});
     ASSERT_TRUE(process.survived);
     const sandrunner::RunFigures& p = process.figures;
+    const MotionFigures& motion = p.motion.value();
+    const EstimateErrors& estimate = p.estimate.value();
 
     Trial trial;
     trial.terrain = study_.add(Study::preset(ground));
@@ -152,16 +163,16 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     const TrialFigures e =
         run_trials(study_.robot(), study_.foot(), policy, {trial}, {.torque_speed_line = false})[0];
     ASSERT_FALSE(e.fell);
-    EXPECT_NEAR(e.vx_mps, p.mean_velocity_mps[0], 0.02);
-    EXPECT_NEAR(e.vy_mps, p.mean_velocity_mps[1], 0.02);
-    EXPECT_NEAR(e.yaw_rate_radps, p.mean_yaw_rate_radps, 0.02);
+    EXPECT_NEAR(e.vx_mps, motion.mean_velocity_mps[0], 0.02);
+    EXPECT_NEAR(e.vy_mps, motion.mean_velocity_mps[1], 0.02);
+    EXPECT_NEAR(e.yaw_rate_radps, motion.mean_yaw_rate_radps, 0.02);
     EXPECT_NEAR(e.power_w, p.mechanical_power_w, 0.04 * p.mechanical_power_w + 1.0);
     EXPECT_NEAR(e.torque_squared_nm2, p.torque_squared_nm2, 0.04 * p.torque_squared_nm2);
-    EXPECT_NEAR(e.cot, *p.cost_of_transport, 0.04 * *p.cost_of_transport);
-    EXPECT_NEAR(e.clearance_iqr_m, p.foot_clearance_iqr_m, 0.003);
-    EXPECT_NEAR(e.velocity_rmse_mps, p.velocity_rmse_mps, 0.01);
-    EXPECT_NEAR(e.body_height_rmse_m, p.body_height_rmse_m, 0.001);
-    EXPECT_NEAR(e.foot_height_rmse_m, p.foot_height_rmse_m, 0.002);
+    EXPECT_NEAR(e.cot, *motion.cost_of_transport, 0.04 * *motion.cost_of_transport);
+    EXPECT_NEAR(e.clearance_iqr_m, motion.foot_clearance_iqr_m, 0.003);
+    EXPECT_NEAR(e.velocity_rmse_mps, estimate.velocity_rmse_mps, 0.01);
+    EXPECT_NEAR(e.body_height_rmse_m, estimate.body_height_rmse_m, 0.001);
+    EXPECT_NEAR(e.foot_height_rmse_m, estimate.foot_height_rmse_m, 0.002);
   }
 }
 
