@@ -42,23 +42,15 @@ std::string processor_name() {
   return "unknown";
 }
 
-// What a checkpoint belongs to: another configuration, seed or robot would not continue to the same
-// weights.
-constexpr std::uint64_t kHashStart = 14695981039346656037u;
-
-std::uint64_t fnv1a(std::string_view bytes, std::uint64_t h) {
-  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return h;
-}
-
+// Of the figures by which a robot moves: another one would not continue to the same weights.
 std::uint64_t hash_of(const sim::Robot& robot) {
   const auto bytes = [](const auto& figures) {  // doubles without padding
     return std::string_view(reinterpret_cast<const char*>(&figures), sizeof(figures));
   };
-  std::uint64_t h = fnv1a(robot.description.name, kHashStart);
-  h = fnv1a(bytes(robot.model), h);
-  h = fnv1a(bytes(robot.nominal_rad), h);
-  return fnv1a(bytes(robot.nominal_height_m), h);
+  std::uint64_t hash = learner::fnv1a(robot.description.name);
+  hash = learner::fnv1a(bytes(robot.model), hash);
+  hash = learner::fnv1a(bytes(robot.nominal_rad), hash);
+  return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 
 }  // namespace
@@ -73,7 +65,7 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
                options.seed, pool_, Task::symmetry()),
       checkpoint_path_(checkpoint_path(options.out)),
-      config_hash_(fnv1a(config.effective, kHashStart ^ options.seed)),
+      config_hash_(learner::fnv1a(config.effective, learner::kHashStart ^ options.seed)),
       robot_hash_(hash_of(robot)),
       builds_(build_commit()),
       processors_(processor_name()) {}

@@ -4,18 +4,14 @@
 // (u64). Little-endian; strings and byte arrays are preceded by their length (u64).
 #include "tools/train/data/checkpoint.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string_view>
-#include <system_error>
 
 #include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 
 namespace sandrunner::learner {
 namespace {
@@ -31,14 +27,6 @@ struct Header {
   std::uint64_t config_hash;
 };
 static_assert(sizeof(Header) == 32, "no padding");
-
-std::uint64_t fnv1a(const char* data, std::size_t size) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (std::size_t i = 0; i < size; ++i) {
-    hash = (hash ^ static_cast<unsigned char>(data[i])) * 0x100000001b3ULL;
-  }
-  return hash;
-}
 
 template <typename T>
 void append(std::vector<char>& out, const T& value) {
@@ -67,36 +55,9 @@ std::vector<char> encode(const Checkpoint& checkpoint) {
   header.file_size = out.size() + sizeof(std::uint64_t);
   header.config_hash = checkpoint.config_hash;
   std::memcpy(out.data(), &header, sizeof(header));
-  append(out, fnv1a(out.data(), out.size()));
+  append(out, fnv1a({out.data(), out.size()}));
   return out;
 }
-
-/// A file descriptor that closes itself.
-class File {
- public:
-  File(const std::string& path, int flags) : descriptor_(::open(path.c_str(), flags, 0644)) {}
-  ~File() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  bool is_open() const { return descriptor_ >= 0; }
-  bool write_all(const std::vector<char>& bytes) const {
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) return false;
-      done += static_cast<std::size_t>(count);
-    }
-    return true;
-  }
-  bool flush() const { return ::fsync(descriptor_) == 0; }
-
- private:
-  int descriptor_;
-};
 
 /// Takes bytes from the front of a file whose checksum was right; a length beyond its end is still
 /// refused.
@@ -127,6 +88,11 @@ class Reader {
 
 }  // namespace
 
+std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash) {
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
+
 const std::vector<char>& Checkpoint::section(const std::string& name,
                                              std::size_t expected_bytes) const {
   const auto found = sections.find(name);
@@ -142,22 +108,7 @@ const std::vector<char>& Checkpoint::section(const std::string& name,
 
 void save_checkpoint(const Checkpoint& checkpoint, const std::string& path) {
   const std::vector<char> bytes = encode(checkpoint);
-  const std::string temporary = path + ".tmp";
-  const auto fail = [&](const std::string& what) {
-    const std::string reason = std::generic_category().message(errno);
-    ::unlink(temporary.c_str());
-    throw InputError(fmt::format("{}: cannot {} checkpoint: {}", path, what, reason));
-  };
-  {
-    const File file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
-    if (!file.is_open()) fail("create");
-    if (!file.write_all(bytes) || !file.flush()) fail("write");
-  }
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail("rename");
-  // Makes the new name itself survive a power cut. Some file systems do not offer it: not an error.
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  const File directory(folder.empty() ? "." : folder.string(), O_RDONLY | O_CLOEXEC);
-  if (directory.is_open()) directory.flush();
+  write_file(path, {bytes.data(), bytes.size()});
 }
 
 Checkpoint load_checkpoint(const std::string& path) {
@@ -186,7 +137,7 @@ Checkpoint load_checkpoint(const std::string& path) {
   const std::size_t end = bytes.size() - sizeof(std::uint64_t);
   std::uint64_t checksum = 0;
   std::memcpy(&checksum, bytes.data() + end, sizeof(checksum));
-  if (checksum != fnv1a(bytes.data(), end)) {
+  if (checksum != fnv1a({bytes.data(), end})) {
     throw InputError(fmt::format("{}: damaged checkpoint: its checksum does not match", path));
   }
 

@@ -6,10 +6,15 @@
 #include <cstring>
 #include <map>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
 namespace sandrunner::learner {
+
+/// FNV-1a hash of the bytes, continued from `hash`.
+inline constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ULL;
+std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = kHashStart);
 
 /// State of a training as named sections of bytes: the learner's, and whatever the program adds
 /// (environments, curriculum, progress) to continue to the same bits.
@@ -39,9 +44,8 @@ struct Checkpoint {
   const std::vector<char>& section(const std::string& name, std::size_t expected_bytes) const;
 };
 
-/// Writes to `path`.tmp, flushes it to the disk and renames it: `path` is always a whole
-/// checkpoint, the old or the new one. Throws InputError (disk full, no such folder, ...) and then
-/// leaves `path` as it was.
+/// Writes the file whole (rt/base/output_files.h): `path` is always a checkpoint, the old or the
+/// new one. Throws InputError (disk full, no such folder, ...) and then leaves `path` as it was.
 void save_checkpoint(const Checkpoint& checkpoint, const std::string& path);
 
 /// Throws InputError if the file cannot be read, is no checkpoint, is truncated, or fails its

@@ -75,7 +75,7 @@ TEST_F(CheckpointTest, ReturnsWhatWasSaved) {
   std::uint64_t count = 0;
   loaded.get("count", &count, 1);
   EXPECT_EQ(count, 42u);
-  EXPECT_FALSE(fs::exists(path_ + ".tmp"));
+  EXPECT_FALSE(fs::exists(path_ + ".part"));
 }
 
 TEST_F(CheckpointTest, NamesTheSectionThatIsMissingOrOfAnotherSize) {
@@ -141,9 +141,9 @@ TEST_F(CheckpointTest, FullDiskLeavesTheLastGoodFile) {
   }
   setrlimit(RLIMIT_FSIZE, &old_limit);
   std::signal(SIGXFSZ, old_handler);
-  EXPECT_EQ(message, path_ + ": cannot write checkpoint: File too large");
+  EXPECT_EQ(message, path_ + ": cannot be written (File too large)");
   EXPECT_EQ(read(), before);
-  EXPECT_FALSE(fs::exists(path_ + ".tmp"));
+  EXPECT_FALSE(fs::exists(path_ + ".part"));
 }
 
 TEST_F(CheckpointTest, MissingFolderIsAnError) {
