@@ -37,7 +37,7 @@ TEST(CtlProgramTest, BadInputIsOneLineAndExitCodeTwo) {
   expect_error(run({"cmd", "nan", "0", "0"}, config), 2, "VX: found nan");
   expect_error(run({"watch", "rt/nothing"}, config), 2, "expected rt/joint_states");
   expect_error(run({}, config), 2, "subcommand");
-  expect_error(run({"drive"}, config), 2, "no terminal");
+  expect_error(run({"drive"}, config), 2, "not a terminal");
   expect_error(run({"status", "--once", "--security", "/nowhere"}, config), 2, "/nowhere/");
   expect_error(run({"status", "--once", "--interface", "nosuch0"}, config), 2,
                "on interface nosuch0 (nosuch0: does not match an available interface");
@@ -48,7 +48,7 @@ TEST(CtlProgramTest, WithoutARobotItSaysSoWithExitCodeOne) {
   DdsParticipant us(config);
   Program status({"status"}, config), mode({"mode", "damp"}, config),
       cmd({"cmd", "0", "0", "0"}, config);
-  expect_error(status.wait(), 1, "no robot: nothing came in domain");
+  expect_error(status.wait(), 1, "no robot: no message came in domain");
   expect_error(mode.wait(), 1, "damp: no robot answered in domain");
   expect_error(cmd.wait(), 1, "no robot listens on rt/cmd_vel in domain");
 }
