@@ -5,14 +5,14 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <chrono>
+#include <future>
 #include <new>
 #include <span>
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 #include "rt/core/floating_point.h"
 
 namespace sandrunner {
@@ -99,9 +99,9 @@ void BlackBox::keep(const TickQueue::Batch& batch) {
 void BlackBox::note_faults(const TickQueue::Batch& batch) {
   for (const TickRecord& tick : batch) {
     const std::uint64_t faults = tick.output.faults;
-    // Faults that latch after the first belong to the same fall. The lowest bit is the first.
+    // Faults that latch after the first belong to the same fall.
     if (faults != 0 && last_faults_ == 0) {
-      marks_.push_back({static_cast<Fault>(faults & (~faults + 1)), tick.input.sensors.tick});
+      marks_.push_back({tick.output.first_fault, tick.input.sensors.tick});
     }
     last_faults_ = faults;
   }
@@ -139,30 +139,36 @@ void BlackBox::write(const Mark& mark) {
   if (file.has_start && info.first_tick > 0) info.state = replay_state_bytes(state);
   file.before_s =
       (static_cast<double>(mark.tick) - static_cast<double>(info.first_tick)) * kControlPeriod_s;
-  const std::string part = file.path + ".part";
   try {
-    write_file(part, info);
-    if (std::rename(part.c_str(), file.path.c_str()) != 0) {
-      throw InputError(fmt::format("{}: cannot be written ({})", file.path, std::strerror(errno)));
+    WholeFile whole(file.path);
+    write_recording(whole.part_path(), info);
+    // A slow disk takes longer for this than the queue is deep.
+    std::future<void> kept = std::async(std::launch::async, [&] { whole.keep(); });
+    while (kept.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
+      keep_queued();
     }
+    kept.get();
   } catch (const InputError& error) {
     file.problem = error.what();
   } catch (const std::bad_alloc&) {
     file.problem = "out of memory";
   }
-  if (!file.problem.empty()) std::remove(part.c_str());
   result_.files.push_back(std::move(file));
 }
 
-void BlackBox::write_file(const std::string& path, const RecordingInfo& info) {
+void BlackBox::write_recording(const std::string& path, const RecordingInfo& info) {
   RecordingWriter writer(path, info);
   // The run goes on meanwhile, and the disk may be slow: these blocks outlive the window.
   const std::vector<std::shared_ptr<const Block>> blocks(window_.begin(), window_.end());
   for (const std::shared_ptr<const Block>& block : blocks) {
     writer.write(uncompressed(block->bytes, block->ticks));
-    while (const std::optional<TickQueue::Batch> batch = queue_.take_at_once()) keep(*batch);
+    keep_queued();
   }
   writer.close();
+}
+
+void BlackBox::keep_queued() {
+  while (const std::optional<TickQueue::Batch> batch = queue_.take_at_once()) keep(*batch);
 }
 
 }  // namespace sandrunner

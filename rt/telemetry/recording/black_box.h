@@ -89,7 +89,8 @@ class BlackBox {
   void let_go(const Block& block);
   void write_marked(std::uint64_t ticks_after);
   void write(const Mark& mark);
-  void write_file(const std::string& path, const RecordingInfo& info);
+  void keep_queued();
+  void write_recording(const std::string& path, const RecordingInfo& info);
 
   const std::string folder_;
   RecordingInfo info_;  // from the first tick on, only its thread uses it

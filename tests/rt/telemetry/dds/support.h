@@ -163,9 +163,15 @@ class LiveRobot {
     thread_.join();
   }
 
+  std::uint64_t ticks() const { return ticks_; }  ///< done
   Mode mode() const { return mode_; }
   double speed_mps() const { return speed_mps_; }  ///< that the policy is asked for
-  void break_joint() { broken_ = true; }           ///< until mend_joint(): a measured NaN
+  /// Waits for two more ticks: what was set before has then had its effect.
+  bool go_on() const {
+    const std::uint64_t end = ticks_ + 2;
+    return wait_until([&] { return ticks_ >= end; });
+  }
+  void break_joint() { broken_ = true; }  ///< until mend_joint(): a measured NaN
   void mend_joint() { broken_ = false; }
 
  private:
@@ -183,6 +189,7 @@ class LiveRobot {
         operator_.advance({.mode = loop_->output.mode, .faults = loop_->output.faults});
         mode_ = loop_->output.mode;
         speed_mps_ = loop_->output.policy_input.command.vx_mps;
+        ticks_ = tick + 1;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -192,6 +199,7 @@ class LiveRobot {
   ControllerConfig controller_;
   std::unique_ptr<FakeLoop> loop_;
   std::atomic<bool> end_{false}, broken_{false};
+  std::atomic<std::uint64_t> ticks_{0};
   std::atomic<Mode> mode_{Mode::kPassive};
   std::atomic<double> speed_mps_{0.0};
   std::thread thread_;
