@@ -52,8 +52,8 @@ struct BlackBoxResult {
 /// tick. That is why a replay trails behind: ticks that leave the window go through it, which
 /// verifies them and yields that state.
 ///
-/// All this happens in an ordinary thread of its own. Measured on a simulated walk: 80 MB of
-/// memory, 104 MB with encoder noise; 1.7 % of a core, and 0.6 s of that core per file.
+/// All this happens in an ordinary thread of its own. Measured on a simulated walk: 93 MB of
+/// memory, 105 MB with encoder noise; 1.6 % of a core, and 0.7 s of that core per file.
 class BlackBox {
  public:
   /// `policy` is copied; null if the run has none. `wait`: as for Recorder.

@@ -62,13 +62,15 @@ RecordingContents read_recording(const std::string& path,
     if (begin) begin(contents.info);
   };
   while (const McapMessage* message = reader.next()) {
-    if (!begun) start();
     const McapChannel& channel = reader.channels().at(message->channel_id);
-    if (channel.topic != kTicksTopic) continue;
-    if (reader.schemas().at(channel.schema_id).data != tick_idl()) {
-      throw InputError(fmt::format(
-          "{}: found ticks in the layout of another build, expected this build's", path));
+    const bool is_ticks = channel.topic == kTicksTopic;
+    if (is_ticks && reader.schemas().at(channel.schema_id).data != tick_idl()) {
+      throw InputError(
+          fmt::format("{}: found ticks in the layout of build '{}', expected this build's", path,
+                      info_of(path, reader).build));
     }
+    if (!begun) start();
+    if (!is_ticks) continue;
     CdrReader cdr(message->data);
     const auto batch = cdr.number<std::uint64_t>();
     const auto count = cdr.number<std::uint32_t>();

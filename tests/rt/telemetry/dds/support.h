@@ -131,17 +131,17 @@ inline void drive(dds_entity_t writer, double vx_mps) {
 /// Publishes examples at the control loop's rate, from this tick on; returns the longest time that
 /// one add() took, in s.
 inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double duration_s) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  using Steady = std::chrono::steady_clock;
+  const auto start = Steady::now();
   const std::uint64_t ticks = ticks_from_s(duration_s);
   double longest_s = 0.0;
   for (std::uint64_t done = 0; done < ticks;) {
-    const std::chrono::duration<double> time = Clock::now() - start;
+    const std::chrono::duration<double> time = Steady::now() - start;
     for (const std::uint64_t due = std::min(ticks, ticks_from_s(time.count())); done < due;
          ++done) {
-      const auto before = Clock::now();
+      const auto before = Steady::now();
       telemetry.add(example_tick(first_tick + done));
-      longest_s = std::max(longest_s, std::chrono::duration<double>(Clock::now() - before).count());
+      longest_s = std::max(longest_s, std::chrono::duration<double>(Steady::now() - before).count());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

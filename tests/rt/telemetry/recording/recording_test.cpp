@@ -240,8 +240,9 @@ TEST_F(RecordingTest, TicksInAnotherLayoutAreRefusedInOneLine) {
     writer.close();
   }
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 2);
-  EXPECT_EQ(output(), "sandrunner-replay: " + path() +
-                          ": found ticks in the layout of another build, expected this build's\n");
+  EXPECT_EQ(output(),
+            "sandrunner-replay: " + path() +
+                ": found ticks in the layout of build 'another', expected this build's\n");
 }
 
 TEST_F(RecordingTest, FileThatIsNoRecordingIsBadInput) {
