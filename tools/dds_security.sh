@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes what DDS Security needs in a new folder DIR: a certificate authority, the identities robot, operator and
-# viewer with their rights, and the rules of the domain. The robot runs with DIR as dds.security_dir; give an
-# operator's or viewer's computer only ca.pem, governance.p7s and the three files of its identity, never ca.key.
+# dds_security.sh DIR: creates what DDS Security needs in a new folder DIR: a certificate authority, the identities
+# robot, operator and viewer with their rights, and the rules of the domain. The robot runs with DIR as
+# dds.security_dir. Give an operator's or viewer's computer only ca.pem, governance.p7s and the three files of its
+# identity, never ca.key.
 set -euo pipefail
 
 fail() {
   echo "dds_security.sh: $1" >&2
   exit 2
 }
-(($# == 1)) || fail "found $# arguments, expected the folder to make: tools/dds_security.sh DIR"
+(($# == 1)) || fail "found $# arguments, expected one, the folder to create: tools/dds_security.sh DIR"
 command -v openssl >/dev/null || fail "found no openssl, expected the Debian package openssl"
 dir=$1
 [[ ! -e $dir ]] || fail "found $dir, expected a folder that does not exist yet"
 umask 077
-# All of it, or nothing: the folder gets its name at the end.
-made=$(mktemp -d -- "$dir.XXXXXX") || fail "could not make a folder beside $dir"
+# All or nothing: the folder gets its name at the end.
+made=$(mktemp -d -- "$dir.XXXXXX") || fail "cannot create a folder beside $dir"
 trap 'rm -rf -- "$made"' EXIT
 made=$(realpath -- "$made")
 start=$PWD
@@ -30,7 +31,7 @@ until=$(date -u -d "+$days days" +%Y-%m-%dT%H:%M:%S)
 domains="<domains><id_range><min>0</min><max>230</max></id_range></domains>"
 
 new_key() { openssl ecparam -genkey -name prime256v1 -noout -out "$1.key"; }
-# Signs XML from the standard input.
+# Signs XML from standard input.
 sign() { openssl smime -sign -text -signer ca.pem -inkey ca.key -out "$1.p7s" 2>/dev/null; }
 # rule publish|subscribe TOPICS...
 rule() {
@@ -42,7 +43,7 @@ rule() {
 new_key ca
 openssl req -x509 -new -key ca.key -days $days -sha256 -subj "/CN=sandrunner CA" -out ca.pem
 
-identity() { # NAME, rules from the standard input
+identity() { # NAME, with the rules on standard input
   new_key "$1"
   openssl req -new -key "$1.key" -subj "/CN=$1" -out "$1.csr"
   openssl x509 -req -in "$1.csr" -CA ca.pem -CAkey ca.key -CAcreateserial -days $days -sha256 -out "$1.pem" 2>/dev/null
@@ -68,7 +69,7 @@ EOF
 } | identity operator
 rule subscribe "${telemetry[@]}" | identity viewer
 
-# Nobody is seen, let alone heard, before he has proved who he is; everything on the wire is encrypted.
+# Nobody is seen, let alone heard, before they have proved who they are; everything on the wire is encrypted.
 sign governance <<EOF
 <?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
@@ -91,4 +92,4 @@ EOF
 rm -f ca.srl
 cd -- "$start"
 mv -T -- "$made" "$dir"
-echo "made $dir: ca, governance, and the identities robot, operator, viewer, valid until $until"
+echo "created $dir: ca, governance, and the identities robot, operator, viewer, valid until $until"

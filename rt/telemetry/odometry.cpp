@@ -4,7 +4,7 @@
 namespace sandrunner {
 namespace {
 
-/// x and y in the world of a vector in the body frame.
+/// World x and y of a vector in the body frame.
 std::array<double, 2> horizontal(const std::array<double, 4>& q, const Vector3& v) noexcept {
   const auto [w, x, y, z] = q;
   return {(1.0 - 2.0 * (y * y + z * z)) * v[0] + 2.0 * (x * y - w * z) * v[1] +
@@ -40,7 +40,7 @@ void Odometry::add(const TickRecord& tick) noexcept {
 
 std::array<double, 36> Odometry::pose_covariance() const noexcept {
   constexpr double kTilt_rad2 = 1e-4;
-  constexpr double kUnknown = 1e6;  // a variance that says: not known
+  constexpr double kUnknown = 1e6;  // so large that it means: not known
   std::array<double, 36> covariance{};
   covariance[0] = covariance[7] = horizontal_variance_m2_;
   covariance[14] = walking_ ? kVelocityError_mps * kVelocityError_mps : kUnknown;

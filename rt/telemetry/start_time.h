@@ -8,8 +8,8 @@
 
 namespace sandrunner {
 
-/// Wall clock of tick 0, ns since 1970, for who holds a tick that has just run. One value for
-/// everything that stamps the ticks of a run, so that recordings and DDS agree.
+/// Wall clock at tick 0, ns since 1970, computed from a tick that has just run. Everything that
+/// stamps the ticks of a run uses one such value, so that recordings and DDS agree.
 inline std::int64_t start_time_ns(const TickRecord& tick) {
   constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
   return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count() -

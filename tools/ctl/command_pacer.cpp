@@ -11,7 +11,7 @@ std::optional<VelocityCommand> CommandPacer::due(const std::optional<VelocityCom
   stopping_ = !wanted;
   if (wanted) zeros_left_ = kZeros;
   if (zeros_left_ == 0 || (now_ns < next_ns_ && !first_zero)) return std::nullopt;
-  // On the grid while it is kept; after a pause or a stall a new one begins.
+  // On a grid of times; after a pause or a stall a new grid begins.
   const bool late = now_ns - next_ns_ >= kCommandPeriod_ns;
   next_ns_ = (late || first_zero ? now_ns : next_ns_) + kCommandPeriod_ns;
   if (wanted) return wanted;

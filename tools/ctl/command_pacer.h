@@ -8,14 +8,14 @@
 
 namespace sandrunner::ctl {
 
-/// When a velocity is to be sent: at 20 Hz while somebody steers, then a few zeros, the first of
-/// them at once; then nothing, so that another publisher can have the robot. No clock inside.
+/// When to send a velocity: at 20 Hz while somebody steers; then a few zeros, the first of them at
+/// once; then nothing, so that another publisher can take over. Contains no clock.
 class CommandPacer {
  public:
-  /// `wanted`: what is steered at `now_ns`. Returns what is to be sent now.
+  /// `wanted`: the velocity steered at `now_ns`, if any. Returns what to send now, if anything.
   std::optional<VelocityCommand> due(const std::optional<VelocityCommand>& wanted,
                                      std::int64_t now_ns);
-  /// Whether zeros are still to be sent, once nobody steers.
+  /// Whether zeros are still to be sent when nobody steers any more.
   bool busy() const noexcept { return zeros_left_ > 0; }
 
  private:

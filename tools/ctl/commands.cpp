@@ -18,13 +18,13 @@
 namespace sandrunner::ctl {
 namespace {
 
-// False: whoever read it has gone.
+// False: nobody reads the output any more.
 bool print(const std::string& text) {
   return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
          std::fflush(stdout) == 0;
 }
 
-// At the start of a screen; each line clears what was right of it, the end what was below.
+// Overwrites the screen from its top; each line clears the rest of its row, the end what is below.
 std::string on_screen(const std::string& lines) {
   std::string out = "\x1b[H";
   for (char c : lines) {
@@ -50,12 +50,12 @@ void show_status(const Options& options, Interrupt& interrupt) {
       if (steady_ns() - start_ns > kSecond_ns && !view.alive(steady_ns())) break;
     }
     if (!view.alive(steady_ns())) {
-      throw RefusedError(fmt::format("no robot: nothing came {} for 1 s", place(options.dds)));
+      throw RefusedError(fmt::format("no robot: no message came {} for 1 s", place(options.dds)));
     }
     print(view.screen(steady_ns()));
     return;
   }
-  const std::string title = fmt::format("sandrunner {}; Ctrl-C ends\n", place(options.dds));
+  const std::string title = fmt::format("sandrunner {}; Ctrl-C quits\n", place(options.dds));
   if (!print("\x1b[2J")) return;
   for (std::int64_t next_ns = start_ns + kRefresh_ns; !interrupt.wait(kLook_ns);) {
     reader.take_into(view);
@@ -76,7 +76,7 @@ void send_command(const Options& options, Interrupt& interrupt) {
   const long long wanted =
       options.for_s ? std::max(1LL, std::llround(*options.for_s * 20.0)) : INT64_MAX;
   long long sent = 0;
-  // Each at its own time since the start: a late one does not delay the next.
+  // Each has its own time since the start: a late one does not delay the next.
   while (sent < wanted && !interrupt.came()) {
     if (!writer.has_robot()) {
       throw RefusedError(fmt::format("the robot is gone after {} commands", sent));
@@ -85,7 +85,7 @@ void send_command(const Options& options, Interrupt& interrupt) {
     ++sent;
     if (interrupt.wait(start_ns + sent * kCommandPeriod_ns - steady_ns())) break;
   }
-  // No wait of `interrupt` any more: after a signal it would be none.
+  // Not interrupt.wait(): after a signal it would not wait.
   for (int i = 0; i < kZeros; ++i) {
     if (i > 0) usleep(kCommandPeriod_ns / 1000);
     writer.send({});
@@ -100,14 +100,14 @@ void request_mode(const Options& options, Interrupt& interrupt) {
   if (!interrupt.wait_until(kFindRobot_ns, [&] { return client.has_robot(); })) {
     throw RefusedError(fmt::format("{}: no robot answered {}", options.mode, place(options.dds)));
   }
-  // The robot may see us a moment after we see it; a request before that would be lost.
+  // The robot may find us a moment after we find it; a request before that would be lost.
   interrupt.wait(kSettle_ns);
   client.ask(options.mode);
   std::optional<sandrunner_ModeReply> reply;
   interrupt.wait_until(kAnswer_ns, [&] { return (reply = client.reply()).has_value(); });
   if (!reply) {
-    throw RefusedError(
-        fmt::format("{}: no answer; whether the robot has heard it is not known", options.mode));
+    throw RefusedError(fmt::format(
+        "{}: no answer; it is not known whether the robot received the request", options.mode));
   }
   const std::string mode = one_line(reply->mode);
   if (!reply->accepted) {

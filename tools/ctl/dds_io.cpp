@@ -46,7 +46,7 @@ void CommandWriter::send(const VelocityCommand& command) {
   twist.linear.x = command.vx_mps;
   twist.linear.y = command.vy_mps;
   twist.angular.z = command.wz_radps;
-  // A write that fails is as good as one that is lost on the way: the next one follows.
+  // A write that fails is like a message that is lost on the way: the next one follows.
   if (!stamped_) {
     dds_write(writer_, &twist);
     return;

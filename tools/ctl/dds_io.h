@@ -13,7 +13,7 @@
 
 namespace sandrunner::ctl {
 
-/// Takes at most `limit` messages of what has come; `use` sees each one as const void*.
+/// Takes at most `limit` of the messages that have arrived; `use` is given each as const void*.
 template <typename Use>
 void take(dds_entity_t reader, const Use& use, long long limit = INT64_MAX) {
   void* sample = nullptr;
@@ -28,7 +28,7 @@ void take(dds_entity_t reader, const Use& use, long long limit = INT64_MAX) {
   }
 }
 
-/// How many readers this writer has found, how many writers this reader.
+/// How many readers a writer has found, and how many writers a reader has found.
 std::uint32_t readers_of(dds_entity_t writer);
 std::uint32_t writers_of(dds_entity_t reader);
 
@@ -49,17 +49,17 @@ class CommandWriter {
   dds_entity_t writer_;
 };
 
-/// Asks for modes and gets the answers, one request at a time.
+/// Sends mode requests and receives the answers, one request at a time.
 class ModeClient {
  public:
   /// Throws InputError.
   explicit ModeClient(const DdsParticipant& participant);
 
-  /// Whether a robot is there who could hear a request and be heard.
+  /// Whether there is a robot that can receive a request and answer it.
   bool has_robot() const { return readers_of(requests_) > 0 && writers_of(replies_) > 0; }
-  /// Asks, by the request's name.
+  /// Sends the request with this name.
   void ask(std::string_view request);
-  /// The answer to the latest question, once.
+  /// The answer to the latest request, once.
   std::optional<sandrunner_ModeReply> reply();
 
  private:

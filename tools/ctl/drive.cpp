@@ -21,16 +21,16 @@ namespace sandrunner::ctl {
 namespace {
 
 constexpr const char* kHelp =
-    "w/s forward, back   a/d left, right   q/e turn   +/- faster, slower   space stops\n"
-    "g stand   f walk   x damp   ESC or Ctrl-C quits\n";
+    "w/s forward, backward   a/d left, right   q/e turn   +/- faster, slower   space stop\n"
+    "g stand   f walk   x damp   ESC or Ctrl-C quit\n";
 
-// Whether somebody can read it is not worth the end of the drive.
+// Errors are ignored: output that nobody can read is no reason to end the drive.
 void say(const std::string& text) {
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
 }
 
-// What fits into one line; a longer one would scroll.
+// Characters that fit on a line; a longer one would scroll.
 std::size_t columns() {
   winsize size{};
   const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
@@ -139,7 +139,7 @@ class Drive {
     say("\r\x1b[K" + line.substr(0, columns()));
   }
 
-  // A line that stays, above the one that changes.
+  // A line that stays, above the one that is refreshed.
   static void report(const std::string& text) { say("\r\x1b[K" + text + "\n"); }
 
   void send(const std::optional<VelocityCommand>& wanted) {
@@ -157,7 +157,7 @@ class Drive {
   std::optional<GamepadDevice> device_;
   std::optional<Gamepad> gamepad_;
   bool quit_ = false;
-  std::string asked_;  // the open request
+  std::string asked_;  // the request without an answer yet
   std::int64_t asked_ns_ = 0, next_line_ns_ = 0;
 };
 
@@ -165,7 +165,7 @@ class Drive {
 
 void drive_robot(const Options& options, Interrupt& interrupt) {
   if (isatty(STDIN_FILENO) == 0) {
-    throw InputError("drive: found a standard input that is no terminal, expected a keyboard");
+    throw InputError("drive: found a standard input that is not a terminal, expected a keyboard");
   }
   Drive(options, interrupt).run();
 }

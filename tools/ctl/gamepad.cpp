@@ -11,7 +11,7 @@
 namespace sandrunner::ctl {
 namespace {
 
-// Sticks of worn gamepads rest anywhere in here, as a share of the way to the end.
+// The sticks of worn gamepads rest anywhere in this share of the way to full deflection.
 constexpr double kDeadZone = 0.1;
 
 }  // namespace
@@ -27,13 +27,13 @@ void Gamepad::center() {
 void Gamepad::event(std::uint16_t type, std::uint16_t code, std::int32_t value) {
   if (type == EV_KEY && code == BTN_TL) {
     if (value == 0) enabled_ = false;
-    if (value == 1) enabled_ = true;  // 2 is the repetition of a held button
+    if (value == 1) enabled_ = true;  // 2: a held button repeats
   } else if (type == EV_ABS) {
     for (std::size_t i = 0; i < kAxes.size(); ++i) {
       if (code == kAxes[i]) values_[i] = value;
     }
   } else if (type == EV_SYN && code == SYN_DROPPED) {
-    stop();  // events were lost, the button's release may be among them
+    stop();  // events were lost, perhaps the release of the button
   }
 }
 
@@ -49,7 +49,8 @@ double Gamepad::deflection(std::size_t axis) const {
 
 std::optional<VelocityCommand> Gamepad::command(double scale) const {
   if (!enabled_) return std::nullopt;
-  // Sticks count to the right and down; the robot to the left and forward. 0 - x: no negative zero.
+  // Sticks are positive to the right and down, velocities to the left and forward. 0 - x instead of
+  // -x: no negative zero.
   return VelocityCommand{.vx_mps = 0.0 - scale * kFullSpeed.vx_mps * deflection(1),
                          .vy_mps = 0.0 - scale * kFullSpeed.vy_mps * deflection(0),
                          .wz_radps = 0.0 - scale * kFullSpeed.wz_radps * deflection(2)};

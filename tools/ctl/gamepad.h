@@ -16,9 +16,9 @@ struct AxisRange {
   int flat = 0;  ///< half width of the rest position
 };
 
-/// State of a gamepad, from its evdev events (linux/input-event-codes.h): left stick ABS_X, ABS_Y
-/// for vy and vx, right stick ABS_RX for the yaw rate, left shoulder button BTN_TL as enable
-/// button.
+/// State of a gamepad, from its evdev events (linux/input-event-codes.h): the left stick (ABS_X,
+/// ABS_Y) gives vy and vx, the right stick (ABS_RX) the yaw rate; the left shoulder button (BTN_TL)
+/// enables them.
 class Gamepad {
  public:
   /// Axes X, Y and RX, by their evdev codes.
@@ -27,10 +27,9 @@ class Gamepad {
   explicit Gamepad(const std::array<AxisRange, 3>& ranges) : ranges_(ranges) { center(); }
 
   void event(std::uint16_t type, std::uint16_t code, std::int32_t value);
-  /// From now on the enable button counts only after it was pressed anew.
+  /// From now on the enable button has no effect until it is pressed again.
   void stop() noexcept { enabled_ = false; }
-  /// `scale`: full deflection commands this times kFullSpeed. Nothing: the enable button is not
-  /// held.
+  /// Full deflection commands `scale` times kFullSpeed. Nothing: the enable button is not held.
   std::optional<VelocityCommand> command(double scale) const;
 
  private:

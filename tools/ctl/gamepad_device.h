@@ -12,7 +12,7 @@ namespace sandrunner::ctl {
 /// A gamepad through evdev (/dev/input/event*).
 class GamepadDevice {
  public:
-  /// The first one that is there and may be read; nothing: none.
+  /// The first gamepad that may be read; nothing: there is none.
   static std::optional<GamepadDevice> find();
 
   GamepadDevice(GamepadDevice&& other) noexcept;
@@ -20,15 +20,15 @@ class GamepadDevice {
   ~GamepadDevice();
 
   const std::string& name() const noexcept { return name_; }
-  /// Readable when there are events, or the gamepad has gone.
+  /// Readable when there are events, or the gamepad is gone.
   int fd() const noexcept { return fd_; }
   std::array<AxisRange, 3> ranges() const noexcept { return ranges_; }
-  /// Passes all events on. False: the gamepad has gone.
+  /// Passes all events on. False: the gamepad is gone.
   bool read_into(Gamepad& gamepad);
 
  private:
   explicit GamepadDevice(int fd) : fd_(fd) {}
-  bool describe();  // false: it is no gamepad
+  bool describe();  // false: it is not a gamepad
 
   int fd_;
   std::string name_;

@@ -27,7 +27,7 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() { close(fd_); }
 
-// The signal stays pending, the descriptor readable: nothing is to be remembered.
+// The signal stays pending and the descriptor readable: nothing has to be remembered.
 bool Interrupt::wait(std::int64_t duration_ns) {
   pollfd p{fd_, POLLIN, 0};
   const std::int64_t wait_ns = std::max<std::int64_t>(duration_ns, 0);

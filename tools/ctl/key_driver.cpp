@@ -62,7 +62,7 @@ KeyAction KeyDriver::press(char key, std::int64_t now_ns) {
 }
 
 void KeyDriver::rescale(int tenths, std::int64_t now_ns) {
-  // Not for a key that is over already: it would start again.
+  // Not for a key that is no longer in force: it would start again.
   if (command(now_ns)) last_ns_ = now_ns;
   scale_tenths_ = std::clamp(tenths, 1, 20);
 }

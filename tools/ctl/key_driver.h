@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From keys to velocities: no terminal, no clock.
+// From keys to velocities; no terminal, no clock.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,24 @@ inline constexpr VelocityCommand kFullSpeed = {.vx_mps = 1.0, .vy_mps = 0.5, .wz
 inline constexpr char kKeyEscape = '\x1b';
 inline constexpr char kKeyCtrlC = '\x03';
 
-/// The keys in what a terminal sent at once. Sequences of special keys (arrows, function keys) are
-/// left out; letters come as small ones.
+/// The keys in the bytes that a terminal sent at once. Sequences of special keys (arrows, function
+/// keys) are left out; letters become lower case.
 std::vector<char> keys_from(std::string_view bytes);
 
-/// What a key asks for beside a velocity. kStop also ends what a gamepad commands.
+/// What a key asks for besides a velocity.
 enum class KeyAction { kNone, kStop, kStand, kWalk, kDamp, kQuit };
 
-/// Keys to a velocity: w/s forward/back, a/d left/right, q/e turn left/right. The last one counts
-/// until no key that steers has come for 0.6 s: longer than a terminal takes to repeat a held key.
+/// Turns keys into a velocity: w/s forward/backward, a/d left/right, q/e turn left/right. The last
+/// of them is in force until no steering key has come for 0.6 s, which is longer than a terminal
+/// takes to begin repeating a held key.
 class KeyDriver {
  public:
   static constexpr std::int64_t kHold_ns = 600'000'000;
 
-  /// Keys that do not steer end the motion, unknown ones change nothing. + and - change the scale
-  /// and count as the last key once more.
+  /// The keys of the other actions end the motion; unknown keys change nothing. + and - change the
+  /// scale and keep the key in force for another 0.6 s.
   KeyAction press(char key, std::int64_t now_ns);
-  /// Nothing: no key is in force.
+  /// The velocity of the key in force; nothing: there is none.
   std::optional<VelocityCommand> command(std::int64_t now_ns) const;
   /// Tenths of full speed, 1 to 20; 5 at first.
   int scale_tenths() const noexcept { return scale_tenths_; }
@@ -42,7 +43,7 @@ class KeyDriver {
   void rescale(int tenths, std::int64_t now_ns);
 
   int scale_tenths_ = 5;
-  char key_ = '\0';  // that steers; '\0': none
+  char key_ = '\0';  // the last steering key; '\0': none
   std::int64_t last_ns_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages as readable text, one line each. What others wrote is cleaned of control characters.
+// Messages as readable text, one line each. Control characters in text from others are removed.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace sandrunner::ctl {
 
-/// Name of a mode as a message has it.
+/// Name of a mode from its number in a message.
 const char* mode_text(std::uint32_t mode);
 
 std::string text(const sensor_msgs_msg_dds__JointState_& m);

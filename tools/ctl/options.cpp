@@ -16,7 +16,7 @@
 namespace sandrunner::ctl {
 namespace {
 
-// What the robot would refuse is refused here, where somebody reads it.
+// What the robot would refuse is refused here, where somebody reads the reason.
 void check_speed(const char* name, double value, double limit, const char* unit) {
   if (!std::isfinite(value) || std::abs(value) > limit) {
     throw InputError(
@@ -30,8 +30,8 @@ void check(const Options& o) {
   }
   if (o.dds.interface.empty()) {
     throw InputError(
-        "--interface: found an empty name, expected a network interface, \"lo\" for this computer "
-        "only");
+        "--interface: found an empty name, expected a network interface (\"lo\": this computer "
+        "only)");
   }
   if (o.subcommand == "cmd") {
     check_speed("VX", o.velocity.vx_mps, kAbsurdSpeed_mps, "m/s");
@@ -56,37 +56,38 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   std::string cmd_vel = "twist";
   double for_s = 0.0;
-  CLI::App app{"Watches and commands a robot that runs sandrunner, over DDS."};
+  CLI::App app{"Watches and commands, over DDS, a robot that runs sandrunner."};
   app.option_defaults()->always_capture_default();
   app.require_subcommand(1);
-  app.fallthrough();  // options of all subcommands may stand after the subcommand too
-  app.add_option("--domain", o.dds.domain, "as the robot's dds.domain")->type_name("N");
-  app.add_option("--interface", o.dds.interface, "as the robot's dds.interface; lo: this computer")
+  app.fallthrough();  // common options may also follow the subcommand
+  app.add_option("--domain", o.dds.domain, "the robot's dds.domain")->type_name("N");
+  app.add_option("--interface", o.dds.interface, "the robot's dds.interface; lo: this computer")
       ->type_name("NAME");
   app.add_option("--security", o.dds.security_dir,
                  "folder with the files of the identity \"operator\" (tools/dds_security.sh)")
       ->type_name("DIR");
-  app.add_option("--cmd-vel", cmd_vel, "as the robot's dds.cmd_vel")
-      ->type_name("twist|twist_stamped");
+  app.add_option("--cmd-vel", cmd_vel, "the robot's dds.cmd_vel")->type_name("twist|twist_stamped");
   app.set_version_flag("--version", std::string("sandrunner-ctl ") + SANDRUNNER_VERSION);
 
-  CLI::App* status = app.add_subcommand("status", "how the robot is; refreshes on a terminal");
-  status->add_flag("--once", o.once, "print it once")->always_capture_default(false);
+  CLI::App* status = app.add_subcommand(
+      "status", "show the state of the robot; on a terminal, keep refreshing it");
+  status->add_flag("--once", o.once, "print it once and end")->always_capture_default(false);
   CLI::App* cmd = app.add_subcommand("cmd", "send a velocity at 20 Hz, then zero");
   const auto velocity = [cmd](const char* name, double& value, const char* text) {
     cmd->add_option(name, value, text)->required()->always_capture_default(false);
   };
   velocity("VX", o.velocity.vx_mps, "forward, m/s");
   velocity("VY", o.velocity.vy_mps, "to the left, m/s");
-  velocity("WZ", o.velocity.wz_radps, "turning to the left, rad/s");
-  const CLI::Option* has_for = cmd->add_option("--for", for_s, "this long; else until Ctrl-C")
-                                   ->type_name("S")
-                                   ->always_capture_default(false);
-  CLI::App* mode = app.add_subcommand("mode", "ask for a mode and print the answer");
+  velocity("WZ", o.velocity.wz_radps, "turn to the left, rad/s");
+  const CLI::Option* has_for =
+      cmd->add_option("--for", for_s, "for this long; without it, until Ctrl-C")
+          ->type_name("S")
+          ->always_capture_default(false);
+  CLI::App* mode = app.add_subcommand("mode", "request a mode and print the answer");
   mode->add_option("REQUEST", o.mode, kRequestNames)->required()->always_capture_default(false);
-  CLI::App* watch = app.add_subcommand("watch", "print each message of a topic, a line each");
+  CLI::App* watch = app.add_subcommand("watch", "print the messages of a topic, one per line");
   watch->add_option("TOPIC", o.topic, topic_names())->required()->always_capture_default(false);
-  watch->add_option("--count", o.count, "end after so many; 0: Ctrl-C ends it")->type_name("N");
+  watch->add_option("--count", o.count, "end after N messages; 0: at Ctrl-C")->type_name("N");
   app.add_subcommand("drive", "drive with the keyboard, and with a gamepad if there is one");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (cmd_vel != "twist" && cmd_vel != "twist_stamped") {

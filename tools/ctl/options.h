@@ -11,18 +11,18 @@ namespace sandrunner::ctl {
 
 /// The command line of `sandrunner-ctl`.
 struct Options {
-  DdsConfig dds;                ///< where the robot is: the defaults are the robot's
+  DdsConfig dds;                ///< where to look for the robot; its own defaults
   std::string subcommand;       ///< status, cmd, mode, watch, drive
   bool once = false;            ///< status
   VelocityCommand velocity;     ///< cmd
   std::optional<double> for_s;  ///< cmd; none: until interrupted
-  std::string mode;             ///< mode: what to ask for
+  std::string mode;             ///< mode: name of the request
   std::string topic;            ///< watch
   long long count = 0;          ///< watch: messages; 0: until interrupted
 };
 
-/// Parses and checks the command line. Returns nothing if all is said (--help, --version, which
-/// print to standard output). Throws InputError.
+/// Parses and checks the command line. Returns nothing after --help and --version, which print to
+/// standard output. Throws InputError.
 std::optional<Options> parse_options(int argc, const char* const* argv);
 
 }  // namespace sandrunner::ctl

@@ -16,7 +16,7 @@ termios before;
 
 constexpr int kCrashes[] = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGQUIT};
 
-// Restores, then lets the signal do what it does by default: SA_RESETHAND.
+// Restores the terminal; the signal then has its default effect (SA_RESETHAND).
 void crash(int number) {
   tcsetattr(STDIN_FILENO, TCSANOW, &before);
   raise(number);
@@ -26,7 +26,7 @@ void crash(int number) {
 
 RawTerminal::RawTerminal() {
   if (tcgetattr(STDIN_FILENO, &before) != 0) {
-    throw InputError("drive: found a standard input that is no terminal, expected a keyboard");
+    throw InputError("drive: found a standard input that is not a terminal, expected a keyboard");
   }
   struct sigaction action {};
   action.sa_handler = crash;
@@ -41,7 +41,7 @@ RawTerminal::RawTerminal() {
 }
 
 RawTerminal::~RawTerminal() {
-  // What was typed and not read is not for the shell.
+  // Keys that were typed but not read must not reach the shell.
   tcsetattr(STDIN_FILENO, TCSAFLUSH, &before);
   for (const int number : kCrashes) signal(number, SIG_DFL);
 }

@@ -5,17 +5,17 @@
 
 namespace sandrunner::ctl {
 
-/// The terminal of the standard input without line editing, echo and signal keys: each key is
-/// readable at once. As before at the end, also when the program crashes.
+/// The terminal on standard input without line editing, echo and signal keys: each key can be read
+/// at once. At the end, even after a crash of the program, the terminal is as it was before.
 class RawTerminal {
  public:
-  /// Throws InputError if the standard input is no terminal.
+  /// Throws InputError if standard input is not a terminal.
   RawTerminal();
   ~RawTerminal();
   RawTerminal(const RawTerminal&) = delete;
   RawTerminal& operator=(const RawTerminal&) = delete;
 
-  /// Bytes that have come, once the input is readable; empty: the terminal has gone.
+  /// Waits for input and returns it; empty: the terminal is gone.
   std::string read();
 };
 

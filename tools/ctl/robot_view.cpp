@@ -41,7 +41,7 @@ void RobotView::add(const sandrunner_TickBatch& batch, std::int64_t now_ns) {
   last_ns_ = last_tick_ns_ = now_ns;
   rates_[kTicks].add(now_ns, batch.ticks._length);
   ++messages_;
-  // A number that is not above the last one is that of a robot that was started anew.
+  // A number that is not above the last one means that the robot was restarted.
   if (sequence_number_ != 0 && batch.sequence_number > sequence_number_) {
     lost_messages_ += batch.sequence_number - sequence_number_ - 1;
   }

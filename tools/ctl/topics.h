@@ -8,17 +8,17 @@
 
 namespace sandrunner::ctl {
 
-/// One of our topics, and its messages as text.
+/// A topic of the robot, and how its messages become text.
 struct Topic {
   const char* name;
   const dds_topic_descriptor_t* type;
-  int depth;      ///< messages to keep until they are looked at
+  int depth;      ///< messages to keep until they are read
   bool reliable;  ///< false: from any writer
   bool latched;
-  std::string (*text)(const void* message);  ///< of a message of `type`, one line without its end
+  std::string (*text)(const void* message);  ///< a message of `type` as a line, without line end
 };
 
-/// The topic of this name. Throws InputError that names those that there are.
+/// The topic with this name. Throws an InputError that lists all topics.
 Topic find_topic(const std::string& name, const DdsConfig& config);
 
 /// "rt/joint_states, rt/imu/data, ...".

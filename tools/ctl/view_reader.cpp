@@ -12,8 +12,8 @@ constexpr int kDepth = 50;
 
 }  // namespace
 
-// Best effort, so that a screen that nobody attends to costs the robot no repeats; ticks are
-// reliable, so that a gap is a message that is really lost.
+// Best effort, so that a viewer that falls behind costs the robot no retransmissions; ticks are
+// reliable, so that a gap means a message that is really lost.
 ViewReader::ViewReader(const DdsParticipant& participant)
     : readers_{
           participant.reader("rt/joint_states", sensor_msgs_msg_dds__JointState__desc, kDepth,

@@ -14,7 +14,7 @@ class ViewReader {
   /// Throws InputError.
   explicit ViewReader(const DdsParticipant& participant);
 
-  /// Adds all that has come.
+  /// Adds everything that has arrived.
   void take_into(RobotView& view);
 
  private:

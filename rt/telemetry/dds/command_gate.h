@@ -7,11 +7,11 @@
 
 namespace sandrunner {
 
-/// A velocity command faster than this is absurd: whoever sends it is refused, not clamped.
+/// A velocity command above this is absurd: it is refused, not clamped.
 inline constexpr double kAbsurdSpeed_mps = 5.0;
 inline constexpr double kAbsurdYawRate_radps = 10.0;
 
-/// A Twist as it comes.
+/// A Twist as received.
 struct Twist {
   Vector3 linear_mps{};
   Vector3 angular_radps{};
@@ -19,20 +19,21 @@ struct Twist {
 
 enum class CommandVerdict { kAccepted, kNotFinite, kAbsurd, kOtherPublisher };
 
-/// Decides which velocity commands count: finite ones of sensible size, of one publisher at a time.
-/// The first one holds the command until it has sent no good one for the stale time.
+/// Decides which velocity commands are accepted: finite ones of sensible size, from one publisher
+/// at a time. The first publisher holds the command until it has sent no good one for the stale
+/// time.
 class CommandGate {
  public:
   explicit CommandGate(std::int64_t stale_ns) : stale_ns_(stale_ns) {}
 
-  /// `publisher`: who sent it; `now_ns`: steady clock at its arrival.
+  /// `publisher`: the sender; `now_ns`: steady clock at the arrival.
   CommandVerdict judge(const Twist& twist, std::uint64_t publisher, std::int64_t now_ns) noexcept;
 
  private:
   std::int64_t stale_ns_;
   bool held_ = false;
   std::uint64_t holder_ = 0;
-  std::int64_t last_ns_ = 0;  // when the holder's last good one came
+  std::int64_t last_ns_ = 0;  // when the holder's last good command arrived
 };
 
 }  // namespace sandrunner

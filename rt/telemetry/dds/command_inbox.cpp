@@ -18,10 +18,10 @@ namespace sandrunner {
 namespace {
 
 constexpr int kRequestDepth = 32;
-// All that publishers send before the thread gets to it: were only the newest kept, one who sends
-// right after the holder of the command would silence him and take it over.
+// Enough for all that publishers send before the thread gets to it: if only the newest were kept, a
+// publisher that sends right after the holder of the command would silence it and take over.
 constexpr int kVelocityDepth = 100;
-// The controller answers within a tick; one that does not in this time is not running.
+// The controller answers within a tick; if it has not answered after this time, it is not running.
 constexpr auto kAnswerTime = std::chrono::milliseconds(20);
 constexpr auto kLookEvery = std::chrono::microseconds(250);
 constexpr const char* kNoAnswer = "the controller does not answer";
@@ -94,7 +94,7 @@ void CommandInbox::run() {
   while (!end_) {
     dds_attach_t triggered[3];
     dds_waitset_wait(waitset_, triggered, 3, DDS_INFINITY);
-    take_requests();  // first: what stops the robot may be among them
+    take_requests();  // first, because a stop may be among them
     take_velocity();
   }
 }

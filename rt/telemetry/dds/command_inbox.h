@@ -19,15 +19,16 @@ namespace sandrunner {
 struct CommandCounts {
   std::uint64_t accepted = 0;                                     ///< velocity commands
   std::uint64_t not_finite = 0, absurd = 0, other_publisher = 0;  ///< refused ones
-  std::uint64_t requests_accepted = 0, requests_refused = 0;      ///< of modes
+  std::uint64_t requests_accepted = 0, requests_refused = 0;
 };
 
 /// Reads rt/cmd_vel and sandrunner/mode_request in a thread of its own, at ordinary priority, and
-/// passes on what counts. Every mode request is answered on sandrunner/mode_reply. Stop and damp
-/// are taken from anyone, whoever holds the velocity command.
+/// passes on what it accepts. Every mode request is answered on sandrunner/mode_reply. Requests are
+/// accepted from anyone, whoever holds the velocity command.
 class CommandInbox {
  public:
-  /// Both must outlive the inbox. `can_walk`: there is a policy. Throws InputError.
+  /// `participant` and `op` must outlive the inbox. `can_walk`: there is a policy. Throws
+  /// InputError.
   CommandInbox(const DdsParticipant& participant, const DdsConfig& config, bool can_walk,
                DdsOperator& op);
   ~CommandInbox();
@@ -48,7 +49,7 @@ class CommandInbox {
   const bool stamped_, can_walk_;
   CommandGate gate_;
   OperatorRequests asked_;
-  std::uint64_t calming_number_ = 0;  // of the latest request that calms the robot
+  std::uint64_t calming_number_ = 0;  // of the latest stop or damp
   dds_entity_t cmd_vel_, requests_, replies_, wake_, waitset_;
   std::array<std::atomic<std::uint64_t>, 4> velocities_{};  // by CommandVerdict
   std::array<std::atomic<std::uint64_t>, 2> answers_{};     // refused, accepted

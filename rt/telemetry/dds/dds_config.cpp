@@ -71,17 +71,16 @@ DdsConfig read_dds_config(ConfigTree& config) {
   c.security_dir = config.text("dds.security_dir", c.security_dir);
   if (c.interface.empty()) {
     throw InputError(
-        "dds.interface: found an empty name, expected a network interface, \"lo\" for this "
-        "computer only");
+        "dds.interface: found an empty name, expected a network interface (\"lo\": this "
+        "computer only)");
   }
   return c;
 }
 
 std::string cyclone_xml(const DdsConfig& config, const std::string& identity) {
   const bool loopback = config.interface == "lo";
-  // Without an index of its own a participant is not found by unicast peers; ten processes, the
-  // default, are soon used up by tools. The second peer is the port on which stacks listen that
-  // only expect multicast.
+  // Unicast peers only find a participant that has an index of its own, and tools soon use up the
+  // default of ten. The second peer is the port on which DDS stacks listen that expect multicast.
   const std::string network =
       loopback
           ? fmt::format(
@@ -93,9 +92,9 @@ std::string cyclone_xml(const DdsConfig& config, const std::string& identity) {
           : fmt::format(
                 R"(<General><Interfaces><NetworkInterface name="{}"/></Interfaces></General>)",
                 escaped(config.interface));
-  // One thread for all sockets: several are woken for their end by packets to themselves, which
-  // wait for ever if the network interface is gone by then. And each writer waits at the end for
-  // the acknowledgements of its readers, dead ones too: not for a second each.
+  // One thread for all sockets: with several, each is woken at the end by a packet to itself, which
+  // never arrives if the network interface is gone by then. And at the end each writer waits for
+  // the acknowledgements of its readers, even dead ones: not for a second each.
   constexpr const char* kInternal =
       "<Internal><MultipleReceiveThreads>false</MultipleReceiveThreads>"
       "<WriterLingerDuration>100 ms</WriterLingerDuration></Internal>";

@@ -16,18 +16,18 @@ struct DdsConfig {
   int ros_hz = 100;              ///< rate of joint states, IMU, odometry and tf
   bool ticks = true;             ///< publish every 4 kHz tick too
   bool stamped_cmd_vel = false;  ///< rt/cmd_vel is a TwistStamped
-  double stale_s = 0.3;          ///< a velocity command that is older than this counts as none
+  double stale_s = 0.3;          ///< a velocity command older than this is ignored
   std::string security_dir;      ///< made by tools/dds_security.sh; empty: no security
 
-  /// `stale_s` in control ticks. The controller's `operator_hold_ticks` is to be this, so that the
-  /// robot slows down and does not stop dead.
+  /// `stale_s` in control ticks. The controller's `operator_hold_ticks` should be the same, so that
+  /// the robot slows down instead of stopping dead.
   std::uint64_t stale_ticks() const noexcept;
 };
 
 /// Reads the table [dds]. Throws InputError.
 DdsConfig read_dds_config(ConfigTree& config);
 
-/// Cyclone DDS configuration. On "lo": unicast to this computer, no multicast. With a
+/// Configuration of Cyclone DDS. On "lo": unicast within this computer, no multicast. With a
 /// `security_dir`: authentication as `identity` (DIR/identity.pem, .key, .perm.p7s), access
 /// control, encryption. Throws InputError if one of these files is missing.
 std::string cyclone_xml(const DdsConfig& config, const std::string& identity);

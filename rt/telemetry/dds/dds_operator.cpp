@@ -7,10 +7,10 @@ namespace sandrunner {
 
 OperatorCommand DdsOperator::command(std::uint64_t tick) noexcept {
   const OperatorRequests& asked = asked_.read();
-  const bool first = next_tick_ == 0;  // the controller's first step considers no request
+  const bool first = next_tick_ == 0;  // in its first step the controller ignores requests
   if (asked.velocity_number != velocity_number_) {
     velocity_number_ = asked.velocity_number;
-    // If slots were missed, the command may have come in the first one of them.
+    // If slots were missed, the command may have arrived in the first of them.
     arrival_tick_ = first ? tick : std::min(next_tick_, tick);
     command_.velocity = asked.velocity;
   }

@@ -17,20 +17,19 @@ struct OperatorRequests {
   std::uint64_t request_number = 0;  ///< counts the requests; 0: none yet
 };
 
-/// The control thread's end of commands that come over DDS. A velocity is of the tick at which it
-/// was first seen; once it is older than the stale time it is zero. Nothing is asked for that
-/// nobody asked for: the robot stays as it is until the first request. Ends in damping when it is
-/// interrupted.
+/// The control thread's end of commands that come over DDS. The age of a velocity counts from the
+/// tick at which it was first seen; beyond the stale time it is replaced by zero. Until the first
+/// request, the robot stays as it is. Ends in damping when it is interrupted.
 class DdsOperator final : public OperatorInput {
  public:
-  /// `stale_ticks`: the oldest velocity that still counts, in control ticks.
+  /// `stale_ticks`: the greatest age at which a velocity is still followed, in control ticks.
   explicit DdsOperator(std::uint64_t stale_ticks) : stale_ticks_(stale_ticks) {}
 
-  // Control thread: wait-free.
+  // For the control thread: wait-free.
   OperatorCommand command(std::uint64_t tick) noexcept override;
   OperatorVerdict advance(const TickFacts& facts) noexcept override;
 
-  // From one other thread:
+  // For one other thread:
   void ask(const OperatorRequests& asked) noexcept { asked_.write(asked); }
   /// Number of the newest request that the controller has considered.
   std::uint64_t considered() const noexcept { return considered_.load(std::memory_order_acquire); }
@@ -40,14 +39,14 @@ class DdsOperator final : public OperatorInput {
  private:
   const std::uint64_t stale_ticks_;
   TripleBuffer<OperatorRequests> asked_;
-  // Control thread:
-  std::uint64_t velocity_number_ = 0, request_number_ = 0;  // latest that was seen
-  std::uint64_t next_tick_ = 0;                             // the one after the last; 0: none yet
+  // Only the control thread uses these:
+  std::uint64_t velocity_number_ = 0, request_number_ = 0;  // the latest seen
+  std::uint64_t next_tick_ = 0;                             // 0: no tick yet
   std::uint64_t arrival_tick_ = 0;                          // of the velocity
   std::uint64_t damped_ticks_ = 0;                          // since the interrupt
   bool interrupted_ = false;
   OperatorCommand command_;
-  // To the other thread:
+  // For the other thread:
   std::atomic<Mode> mode_{Mode::kPassive};
   std::atomic<std::uint64_t> considered_{0};
   static_assert(std::atomic<Mode>::is_always_lock_free);

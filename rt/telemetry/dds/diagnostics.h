@@ -15,9 +15,10 @@
 
 namespace sandrunner {
 
-/// Publishes how the robot is on rt/diagnostics: mode, faults, how the control thread kept its
-/// times since the start, what became of commands and messages. Error level while a fault is
-/// latched, else warning while slots were missed since the last message.
+/// Publishes the robot's condition on rt/diagnostics: mode, faults and their joints, the gate's
+/// counters, the control thread's times since the start, what became of commands and messages. The
+/// level is error while a fault is latched, else warning if slots were missed since the last
+/// message.
 class Diagnostics {
  public:
   /// `robot`: names of the joints that a fault is about. Throws InputError.

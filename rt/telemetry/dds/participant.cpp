@@ -39,9 +39,9 @@ Qos make_qos(int depth, bool reliable, bool latched) {
   return qos;
 }
 
-// What Cyclone DDS has to say goes to the standard error; but a network that is gone makes an error
-// of every packet, so not more than these lines in ten seconds. While a participant is made it is
-// kept: if that fails, it belongs into the one line of the error.
+// Cyclone DDS's messages go to standard error. Without its network it would report every packet, so
+// there is a limit of lines per ten seconds. While a participant is being created, messages are
+// kept: if that fails, they belong into the one line of the error.
 constexpr int kLogLines = 20;
 constexpr auto kLogTime = std::chrono::seconds(10);
 
@@ -52,7 +52,7 @@ class Log {
     keeping_ = true;
     kept_.clear();
   }
-  /// What was said since keep(): its first line.
+  /// The first message since keep().
   std::string stop_keeping() {
     const std::lock_guard lock(mutex_);
     keeping_ = false;
@@ -71,9 +71,9 @@ class Log {
       lines_ = 0;
     }
     if (++lines_ > kLogLines) return;
-    to_standard_error(
-        fmt::format("DDS: {}\n{}", message,
-                    lines_ == kLogLines ? "DDS: more is not shown for ten seconds\n" : ""));
+    to_standard_error(fmt::format(
+        "DDS: {}\n{}", message,
+        lines_ == kLogLines ? "DDS: further messages are not shown for ten seconds\n" : ""));
   }
 
  private:
@@ -97,7 +97,7 @@ void log_sink(void*, const dds_log_data_t* data) { dds_log().say(data->message);
 dds_entity_t check_dds(dds_entity_t result, const std::string& what) {
   if (result >= 0) return result;
   throw InputError(
-      fmt::format("DDS: {}: found {}, expected it to work", what, dds_strretcode(result)));
+      fmt::format("DDS: {}: found {}, expected success", what, dds_strretcode(result)));
 }
 
 DdsParticipant::DdsParticipant(const DdsConfig& config, const std::string& identity) {
@@ -108,7 +108,7 @@ DdsParticipant::DdsParticipant(const DdsConfig& config, const std::string& ident
   dds_set_log_sink(log_sink, nullptr);
   dds_log().keep();
   domain_ = dds_create_domain(static_cast<dds_domainid_t>(config.domain), xml.c_str());
-  // What ROS 2 puts into its participants: they are listed beside its own.
+  // As ROS 2's participants have it: tools then list ours beside those.
   const std::string enclave = "enclave=/;";
   const Qos qos(dds_create_qos());
   dds_qset_userdata(qos.get(), enclave.data(), enclave.size());

@@ -10,9 +10,9 @@
 namespace sandrunner {
 namespace {
 
-constexpr int kDepth = 10;  // what a ROS 2 publisher has unless told otherwise
+constexpr int kDepth = 10;  // ROS 2's default
 
-// The generated C structs have no const.
+// The generated C structs know no const.
 char* text(const char* constant) { return const_cast<char*>(constant); }
 
 std_msgs_msg_dds__Header_ header(const RosHeader& h) {

@@ -30,7 +30,7 @@ void Telemetry::add(const TickRecord& record) {
   odometry_.add(record);
   diagnostics_.add(record);
   if (batches_ && !batches_->add(record, stamp_ns)) ++failed_writes_;
-  // Due when the tick enters a new slot of the slower rate, also if the slot's first tick is
+  // Due when the tick enters a new slot of the slower rate, even if the slot's first tick is
   // missing.
   const auto due = [&](std::uint64_t hz) {
     return tick * hz / kControlHz != last_tick_ * hz / kControlHz;

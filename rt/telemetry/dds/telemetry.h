@@ -16,12 +16,12 @@ namespace sandrunner {
 
 /// Publishes what the control loop does: ROS 2's messages at `ros_hz`, diagnostics once a second,
 /// and every tick in batches. Used by one thread of ordinary priority; a write may take
-/// milliseconds. Stamps are the wall clock at the start plus the tick times 0.25 ms: they are as
-/// even as the control loop's grid and do not follow later corrections of the wall clock.
+/// milliseconds. A stamp is the wall clock at tick 0 plus 0.25 ms per tick: stamps are as evenly
+/// spaced as the control loop's slots and do not follow later corrections of the wall clock.
 class Telemetry {
  public:
-  /// `participant` must outlive it; `inbox` (may be null) too: its counts are published.
-  /// Throws InputError.
+  /// `participant` must outlive this object, and so must `inbox`, whose counts are published; it
+  /// may be null. Throws InputError.
   Telemetry(const DdsParticipant& participant, const DdsConfig& config,
             const RobotDescription& robot, const CommandInbox* inbox);
   /// Publishes the last ticks.
@@ -29,8 +29,8 @@ class Telemetry {
   Telemetry(const Telemetry&) = delete;
   Telemetry& operator=(const Telemetry&) = delete;
 
-  /// `start_ns`: wall clock of tick 0, ns since 1970; without it, taken at the first add(). Before
-  /// the first add().
+  /// Sets the wall clock at tick 0, ns since 1970, before the first add(), which otherwise takes
+  /// it.
   void begin(std::int64_t start_ns) noexcept { start_ns_ = start_ns; }
   /// Every tick, in order.
   void add(const TickRecord& tick);

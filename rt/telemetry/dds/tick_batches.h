@@ -9,21 +9,21 @@
 
 namespace sandrunner {
 
-/// Ticks of one message on sandrunner/ticks: 10 ms.
+/// Ticks in one message on sandrunner/ticks: 10 ms.
 inline constexpr std::uint32_t kTicksPerBatch = 40;
-/// Messages that are kept for a subscriber that is late: 2 s.
+/// Messages that are kept for a slow subscriber: 2 s.
 inline constexpr int kBatchDepth = 200;
 
-/// Publishes every tick, 40 a message, the messages numbered without a gap.
+/// Publishes every tick, 40 to a message; the messages are numbered without gaps.
 class TickBatches {
  public:
   /// Throws InputError.
   explicit TickBatches(const DdsParticipant& participant);
   ~TickBatches();
 
-  /// `stamp_ns` since 1970, of this tick. False: a message was due and could not be written.
+  /// `stamp_ns`: of this tick, since 1970. False: a message was due and could not be written.
   bool add(const TickRecord& tick, std::int64_t stamp_ns);
-  /// Writes what is left, for the end. False: that failed.
+  /// Writes the ticks that are left at the end. False: they could not be written.
   bool flush();
 
  private:

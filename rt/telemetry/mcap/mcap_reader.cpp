@@ -18,16 +18,16 @@ namespace {
 
 /// Everything that the reader keeps: schemas, channels, attachments, metadata.
 constexpr std::size_t kMaxKeptBytes = std::size_t{256} << 20;
-/// A record that is read into memory: the largest chunk, uncompressed, with its fields.
+/// Largest record that is read into memory: the largest chunk, uncompressed, with its fields.
 constexpr std::uint64_t kMaxRecordBytes = kMcapMaxChunkBytes + (1U << 20);
-/// Bodies are read in such pieces, so that a wrong length in a short file costs no memory.
+/// Bodies are read in pieces of this size, so that a wrong length in a short file costs no memory.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
-/// No zstd block is better than 128 KiB in 4 bytes (format, section 3.1.1.2), so that a short chunk
-/// cannot ask for much memory.
+/// No zstd block holds more than 128 KiB in 4 bytes (format, section 3.1.1.2): with this limit, a
+/// short chunk cannot ask for much memory.
 constexpr std::uint64_t kMaxZstdRatio = (128U << 10) / 4U;
 
 std::uint32_t add_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
-  if (bytes.empty()) return crc;  // zlib starts anew at a null pointer
+  if (bytes.empty()) return crc;  // a null pointer would make zlib start again
   return static_cast<std::uint32_t>(
       ::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
@@ -73,7 +73,7 @@ class McapReader::Fields {
     McapMap result;
     Fields entries(reader_, bytes(number<std::uint32_t>()));
     while (!entries.left_.empty()) {
-      reader_.keep(128);  // about what a node costs beside its strings
+      reader_.keep(128);  // roughly what a node costs besides its strings
       std::string key = entries.string();
       if (!result.emplace(std::move(key), entries.string()).second) {
         reader_.fail("found a key twice in a map, expected each once");
@@ -164,7 +164,7 @@ bool McapReader::take_from_file() {
   const std::uint32_t crc_before = crc_;
   record_offset_ = offset_;
   std::array<std::byte, kMcapRecordHeadBytes> head;
-  ended_ = true;  // unless all of the record is there
+  ended_ = true;  // unless the whole record is there
   if (!read_bytes(head)) return false;
   const auto opcode = static_cast<std::uint8_t>(head[0]);
   std::uint64_t size = 0;
@@ -180,7 +180,7 @@ bool McapReader::take_from_file() {
     return false;
   }
   if (summary_start_ != 0 && opcode != kMcapFooter) {
-    fail(fmt::format("found type 0x{:02x} behind the end of the data", opcode));
+    fail(fmt::format("found type 0x{:02x} after the end of the data", opcode));
   }
   if (!read_body(size)) return false;
   ended_ = false;
@@ -257,7 +257,7 @@ void McapReader::take_schema(Fields fields) {
   schema.name = fields.string();
   schema.encoding = fields.string();
   schema.data = fields.string();
-  if (schema.id == 0) return;  // to be ignored, says the specification
+  if (schema.id == 0) return;  // the specification says to ignore it
   const auto [known, is_new] = schemas_.try_emplace(schema.id, schema);
   if (is_new) return keep(size);
   if (known->second != schema) fail(fmt::format("found two schemas with the id {}", schema.id));
@@ -366,15 +366,15 @@ void McapReader::take_footer(Fields fields, std::uint32_t crc) {
   const bool whole = read_bytes(magic);
   if (std::memcmp(magic.data(), kMcapMagic.data(), static_cast<std::size_t>(offset_ - before)) !=
       0) {
-    fail("found other bytes behind the footer, expected the end of an MCAP file");
+    fail("found other bytes after the footer, expected the end of an MCAP file");
   }
   if (whole && stream_.peek() != std::istream::traits_type::eof()) {
-    fail("found more bytes behind its end, expected none");
+    fail("found more bytes after its end, expected none");
   }
   complete_ = whole;
 }
 
-/// Counts what is kept in memory, with something for its containers.
+/// Counts what is kept in memory, with an allowance for its containers.
 void McapReader::keep(std::size_t bytes) {
   kept_bytes_ += bytes + 256;
   if (kept_bytes_ > kMaxKeptBytes) {
@@ -383,7 +383,7 @@ void McapReader::keep(std::size_t bytes) {
   }
 }
 
-/// 0 in the file stands for a CRC that was not computed.
+/// 0 in the file means that no CRC was computed.
 void McapReader::check_crc(std::string_view what, std::uint32_t computed, std::uint32_t stored) {
   if (stored == 0 || stored == computed) return;
   fail(fmt::format("found the CRC {:08x} of the {}, expected {:08x}", computed, what, stored));

@@ -15,39 +15,39 @@
 
 namespace sandrunner {
 
-/// Reads an MCAP file from its beginning to its end, in the order of the file, without its summary:
-/// a file that is cut anywhere reads up to its last whole chunk.
+/// Reads an MCAP file from beginning to end, in the order of the file and without its summary, so
+/// that a file truncated anywhere is read up to its last whole chunk.
 ///
 ///     McapReader reader("run.mcap");
 ///     while (const McapMessage* message = reader.next()) { ... }
 ///     if (!reader.complete()) { /* the recorder was killed, or the disk was full */ }
 ///
-/// All CRCs are checked: of a chunk before its first message is given, of an attachment before it
-/// is, of the whole data section and the summary at their end. Bytes that are no MCAP file throw
-/// InputError: one line with the path, the place, what was found and what was expected; what was
-/// read before it stays valid. Memory is bounded whatever the bytes say: chunks to
-/// kMcapMaxChunkBytes, everything that is kept to 256 MiB. Chunks compressed with anything but zstd
-/// are refused.
+/// All CRCs are checked: that of a chunk before its first message is returned, that of an
+/// attachment before it is stored, those of the data section and the summary at their end. Bytes
+/// that are not an MCAP file throw InputError: one line with the path, the place, what was found
+/// and what was expected; what was read before that stays valid. Memory is bounded whatever the
+/// bytes are: for a chunk by kMcapMaxChunkBytes, for everything that is kept by 256 MiB. Chunks
+/// compressed with anything but zstd are refused.
 class McapReader {
  public:
   /// Opens the file and reads its header. Throws InputError.
   explicit McapReader(const std::string& path);
-  /// The same from any stream, which must outlive the reader; `name` stands in its errors.
+  /// The same from any stream, which must outlive the reader; `name` appears in its errors.
   McapReader(std::istream& stream, std::string name);
   McapReader(const McapReader&) = delete;
   McapReader& operator=(const McapReader&) = delete;
 
-  /// The next message, valid until the next call; nullptr at the end of the file, or where it is
-  /// cut. Throws InputError, afterwards nullptr.
+  /// The next message, valid until the next call; nullptr at the end of the file, truncated or not.
+  /// Throws InputError; calls after that return nullptr.
   const McapMessage* next();
 
-  /// After the end: whether the file was finished, so that nothing of it is missing.
+  /// After the end: whether the file is whole, not truncated.
   bool complete() const noexcept { return complete_; }
 
   const std::string& profile() const noexcept { return profile_; }
   const std::string& library() const noexcept { return library_; }
 
-  // What has been met so far. A channel and its schema are known before its first message.
+  // What was read so far. A channel and its schema are known before its first message.
   const std::map<std::uint16_t, McapSchema>& schemas() const noexcept { return schemas_; }
   const std::map<std::uint16_t, McapChannel>& channels() const noexcept { return channels_; }
   const std::vector<McapAttachment>& attachments() const noexcept { return attachments_; }
@@ -78,7 +78,7 @@ class McapReader {
   std::ifstream file_;
   std::istream& stream_;
   std::string name_;
-  std::uint64_t offset_ = 0;         ///< bytes read of the file
+  std::uint64_t offset_ = 0;         ///< bytes read from the file
   std::uint64_t record_offset_ = 0;  ///< where its current record starts
   std::uint32_t crc_ = 0;            ///< of the data section, then of the summary
   std::uint64_t summary_start_ = 0;  ///< 0: before it

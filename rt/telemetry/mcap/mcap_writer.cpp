@@ -22,9 +22,9 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-/// A chunk is ended when it holds this much, uncompressed.
+/// A chunk ends when it holds this much, uncompressed.
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
-/// Telemetry that the recorder must compress beside the robot's other work: see README.md.
+/// Fast, because the recorder shares the computer with the robot's other work: see README.md.
 constexpr int kCompressionLevel = 1;
 
 std::uint32_t add_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
@@ -33,7 +33,7 @@ std::uint32_t add_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
 }
 
 void put_bytes(Bytes& to, const void* bytes, std::size_t size) {
-  // Not insert(): g++ 12 at -O3 sees an overflow in it that is none.
+  // Not insert(): g++ 12 at -O3 warns of an overflow in it that cannot happen.
   const std::size_t at = to.size();
   to.resize(at + size);
   if (size > 0) std::memcpy(to.data() + at, bytes, size);
@@ -49,7 +49,7 @@ void put(Bytes& to, std::string_view text) {
   put_bytes(to, text.data(), text.size());
 }
 
-/// Opens `path` for writing, making it if need be. Throws InputError.
+/// Opens `path` for writing and creates it if necessary. Throws InputError.
 int open_file(const std::string& path, int flags) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0644);
   if (fd < 0) {
@@ -59,7 +59,7 @@ int open_file(const std::string& path, int flags) {
   return fd;
 }
 
-/// Puts what `body` appends, with its length, a `Length`, in front.
+/// Appends what `body` appends, preceded by its length, a `Length`.
 template <typename Length, typename Body>
 void put_with_length(Bytes& to, const Body& body) {
   const std::size_t at = to.size();
@@ -278,7 +278,8 @@ void McapWriter::flush() {
       out_.resize(at + ZSTD_compressBound(chunk_.size()));
       compressed_size = ZSTD_compress2(static_cast<ZSTD_CCtx*>(compressor_.get()), &out_[at],
                                        out_.size() - at, chunk_.data(), chunk_.size());
-      if (ZSTD_isError(compressed_size)) throw std::bad_alloc();  // the only error with room enough
+      if (ZSTD_isError(compressed_size))
+        throw std::bad_alloc();  // the only error when there is room enough
       out_.resize(at + compressed_size);
     });
   });
@@ -379,7 +380,7 @@ void McapWriter::write_out(std::span<const std::byte> bytes) {
       done += static_cast<std::size_t>(written);
     } else if (written == 0 || errno != EINTR) {
       const int error = written == 0 ? ENOSPC : errno;
-      // Cuts off what is not whole; where that fails the reader ends there all the same.
+      // Cuts off what is not whole. If that fails, the reader still stops there.
       [[maybe_unused]] const int result = ::ftruncate(fd_, static_cast<off_t>(bytes_written_));
       give_up();
       throw write_error(path_, error, bytes_written_);

@@ -5,22 +5,22 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <chrono>
+#include <future>
 #include <new>
 #include <span>
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 #include "rt/core/floating_point.h"
 
 namespace sandrunner {
 namespace {
 
-constexpr std::size_t kBlockTicks = 400;   // 0.1 s, 1 MB; longer ones do not shrink further
+constexpr std::size_t kBlockTicks = 400;   // 0.1 s, 1 MB; longer blocks compress no better
 constexpr std::size_t kQueuedBlocks = 20;  // two seconds
-constexpr int kCompressionLevel = 1;       // as the files'
+constexpr int kCompressionLevel = 1;       // as in files
 
 constexpr std::uint64_t to_ticks(double time_s) {
   return static_cast<std::uint64_t>(time_s * kControlHz);
@@ -30,7 +30,7 @@ std::vector<std::byte> compressed(std::span<const TickRecord> ticks) {
   std::vector<std::byte> room(ZSTD_compressBound(ticks.size_bytes()));
   const std::size_t size =
       ZSTD_compress(room.data(), room.size(), ticks.data(), ticks.size_bytes(), kCompressionLevel);
-  if (ZSTD_isError(size)) throw std::bad_alloc();  // there is room: nothing else can go wrong
+  if (ZSTD_isError(size)) throw std::bad_alloc();  // the output fits: only memory can fail
   return {room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
@@ -74,7 +74,7 @@ void BlackBox::work() {
       write_marked(to_ticks(kBlackBoxAfter_s));
     }
     write_marked(0);
-  } catch (const std::bad_alloc&) {  // locked memory has a limit, and the run itself needs it more
+  } catch (const std::bad_alloc&) {  // locked memory is limited, and the run itself needs it more
     result_.stopped_because = "out of memory";
     window_.clear();
     while (queue_.take()) {
@@ -99,16 +99,16 @@ void BlackBox::keep(const TickQueue::Batch& batch) {
 void BlackBox::note_faults(const TickQueue::Batch& batch) {
   for (const TickRecord& tick : batch) {
     const std::uint64_t faults = tick.output.faults;
-    // What is latched beside the first belongs to the same fall. The lowest bit is the first.
+    // Faults that latch after the first belong to the same fall.
     if (faults != 0 && last_faults_ == 0) {
-      marks_.push_back({static_cast<Fault>(faults & (~faults + 1)), tick.input.sensors.tick});
+      marks_.push_back({tick.output.first_fault, tick.input.sensors.tick});
     }
     last_faults_ = faults;
   }
 }
 
 void BlackBox::let_go(const Block& block) {
-  if (result_.difference) return;  // nothing leads over it
+  if (result_.difference) return;  // no replay gets past it
   for (const TickRecord& tick : uncompressed(block.bytes, block.ticks)) {
     result_.difference = replay_.check(tick);
     if (result_.difference) return;
@@ -139,30 +139,36 @@ void BlackBox::write(const Mark& mark) {
   if (file.has_start && info.first_tick > 0) info.state = replay_state_bytes(state);
   file.before_s =
       (static_cast<double>(mark.tick) - static_cast<double>(info.first_tick)) * kControlPeriod_s;
-  const std::string part = file.path + ".part";
   try {
-    write_file(part, info);
-    if (std::rename(part.c_str(), file.path.c_str()) != 0) {
-      throw InputError(fmt::format("{}: cannot be written ({})", file.path, std::strerror(errno)));
+    WholeFile whole(file.path);
+    write_recording(whole.part_path(), info);
+    // A slow disk takes longer for this than the queue is deep.
+    std::future<void> kept = std::async(std::launch::async, [&] { whole.keep(); });
+    while (kept.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
+      keep_queued();
     }
+    kept.get();
   } catch (const InputError& error) {
     file.problem = error.what();
   } catch (const std::bad_alloc&) {
     file.problem = "out of memory";
   }
-  if (!file.problem.empty()) std::remove(part.c_str());
   result_.files.push_back(std::move(file));
 }
 
-void BlackBox::write_file(const std::string& path, const RecordingInfo& info) {
+void BlackBox::write_recording(const std::string& path, const RecordingInfo& info) {
   RecordingWriter writer(path, info);
-  // The run goes on, and the disk may be slow: the window moves on under these.
+  // The run goes on meanwhile, and the disk may be slow: these blocks outlive the window.
   const std::vector<std::shared_ptr<const Block>> blocks(window_.begin(), window_.end());
   for (const std::shared_ptr<const Block>& block : blocks) {
     writer.write(uncompressed(block->bytes, block->ticks));
-    while (const std::optional<TickQueue::Batch> batch = queue_.take_at_once()) keep(*batch);
+    keep_queued();
   }
   writer.close();
+}
+
+void BlackBox::keep_queued() {
+  while (const std::optional<TickQueue::Batch> batch = queue_.take_at_once()) keep(*batch);
 }
 
 }  // namespace sandrunner

@@ -18,11 +18,11 @@
 
 namespace sandrunner {
 
-/// What is kept before a fault.
+/// What is kept from before a fault.
 inline constexpr double kBlackBox_s = 30.0;
-/// What a file holds after the fault: the robot is let down.
+/// What a file holds from after the fault: how the robot is let down.
 inline constexpr double kBlackBoxAfter_s = 2.0;
-inline constexpr std::size_t kBlackBoxFiles = 10;  ///< a run, at most
+inline constexpr std::size_t kBlackBoxFiles = 10;  ///< per run, at most
 
 /// One fault and its file.
 struct BlackBoxFile {
@@ -30,18 +30,18 @@ struct BlackBoxFile {
   std::uint64_t fault_tick = 0;
   double before_s = 0.0;  ///< how much the file holds from before the fault
   std::string path;
-  bool has_start = true;  ///< it can be replayed: the state before its first tick was known
-  std::string problem;    ///< why there is no such file; empty: there is
+  bool has_start = true;  ///< it can be replayed: the state before its first tick is known
+  std::string problem;    ///< why the file could not be written; empty: it was
 };
 
 struct BlackBoxResult {
   std::vector<BlackBoxFile> files;
-  std::uint64_t left_out = 0;  ///< faults beyond kBlackBoxFiles
+  std::uint64_t left_out = 0;  ///< faults without a file, beyond kBlackBoxFiles
   std::uint64_t dropped = 0;   ///< ticks that came faster than they could be compressed
-  /// The first tick that has left the window and does not replay: ticks are missing before it, or
-  /// the run did not do what its inputs ask for. What begins later has no start.
+  /// The first tick that left the window and does not replay: ticks are missing before it, or the
+  /// run did not do what follows from its inputs. Files that begin later have no start.
   std::optional<ReplayDifference> difference;
-  std::string stopped_because;  ///< out of memory; empty: it went on to the end
+  std::string stopped_because;  ///< why the black box ended before the run; empty: it did not
   std::size_t peak_bytes = 0;   ///< of the compressed ticks
 };
 
@@ -49,30 +49,30 @@ struct BlackBoxResult {
 /// (DIR/black-box-<tick of the fault>.mcap) two seconds after a fault or at the end of the run.
 ///
 /// A recording that begins in the middle needs the state of controller and network before its first
-/// tick. So a replay trails behind: what leaves the window goes through it, is verified by that,
-/// and leaves that state.
+/// tick. That is why a replay trails behind: ticks that leave the window go through it, which
+/// verifies them and yields that state.
 ///
-/// One ordinary thread of its own does everything. Measured on a simulated walk: 80 MB, with noise
-/// on the encoders 104 MB; 1.7 % of a core, and 0.6 s of it for a file.
+/// All this happens in an ordinary thread of its own. Measured on a simulated walk: 93 MB of
+/// memory, 105 MB with encoder noise; 1.6 % of a core, and 0.7 s of that core per file.
 class BlackBox {
  public:
-  /// `policy` may be null, as in the run; it is copied. `wait`: as the Recorder's.
+  /// `policy` is copied; null if the run has none. `wait`: as for Recorder.
   BlackBox(std::string folder, RecordingInfo info, const ControllerConfig& config,
            const Policy* policy, double window_s = kBlackBox_s, bool wait = false);
   ~BlackBox();
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
-  /// As the Recorder's.
+  /// As Recorder::begin.
   void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
-  /// Every tick, in order, from one ordinary thread. If the queue of two seconds is full, the
-  /// newest ticks are dropped and counted.
+  /// Every tick, in order, from one ordinary thread. If the queue, which holds two seconds, is
+  /// full, the newest ticks are dropped and counted.
   void add(const TickRecord& tick) { queue_.add(tick); }
-  /// Writes what is still to be written. Nothing may be added afterwards.
+  /// Writes files that are still due. Nothing may be added afterwards.
   BlackBoxResult close();
 
  private:
-  /// Ticks one after the other, compressed.
+  /// Consecutive ticks, compressed.
   struct Block {
     std::uint64_t first_tick = 0, last_tick = 0;
     std::size_t ticks = 0;
@@ -89,18 +89,19 @@ class BlackBox {
   void let_go(const Block& block);
   void write_marked(std::uint64_t ticks_after);
   void write(const Mark& mark);
-  void write_file(const std::string& path, const RecordingInfo& info);
+  void keep_queued();
+  void write_recording(const std::string& path, const RecordingInfo& info);
 
   const std::string folder_;
-  RecordingInfo info_;  // of its thread, from the first tick on
+  RecordingInfo info_;  // from the first tick on, only its thread uses it
   const std::uint64_t kept_ticks_;
   TickQueue queue_;
-  // Of its thread.
+  // Only its thread uses what follows.
   std::optional<Policy> policy_;
   Replay replay_;  // before the oldest tick of the window
   std::deque<std::shared_ptr<const Block>> window_;
   std::size_t bytes_ = 0;
-  std::deque<Mark> marks_;  // faults to be written
+  std::deque<Mark> marks_;  // faults whose files are due
   std::uint64_t last_faults_ = 0, newest_tick_ = 0;
   BlackBoxResult result_;
   std::thread thread_;

@@ -13,7 +13,7 @@
 namespace sandrunner {
 
 /// Writes classic CDR, little-endian, with its 4-byte encapsulation header: what ROS 2 puts on the
-/// wire and into files. Numbers are aligned to their own size, counted from behind the header.
+/// wire and into files. Numbers are aligned to their own size, counted from the end of the header.
 class CdrWriter {
  public:
   CdrWriter() : bytes_{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}} {}
@@ -30,7 +30,7 @@ class CdrWriter {
     for (const auto value : values) number(value);
     return *this;
   }
-  /// Length, then elements.
+  /// The length, then the elements.
   template <typename Range>
   CdrWriter& sequence(const Range& values) {
     number(static_cast<std::uint32_t>(std::size(values)));
@@ -42,7 +42,7 @@ class CdrWriter {
     bytes_.push_back(std::byte{0});
     return *this;
   }
-  /// Bytes as they are, from a multiple of `alignment` on.
+  /// Bytes as they are, beginning at a multiple of `alignment`.
   CdrWriter& block(std::span<const std::byte> bytes, std::size_t alignment) {
     align(alignment);
     raw(bytes);
@@ -57,7 +57,7 @@ class CdrWriter {
     while ((bytes_.size() - kHeader) % size != 0) bytes_.push_back(std::byte{0});
   }
   void raw(std::span<const std::byte> bytes) {
-    // Not insert(): g++ 12 at -O3 sees an overflow in it that is none.
+    // Not insert(): g++ 12 at -O3 warns of an overflow in it that cannot happen.
     const std::size_t at = bytes_.size();
     bytes_.resize(at + bytes.size());
     if (!bytes.empty()) std::memcpy(bytes_.data() + at, bytes.data(), bytes.size());
@@ -65,7 +65,7 @@ class CdrWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads what CdrWriter writes. Reading past the end sets failed() and gives zeros.
+/// Reads what CdrWriter writes. Reading past the end sets failed() and returns zeros.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::byte> bytes) : bytes_(bytes) {

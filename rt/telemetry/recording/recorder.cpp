@@ -40,7 +40,7 @@ void Recorder::work() {
     if (stopped_) continue;
     try {
       write(*batch);
-    } catch (const std::exception& error) {  // also no memory: the run itself goes on
+    } catch (const std::exception& error) {  // also a lack of memory: the run itself goes on
       stop(error.what());
     }
   }
@@ -55,10 +55,10 @@ void Recorder::write(const TickQueue::Batch& batch) {
   if (!writer_) writer_.emplace(path_, info_);
   writer_->write(batch);
   result_.ticks += batch.size();
-  if (writer_->bytes_written() > limits_.bytes) stop("the limit of its size is reached");
+  if (writer_->bytes_written() > limits_.bytes) stop("its size reached the limit");
   const std::uint64_t first = batch.front().input.sensors.tick;
   if (static_cast<double>(first) * kControlPeriod_s > limits_.time_s) {
-    stop("the limit of its time is reached");
+    stop("its duration reached the limit");
   }
 }
 
@@ -68,7 +68,7 @@ void Recorder::stop(const std::string& reason) {
   result_.stopped_because = reason;
   try {
     if (writer_) writer_->close();
-  } catch (const std::exception&) {  // the disk is full: what is there is readable
+  } catch (const std::exception&) {  // the disk is full: what was written is readable
   }
 }
 

@@ -19,27 +19,27 @@ struct RecordingLimits {
 /// How a recording went.
 struct RecordingResult {
   std::uint64_t ticks = 0;    ///< in the file
-  std::uint64_t dropped = 0;  ///< that came faster than they could be written
+  std::uint64_t dropped = 0;  ///< ticks that came faster than they could be written
   std::uint64_t bytes = 0;
-  std::string stopped_because;  ///< of a limit or a full disk; empty: it is complete
+  std::string stopped_because;  ///< a limit or a full disk; empty: the recording is complete
 };
 
 /// Writes every tick of a run into a file (recording_writer.h) in a thread of its own.
 ///
-/// A disk that fills up, a limit or a lack of memory ends the recording, not the run. A kill loses
-/// at most the last second. The file is made with the first tick: one of an earlier run outlives a
-/// run that is refused.
+/// A disk that fills up, a limit or a lack of memory ends the recording, not the run. A process
+/// that is killed loses at most the last second. The file is created with the first tick: a run
+/// that is refused leaves the previous recording untouched.
 class Recorder {
  public:
-  /// `wait`: add() waits for a full queue (lockstep, where nothing else suffers) instead of
-  /// dropping the newest ticks and counting them. Throws InputError if the file cannot be written.
+  /// `wait`: while the queue is full, add() waits (in lockstep, where that hurts nobody) instead of
+  /// dropping and counting the newest ticks. Throws InputError if the file cannot be written.
   Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits, bool wait);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Wall clock of tick 0, ns since 1970, if it is known later than the rest of the info. Before
-  /// the first add().
+  /// Wall clock at tick 0, ns since 1970, which is known later than the rest of the info. Call it
+  /// before the first add().
   void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
   /// Every tick, in order, from one ordinary thread.
   void add(const TickRecord& tick) { queue_.add(tick); }
@@ -53,9 +53,9 @@ class Recorder {
 
   const std::string path_;
   const RecordingLimits limits_;
-  RecordingInfo info_;  // of the thread that writes, from the first tick on
+  RecordingInfo info_;  // from the first tick on, only the thread that writes uses it
   TickQueue queue_;
-  // Of the thread that writes.
+  // Only the thread that writes uses what follows.
   std::optional<RecordingWriter> writer_;
   bool stopped_ = false;
   RecordingResult result_;

@@ -21,7 +21,8 @@ RecordingInfo info_of(const std::string& path, const McapReader& reader) {
     if (metadata.name == kRunMetadata) run = &metadata;
   }
   if (!run)
-    throw InputError(fmt::format("{}: no metadata '{}': not our recording", path, kRunMetadata));
+    throw InputError(fmt::format("{}: found no metadata '{}', expected one of our recordings", path,
+                                 kRunMetadata));
   const auto value = [&](const char* key) {
     const auto found = run->values.find(key);
     if (found == run->values.end()) {
@@ -33,7 +34,7 @@ RecordingInfo info_of(const std::string& path, const McapReader& reader) {
   info.start_mode = value("start_mode");
   info.clock = value("clock");
   info.start_time_ns = std::strtoll(value("start_time_ns").c_str(), nullptr, 10);
-  // Recordings that were made before there were black boxes all begin at the start.
+  // Recordings from before there were black boxes all begin at tick 0.
   if (const auto first = run->values.find("first_tick"); first != run->values.end()) {
     info.first_tick = std::strtoull(first->second.c_str(), nullptr, 10);
   }
@@ -61,13 +62,15 @@ RecordingContents read_recording(const std::string& path,
     if (begin) begin(contents.info);
   };
   while (const McapMessage* message = reader.next()) {
-    if (!begun) start();
     const McapChannel& channel = reader.channels().at(message->channel_id);
-    if (channel.topic != kTicksTopic) continue;
-    if (reader.schemas().at(channel.schema_id).data != tick_idl()) {
-      throw InputError(fmt::format(
-          "{}: found ticks in the layout of another build, expected this build's", path));
+    const bool is_ticks = channel.topic == kTicksTopic;
+    if (is_ticks && reader.schemas().at(channel.schema_id).data != tick_idl()) {
+      throw InputError(
+          fmt::format("{}: found ticks in the layout of build '{}', expected this build's", path,
+                      info_of(path, reader).build));
     }
+    if (!begun) start();
+    if (!is_ticks) continue;
     CdrReader cdr(message->data);
     const auto batch = cdr.number<std::uint64_t>();
     const auto count = cdr.number<std::uint32_t>();

@@ -13,7 +13,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::size_t kBatchTicks = 40;  // of a message
+constexpr std::size_t kBatchTicks = 40;  // in a message
 constexpr const char* kEventIdl =
     "module sandrunner {\n  struct Event {\n    unsigned long long tick;\n    string kind;\n"
     "    string text;\n  };\n};\n";

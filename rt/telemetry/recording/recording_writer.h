@@ -12,35 +12,35 @@
 
 namespace sandrunner {
 
-/// What a recording says about the run, besides its ticks: enough to replay it.
+/// What a recording says about the run besides its ticks; with them, it is enough for a replay.
 struct RecordingInfo {
-  std::string build;               ///< of the program that made the ticks
+  std::string build;               ///< of the program that ran
   std::string start_mode;          ///< of the controller: "passive" or "walk"
   std::string clock;               ///< "lockstep" or "realtime"
-  std::string config;              ///< effective settings, TOML
-  std::string policy;              ///< the policy file, whole; empty: none
-  RobotDescription robot;          ///< a recording that is read gives its URDF only
-  std::int64_t start_time_ns = 0;  ///< of tick 0, since 1970
-  /// Where the recording begins: 0 at the start of the run. Else it replays from `state`, and not
-  /// at all if that is empty.
+  std::string config;              ///< the settings in effect, TOML
+  std::string policy;              ///< the whole policy file; empty: none
+  RobotDescription robot;          ///< of a recording that was read, only the URDF
+  std::int64_t start_time_ns = 0;  ///< wall clock at tick 0, since 1970
+  /// Where the recording begins: at 0, the start of the run, or later. Then it is replayed from
+  /// `state`, and cannot be replayed if that is empty.
   std::uint64_t first_tick = 0;
   std::string state;  ///< before `first_tick`: replay_state_bytes() (rt/loop/replay.h)
 };
 
-/// Mode that the controller of the run started in.
+/// The mode in which the controller of the run started.
 inline Mode start_mode_of(const RecordingInfo& info) {
   return info.start_mode == "walk" ? Mode::kWalk : Mode::kPassive;
 }
 
-/// Turns ticks into an MCAP file: our own records bit for bit, events, and ROS 2 topics at the rate
-/// of the policy for the usual tools. Compresses and writes in the thread that calls it.
+/// Turns ticks into an MCAP file: our own records bit for bit, events and, for the usual tools,
+/// ROS 2 topics at the rate of the policy. Compresses and writes in the thread that calls it.
 class RecordingWriter {
  public:
   /// Throws InputError if the file cannot be written.
   RecordingWriter(const std::string& path, const RecordingInfo& info);
 
-  /// The next ticks, in order. Throws InputError once if the disk is full; what is there is
-  /// readable. A kill later loses at most the last half second.
+  /// The next ticks, in order. Throws InputError once if the disk is full; what was written until
+  /// then is readable. If the process is killed later, at most the last half second is lost.
   void write(std::span<const TickRecord> ticks);
   /// Finishes the file. Throws InputError.
   void close() { file_.close(); }

@@ -9,7 +9,7 @@ namespace {
 
 const std::string kRule(80, '=');
 
-/// A definition followed by those of its parts, as `ros2msg` wants it.
+/// A definition followed by those of its parts, as `ros2msg` requires.
 std::string with_parts(std::string text, const std::vector<std::array<const char*, 2>>& parts) {
   for (const auto& [name, definition] : parts) {
     text += kRule + "\nMSG: " + name + "\n" + definition;
@@ -33,7 +33,7 @@ void put_quaternion(CdrWriter& out, const std::array<double, 4>& wxyz) {
   out.number(wxyz[1]).number(wxyz[2]).number(wxyz[3]).number(wxyz[0]);
 }
 
-/// A TransformStamped; the head of an Odometry has the same layout.
+/// A TransformStamped; an Odometry begins with the same layout.
 void put(CdrWriter& out, const TransformMessage& message) {
   put(out, message.header);
   out.text(message.child_frame).numbers(message.translation);

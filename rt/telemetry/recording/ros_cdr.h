@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ROS 2 messages of a recording as bytes, and the texts of their schemas.
+// The ROS 2 messages of a recording as bytes, and their schemas.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace sandrunner {
 struct RosTopic {
   const char* topic;   ///< "/joint_states"
   const char* schema;  ///< "sensor_msgs/msg/JointState"
-  std::string text;    ///< `ros2msg`: definition and those of its parts
+  std::string text;    ///< `ros2msg`: its definition and those of its parts
 };
 
 RosTopic joint_state_topic();
@@ -24,7 +24,7 @@ RosTopic transform_topic();
 CdrWriter cdr(const JointStateMessage& message);
 CdrWriter cdr(const ImuMessage& message);
 CdrWriter cdr(const OdometryMessage& message);
-/// As the only one of a tf2_msgs/TFMessage.
+/// A tf2_msgs/TFMessage with this transform only.
 CdrWriter cdr(const TransformMessage& message);
 
 }  // namespace sandrunner

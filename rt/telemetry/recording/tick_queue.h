@@ -13,27 +13,27 @@
 
 namespace sandrunner {
 
-/// Ticks from one ordinary thread to another, in batches.
+/// Hands ticks from one ordinary thread to another, in batches.
 class TickQueue {
  public:
   using Batch = std::vector<TickRecord>;
 
-  /// Holds up to `batches` of `batch_ticks` each. If it is full, the giver waits if `wait` is set;
-  /// else the newest batch is dropped and counted.
+  /// Holds up to `batches` of `batch_ticks` each. When it is full, the giver waits if `wait` is
+  /// set; otherwise the newest batch is dropped and counted.
   TickQueue(std::size_t batch_ticks, std::size_t batches, bool wait);
 
-  // The giver:
+  // For the giver:
   void add(const TickRecord& tick);
-  /// Hands over what is there. Nothing may be added afterwards.
+  /// Hands over the last, partial batch. Nothing may be added afterwards.
   void finish();
 
-  // The taker:
-  /// The next batch; waits for it. Nothing: all is taken, and finish() was called.
+  // For the taker:
+  /// Waits for the next batch. Nothing: finish() was called, and all batches were taken.
   std::optional<Batch> take() { return take(true); }
-  /// The next batch, if there is one now.
+  /// The next batch if there is one, without waiting.
   std::optional<Batch> take_at_once() { return take(false); }
 
-  /// Ticks. Of the giver's thread, and of any after finish().
+  /// Number of dropped ticks. For the giver's thread; after finish(), for any thread.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:
@@ -42,7 +42,7 @@ class TickQueue {
 
   const std::size_t batch_ticks_, batches_;
   const bool wait_;
-  Batch batch_;  // of the giver
+  Batch batch_;  // only the giver uses it
   std::uint64_t dropped_ = 0;
   std::mutex mutex_;
   std::condition_variable changed_;

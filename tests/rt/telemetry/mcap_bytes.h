@@ -60,7 +60,7 @@ inline std::string chunk(std::uint64_t uncompressed_size, std::uint32_t uncompre
                           .append(stored));
 }
 
-/// What comes behind the data section when there is no summary.
+/// What comes after the data section when there is no summary.
 inline std::string ending(std::string_view data_section) {
   return record(0x0F, number(crc(data_section), 4)) + record(0x02, number(0, 20)) + kMagic;
 }

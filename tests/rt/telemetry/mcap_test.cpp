@@ -176,7 +176,7 @@ TEST(McapTest, BytesThatAreNoMcapFileAreNamed) {
        "found a key twice in a map"},
       {start + record(0x0F, number(1, 4)), "of the data section, expected"},
       {start + record(0x02, number(0, 20)), "expected the end of the data before it"},
-      {start + ending(start) + "x", "found more bytes behind its end"},
+      {start + ending(start) + "x", "found more bytes after its end"},
   };
   for (const auto& [bytes, expected] : cases) {
     const Content content = read_bytes(bytes);

@@ -37,7 +37,7 @@ TEST(CtlProgramTest, BadInputIsOneLineAndExitCodeTwo) {
   expect_error(run({"cmd", "nan", "0", "0"}, config), 2, "VX: found nan");
   expect_error(run({"watch", "rt/nothing"}, config), 2, "expected rt/joint_states");
   expect_error(run({}, config), 2, "subcommand");
-  expect_error(run({"drive"}, config), 2, "no terminal");
+  expect_error(run({"drive"}, config), 2, "not a terminal");
   expect_error(run({"status", "--once", "--security", "/nowhere"}, config), 2, "/nowhere/");
   expect_error(run({"status", "--once", "--interface", "nosuch0"}, config), 2,
                "on interface nosuch0 (nosuch0: does not match an available interface");
@@ -48,7 +48,7 @@ TEST(CtlProgramTest, WithoutARobotItSaysSoWithExitCodeOne) {
   DdsParticipant us(config);
   Program status({"status"}, config), mode({"mode", "damp"}, config),
       cmd({"cmd", "0", "0", "0"}, config);
-  expect_error(status.wait(), 1, "no robot: nothing came in domain");
+  expect_error(status.wait(), 1, "no robot: no message came in domain");
   expect_error(mode.wait(), 1, "damp: no robot answered in domain");
   expect_error(cmd.wait(), 1, "no robot listens on rt/cmd_vel in domain");
 }
@@ -56,22 +56,22 @@ TEST(CtlProgramTest, WithoutARobotItSaysSoWithExitCodeOne) {
 TEST(CtlProgramTest, ARobotThatDoesNotAnswerIsWaitedForTwoSeconds) {
   const DdsConfig config = test_config();
   DdsParticipant us(config);
-  us.reader("sandrunner/mode_request", sandrunner_ModeRequest_desc, 1, true);
+  const dds_entity_t requests =
+      us.reader("sandrunner/mode_request", sandrunner_ModeRequest_desc, 1, true);
   const dds_entity_t replies = us.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1);
   const auto start = std::chrono::steady_clock::now();
   Program program({"mode", "damp"}, config);
-  // An answer to somebody else's question.
+  // An answer to somebody else's request.
   sandrunner_ModeReply reply{};
-  reply.id = 1;
+  ASSERT_TRUE(wait_until([&] {
+    return sandrunner::take<sandrunner_ModeRequest>(
+               requests, [&](const auto& request) { reply.id = request.id + 1; }) > 0;
+  }));
   reply.accepted = true;
-  for (int i = 0; i < 20; ++i) {
-    dds_write(replies, &reply);
-    sleep_s(0.05);
-  }
+  dds_write(replies, &reply);
   expect_error(program.wait(), 1, "damp: no answer");
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   EXPECT_GE(took.count(), 2.0);
-  EXPECT_LT(took.count(), 4.0);
 }
 
 TEST(CtlProgramTest, ModePrintsWhatTheRobotSays) {
@@ -103,10 +103,13 @@ TEST(CtlProgramTest, CmdSendsTwentyASecondThenZero) {
   const Ended ended = run({"cmd", "0.5", "-0.1", "0.2", "--for", "1"}, config);
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(ended.out, "sent 20 commands in 1.00 s, then zero\n");
+  const auto zeros = [&] {
+    return std::ranges::count_if(log.entries(), [](auto& e) { return e.is_zero(); });
+  };
+  ASSERT_TRUE(wait_until([&] { return zeros() == 5; }));
   const auto entries = log.entries();
   const auto zero =
       std::find_if(entries.begin(), entries.end(), [](auto& e) { return e.is_zero(); });
-  EXPECT_EQ(entries.end() - zero, 5);
   EXPECT_TRUE(std::all_of(zero, entries.end(), [](auto& e) { return e.is_zero(); }));
   const auto sent = zero - entries.begin();
   ASSERT_GE(sent, 18);  // the first ones may come before this process knows the sender

@@ -49,8 +49,6 @@ TEST_F(DriveProgramTest, KeysMoveTheRobotAndItStopsWhenTheyEnd) {
   CommandLog log(peer_);
   Program program({"drive"}, config_, &pty_);
   ASSERT_TRUE(wait_until([&] { return is_raw(); }));
-  sleep_s(0.3);
-  EXPECT_TRUE(log.entries().empty());  // nothing moves because a process started
   pty_.type("f");
   EXPECT_TRUE(wait_for("walk: refused: the robot does not stand, stand comes first")) << shown_;
   pty_.type("g");
@@ -58,34 +56,33 @@ TEST_F(DriveProgramTest, KeysMoveTheRobotAndItStopsWhenTheyEnd) {
   EXPECT_TRUE(wait_for("stand: accepted")) << shown_;
   pty_.type("f");
   ASSERT_TRUE(robot_.wait_for(Mode::kWalk));
-  EXPECT_TRUE(log.entries().empty());
+  EXPECT_TRUE(log.entries().empty());  // nothing has moved before the first key that steers
 
   std::int64_t last_key_ns = 0;
-  for (int i = 0; i < 30; ++i) {  // a key that is held for 0.9 s
+  ASSERT_TRUE(wait_until([&] {  // a key that is held
     last_key_ns = wall_ns();
     pty_.type("w");
-    sleep_s(0.03);
-  }
-  EXPECT_GT(robot_.robot().speed_mps(), 0.1);
+    return robot_.robot().speed_mps() == 0.5;
+  }));
+  ASSERT_TRUE(wait_until([&] {
+    return std::ranges::count_if(log.entries(), [](auto& e) { return e.is_zero(); }) >= 5;
+  }));
   ASSERT_TRUE(wait_until([&] { return robot_.robot().speed_mps() == 0.0; }));
-  sleep_s(0.5);
+  pty_.type("q");
+  ASSERT_TRUE(wait_until([&] { return log.entries().back().wz_radps == 0.5; }));
+  // Between the two keys 5 zeros, the first one 0.6 s after the end of the first key, and nothing
+  // more; when exactly all of them are sent, CommandPacerTest and KeyDriverTest say.
   const auto entries = log.entries();
   const auto zero =
       std::find_if(entries.begin(), entries.end(), [](auto& e) { return e.is_zero(); });
-  EXPECT_EQ(entries.end() - zero, 5);  // then silence
-  EXPECT_EQ(std::count_if(entries.begin(), zero, [](auto& e) { return e.vx_mps != 0.5; }), 0);
-  const double motion_s = 1e-9 * static_cast<double>((zero - 1)->sent_ns - entries[0].sent_ns);
-  EXPECT_NEAR(static_cast<double>(zero - entries.begin() - 1) / motion_s, 20.0, 2.0);
-  const double end_s = 1e-9 * static_cast<double>(zero->sent_ns - last_key_ns);
-  EXPECT_GT(end_s, 0.55);
-  EXPECT_LT(end_s, 0.8);
+  EXPECT_TRUE(std::all_of(entries.begin(), zero, [](auto& e) { return e.vx_mps == 0.5; }));
+  EXPECT_GE(zero->sent_ns - last_key_ns, 600'000'000);
+  const auto turn = std::find_if(zero, entries.end(), [](auto& e) { return !e.is_zero(); });
+  EXPECT_EQ(turn - zero, 5);
+  EXPECT_TRUE(std::all_of(turn, entries.end(), [](auto& e) { return e.wz_radps == 0.5; }));
 
-  pty_.type("q");
-  ASSERT_TRUE(wait_until([&] { return log.entries().back().wz_radps == 0.5; }));
-  const std::int64_t space_ns = wall_ns();
   pty_.type(" ");
   ASSERT_TRUE(wait_until([&] { return log.entries().back().is_zero(); }));
-  EXPECT_LT(1e-9 * static_cast<double>(log.entries().back().sent_ns - space_ns), 0.3);
   ASSERT_TRUE(robot_.wait_for(Mode::kStand));
   EXPECT_TRUE(wait_for("stop: accepted")) << shown_;
   EXPECT_TRUE(wait_for("mode stand")) << shown_;
@@ -140,16 +137,22 @@ TEST_F(DriveProgramTest, ATerminalThatGoesAwayEndsIt) {
 }
 
 TEST_F(DriveProgramTest, StatusRefreshesOnATerminalUntilItIsInterrupted) {
+  const auto start = std::chrono::steady_clock::now();
   Program program({"status"}, config_, &pty_);
-  sleep_s(2.0);
+  ASSERT_TRUE(wait_for("mode           passive")) << shown_;
+  const auto screens = [&] {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = shown_.find("\x1b[H", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  ASSERT_TRUE(wait_until([&] {
+    shown_ += pty_.shown();
+    return screens() >= 4;
+  }));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_GE(took.count(), 0.2 * static_cast<double>(screens()));  // five a second at most
   program.signal(SIGINT);
   EXPECT_EQ(program.wait().code, 0);
-  const std::string shown = pty_.shown();
-  std::size_t screens = 0;
-  for (std::size_t at = 0; (at = shown.find("\x1b[H", at)) != std::string::npos; ++at) ++screens;
-  EXPECT_GE(screens, 4u);  // five a second
-  EXPECT_LE(screens, 10u);
-  EXPECT_NE(shown.find("mode           passive"), std::string::npos) << shown;
 }
 
 TEST(DriveWithoutRobotTest, SaysThatThereIsNone) {

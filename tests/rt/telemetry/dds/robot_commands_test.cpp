@@ -6,7 +6,9 @@
 #include <limits>
 #include <memory>
 
+#include "rt/realtime/realtime_run.h"
 #include "rt/run/dds_bridge.h"
+#include "sim/simulator.h"
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/dds/child.h"
 #include "tests/rt/telemetry/dds/support.h"
@@ -48,26 +50,21 @@ class RobotCommandsTest : public testing::Test {
         telemetry_(participant_, config_.dds, config_.robot.description, &inbox_),
         peer_(config_.dds) {}
 
-  /// In Walk from the first tick on, for this long; `at` is called every few milliseconds.
+  /// In Walk from the first tick on, for this long; `at` is called for each tick, soon after it.
   void walk(double duration_s, const std::function<void(double time_s)>& at) {
     std::atomic<bool> interrupt{false};
-    double time_s = 0.0;
     const auto tap = [&](const TickRecord& tick) {
       telemetry_.add(tick);
-      time_s = static_cast<double>(tick.input.sensors.tick) * kControlPeriod_s;
       if (!interrupt) ticks_.push_back(tick);  // at the end it is damped and lies down
+      at(at_s(tick));
+      if (at_s(tick) >= duration_s) interrupt = true;
     };
-    RealtimeHooks hooks;
-    hooks.op = &op_;
-    hooks.meanwhile = [&](PolicyThread&) {
-      at(time_s);
-      if (time_s >= duration_s) interrupt = true;
-    };
-    const RunResult result =
-        run_realtime(config_, &policy_, CommandSource("0,0,0"), {.start_walking = true}, false,
-                     interrupt, {}, tap, hooks);
-    EXPECT_TRUE(result.survived) << result.fall_reason;
-    EXPECT_EQ(result.realtime->records_dropped, 0u);
+    sim::Simulator simulator(config_.robot, config_.simulator);
+    SystemClock clock;
+    const RealtimeEnd end = run_realtime(simulator, config_.controller, config_.realtime,
+                                         Mode::kWalk, &policy_, op_, interrupt, tap, clock);
+    EXPECT_EQ(end.gate.first_fault, Fault::kNone) << fault_name(end.gate.first_fault);
+    EXPECT_EQ(end.report.records_dropped, 0u);
     for (const TickRecord& tick : ticks_) {
       const auto& q = tick.input.sensors.imu.orientation_wxyz;
       const double up = 1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2]);

@@ -131,17 +131,17 @@ inline void drive(dds_entity_t writer, double vx_mps) {
 /// Publishes examples at the control loop's rate, from this tick on; returns the longest time that
 /// one add() took, in s.
 inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double duration_s) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  using Steady = std::chrono::steady_clock;
+  const auto start = Steady::now();
   const std::uint64_t ticks = ticks_from_s(duration_s);
   double longest_s = 0.0;
   for (std::uint64_t done = 0; done < ticks;) {
-    const std::chrono::duration<double> time = Clock::now() - start;
+    const std::chrono::duration<double> time = Steady::now() - start;
     for (const std::uint64_t due = std::min(ticks, ticks_from_s(time.count())); done < due;
          ++done) {
-      const auto before = Clock::now();
+      const auto before = Steady::now();
       telemetry.add(example_tick(first_tick + done));
-      longest_s = std::max(longest_s, std::chrono::duration<double>(Clock::now() - before).count());
+      longest_s = std::max(longest_s, std::chrono::duration<double>(Steady::now() - before).count());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -163,9 +163,15 @@ class LiveRobot {
     thread_.join();
   }
 
+  std::uint64_t ticks() const { return ticks_; }  ///< done
   Mode mode() const { return mode_; }
   double speed_mps() const { return speed_mps_; }  ///< that the policy is asked for
-  void break_joint() { broken_ = true; }           ///< until mend_joint(): a measured NaN
+  /// Waits for two more ticks: what was set before has then had its effect.
+  bool go_on() const {
+    const std::uint64_t end = ticks_ + 2;
+    return wait_until([&] { return ticks_ >= end; });
+  }
+  void break_joint() { broken_ = true; }  ///< until mend_joint(): a measured NaN
   void mend_joint() { broken_ = false; }
 
  private:
@@ -183,6 +189,7 @@ class LiveRobot {
         operator_.advance({.mode = loop_->output.mode, .faults = loop_->output.faults});
         mode_ = loop_->output.mode;
         speed_mps_ = loop_->output.policy_input.command.vx_mps;
+        ticks_ = tick + 1;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -192,6 +199,7 @@ class LiveRobot {
   ControllerConfig controller_;
   std::unique_ptr<FakeLoop> loop_;
   std::atomic<bool> end_{false}, broken_{false};
+  std::atomic<std::uint64_t> ticks_{0};
   std::atomic<Mode> mode_{Mode::kPassive};
   std::atomic<double> speed_mps_{0.0};
   std::thread thread_;

@@ -168,7 +168,7 @@ TEST_F(RecordingTest, RunThatIsRefusedLeavesTheRecordingOfTheRunBefore) {
 
 TEST_F(RecordingTest, LimitOfTimeEndsTheRecording) {
   record("--set recording.limit_s=0.2");
-  EXPECT_NE(output().find("the limit of its time is reached"), std::string::npos) << output();
+  EXPECT_NE(output().find("its duration reached the limit"), std::string::npos) << output();
   const auto contents = read_recording(path(), {}, [](const TickRecord&) { return true; });
   EXPECT_TRUE(contents.complete);
   EXPECT_NEAR(static_cast<double>(contents.ticks), 800.0, 80.0);
@@ -240,8 +240,9 @@ TEST_F(RecordingTest, TicksInAnotherLayoutAreRefusedInOneLine) {
     writer.close();
   }
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 2);
-  EXPECT_EQ(output(), "sandrunner-replay: " + path() +
-                          ": found ticks in the layout of another build, expected this build's\n");
+  EXPECT_EQ(output(),
+            "sandrunner-replay: " + path() +
+                ": found ticks in the layout of build 'another', expected this build's\n");
 }
 
 TEST_F(RecordingTest, FileThatIsNoRecordingIsBadInput) {
