@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Definitions of RobotStepper (robot_step.h).
+// Definitions of RobotStepper: the end of robot_step.h, included by it and by nobody else.
 #pragma once
-
-#include "sim/step/robot_step.h"
 
 namespace sandrunner::sim {
 
