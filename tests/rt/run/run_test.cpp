@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
 #include "tests/rt/support.h"
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
@@ -190,9 +190,8 @@ class PublishedNetworkTest : public testing::Test {
     if (!std::filesystem::exists(weights)) GTEST_SKIP() << "no reference policy at " << weights;
     const TemporaryFolder folder;
     const std::string path = folder.path("policy");
-    const std::string import =
-        "'" SANDRUNNER_POLICY_PROGRAM "' import '" + weights + "' --out '" + path + "' >/dev/null";
-    ASSERT_EQ(std::system(import.c_str()), 0);
+    const Ended import = run_process({SANDRUNNER_POLICY_PROGRAM, "import", weights, "--out", path});
+    ASSERT_EQ(import.code, 0) << import.err;
     policy_.emplace(load_policy(path));
   }
   RunResult run(const std::string& terrain, const std::string& command, const RunPlan& plan,

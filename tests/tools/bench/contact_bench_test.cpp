@@ -3,14 +3,14 @@
 #include "tools/bench/contact_bench.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "tests/support/child_process.h"
 
 namespace sandrunner::bench {
 namespace {
@@ -109,9 +109,7 @@ TEST(ContactBenchTest, ReportHasTheRatios) {
 }
 
 int exit_code(const std::string& arguments) {
-  const int status =
-      std::system((SANDRUNNER_BENCH_PROGRAM " " + arguments + " >/dev/null 2>&1").c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return run_shell("'" SANDRUNNER_BENCH_PROGRAM "' " + arguments).code;
 }
 
 TEST(ContactBenchTest, ProgramRefusesBadInput) {
