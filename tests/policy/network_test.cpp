@@ -6,63 +6,67 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <new>
-#include <sstream>
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "tests/policy/allocation_counter.h"
 #include "tests/policy/random_policy.h"
+#include "tests/support/csv.h"
 
 namespace sandrunner {
 namespace {
 
-/// Rows of numbers of a CSV file with one header line.
-std::vector<std::vector<float>> read_csv(const std::string& path) {
-  std::ifstream stream(path);
-  std::string line;
-  std::getline(stream, line);
-  std::vector<std::vector<float>> rows;
-  while (std::getline(stream, line)) {
-    std::istringstream cells(line);
-    rows.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(std::stof(cell));
+/// `found` is what the row holds under "<name>0", "<name>1", ...
+template <typename Values>
+void expect_near(const Values& found, const CsvRow& row, const std::string& name, int first = 0) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::string column = name + std::to_string(static_cast<std::size_t>(first) + i);
+    EXPECT_NEAR(found[i], row.at(column), 1e-5) << column << " of step " << row.at("k");
   }
-  return rows;
 }
 
-template <typename Values>
-void expect_near(const Values& found, const float* expected, std::size_t row) {
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_NEAR(found[i], expected[i], 1e-5) << "row " << row << ", value " << i;
-  }
+/// Steps a network through the rows of a table: number of the step k, raw observation obs, output
+/// of the LSTM h, estimate before scaling est_raw, estimate est, action before scaling act.
+void expect_golden_steps(const std::string& weights, const std::string& table) {
+  const PolicyFile file = read_bare_weights(weights);
+  const Network network(file.parameters);
+  Policy policy(file.spec, network);
+  NetworkState state;
+  NetworkOutput output;
+  const auto expect_row = [&](const CsvRow& row) {
+    std::array<float, kObservationSize> observation;
+    for (std::size_t i = 0; i < observation.size(); ++i) {
+      observation[i] = static_cast<float>(row.at("obs" + std::to_string(i)));
+    }
+    network.step(observation, state, output);
+    expect_near(state.h, row, "h");
+    expect_near(output.estimate_raw, row, "est_raw");
+    expect_near(output.action, row, "act");
+    const StateEstimate estimate = policy.step(observation).estimate;
+    EXPECT_NEAR(estimate.body_height_m, row.at("est0"), 1e-5);
+    expect_near(estimate.velocity_mps, row, "est", 1);
+    expect_near(estimate.foot_height_m, row, "est", 4);
+  };
+  const std::vector<CsvRow> rows = read_csv(table);
+  ASSERT_EQ(rows.size(), 50u);
+  for (const CsvRow& row : rows) expect_row(row);
+  // From zero memory again.
+  state = {};
+  policy.reset();
+  for (std::size_t k = 0; k < 5; ++k) expect_row(rows[k]);
+}
+
+TEST(NetworkTest, MatchesGoldenStepsOfANetworkEvaluatedByNumpy) {
+  expect_golden_steps(SANDRUNNER_GOLDEN_DIR "/random_network.safetensors",
+                      SANDRUNNER_GOLDEN_DIR "/random_network.csv");
 }
 
 TEST(NetworkTest, MatchesGoldenStepsOfThePublishedNetwork) {
   const std::string folder = SANDRUNNER_SHARED_DIR "/reference-policy/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no reference policy at " << folder;
-  const PolicyFile file = read_bare_weights(folder + "reference.safetensors");
-  const Network network(file.parameters);
-  Policy policy(file.spec, network);
-  NetworkState state;
-  NetworkOutput output;
-  const auto rows = read_csv(folder + "golden-policy.csv");
-  ASSERT_EQ(rows.size(), 50u);
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    ASSERT_EQ(rows[k].size(), 126u);
-    std::array<float, kObservationSize> observation;
-    std::copy_n(&rows[k][1], kObservationSize, observation.begin());
-    network.step(observation, state, output);
-    expect_near(state.h, &rows[k][34], k);
-    expect_near(output.estimate_raw, &rows[k][98], k);
-    const StateEstimate estimate = policy.step(observation).estimate;
-    EXPECT_NEAR(estimate.body_height_m, rows[k][106], 1e-5);
-    expect_near(estimate.velocity_mps, &rows[k][107], k);
-    expect_near(estimate.foot_height_m, &rows[k][110], k);
-    expect_near(output.action, &rows[k][114], k);
-  }
+  expect_golden_steps(folder + "reference.safetensors", folder + "golden-policy.csv");
 }
 
 TEST(NetworkTest, AgreesWithPlainDoubleEvaluation) {

@@ -2,30 +2,25 @@
 // Bad input: one clear line, exit code 2, before any work.
 #include "policy/policy_file.h"
 #include "policy/safetensors.h"
-#include "tests/rt/program.h"
 #include "sim/robot/embedded.h"
 #include "tests/policy/random_policy.h"
+#include "tests/support/program_test.h"
 
 namespace sandrunner {
 namespace {
 
 class BadInputTest : public ProgramTest {
  protected:
-  BadInputTest() { write_policy_file(folder_.path("good"), random_policy_file()); }
+  BadInputTest() : ProgramTest(SANDRUNNER_PROGRAM) {
+    write_policy_file(folder_.path("good"), random_policy_file());
+  }
 
   /// Also asks for results, to see that none begin.
   void expect_refused(const std::string& arguments, const std::string& cause) {
     const std::set<std::string> before = files_in("");
-    EXPECT_EQ(run("--out results " + arguments), 2) << arguments;
-    expect_one_line(arguments, cause);
+    ProgramTest::expect_refused("--out results " + arguments, cause);
+    EXPECT_EQ(error().rfind("sandrunner: ", 0), 0u) << error();
     EXPECT_EQ(files_in(""), before) << arguments;
-  }
-  void expect_one_line(const std::string& arguments, const std::string& cause) {
-    const std::string line = error();
-    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << arguments << "\n" << line;
-    EXPECT_EQ(line.rfind("sandrunner: ", 0), 0u) << line;
-    EXPECT_NE(line.find(cause), std::string::npos) << "no '" << cause << "' in: " << line;
-    EXPECT_EQ(output(), "") << arguments;
   }
   void write(const std::string& name, const std::string& content) {
     write_file(folder_.path(name), content);
@@ -144,8 +139,8 @@ TEST_F(BadInputTest, OutputFolders) {
   write("file", "precious");
   const std::set<std::string> before = files_in("");
   for (const char* folder : {"file", "file/results", "/proc/results"}) {
-    EXPECT_EQ(run(std::string("--out ") + folder), 2);
-    expect_one_line(folder, "--out: folder '" + std::string(folder) + "'");
+    ProgramTest::expect_refused(std::string("--out ") + folder,
+                                "--out: folder '" + std::string(folder) + "'");
   }
   EXPECT_EQ(files_in(""), before);
   EXPECT_EQ(read_file(folder_.path("file")), "precious");

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Good runs of the program: what it prints and writes.
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <chrono>
+#include <csignal>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "policy/policy_file.h"
-#include "tests/rt/program.h"
 #include "tests/policy/random_policy.h"
+#include "tests/support/program_test.h"
 
 namespace sandrunner {
 namespace {
@@ -22,9 +17,17 @@ using Json = nlohmann::json;
 
 class CommandLineTest : public ProgramTest {
  protected:
-  CommandLineTest() { write_policy_file(folder_.path("policy"), random_policy_file()); }
+  CommandLineTest() : ProgramTest(SANDRUNNER_PROGRAM) {
+    write_policy_file(folder_.path("policy"), random_policy_file());
+  }
   Json summary(const std::string& folder) const {
     return Json::parse(std::ifstream(folder_.path(folder + "/summary.json")));
+  }
+  /// The state hash that the table shows.
+  std::string printed_hash() const {
+    const std::string label = "state hash";
+    const std::size_t at = output().find_first_not_of(' ', output().find(label) + label.size());
+    return output().substr(at, output().find('\n', at) - at);
   }
 };
 
@@ -70,7 +73,7 @@ TEST_F(CommandLineTest, RunWritesItsResults) {
 
 TEST_F(CommandLineTest, StandardErrorThatNobodyTakesEndsNothing) {
   // After a hang-up the terminal refuses what is written to it; /dev/full does so too.
-  EXPECT_EQ(WEXITSTATUS(std::system("'" SANDRUNNER_PROGRAM "' --nosuch 2>/dev/full")), 2);
+  EXPECT_EQ(run("--nosuch 2>/dev/full"), 2);
 }
 
 TEST_F(CommandLineTest, SummaryHasEveryKey) {
@@ -163,34 +166,32 @@ TEST_F(CommandLineTest, FallIsExitCodeOne) {
 
 class InterruptTest : public CommandLineTest {
  protected:
-  /// Starts a long run, sends the signal once it goes on, and returns the exit code.
-  int interrupt(std::vector<std::string> arguments, int signal_number,
-                const std::function<void()>& in_child = {}) {
-    const std::string out = folder_.path("results");
-    for (const char* more : {"--duration", "80000", "--terrain", "rigid", "--out"}) {
-      arguments.emplace_back(more);
+  /// Starts a long run, sends the signal once the program watches for it, and returns what was
+  /// left. `before`: lines of the shell that come first.
+  Ended interrupt(const std::string& arguments, int signal_number, const std::string& before = "",
+                  bool close_output = false) {
+    ChildProcess child({"sh", "-c",
+                        before +
+                            "exec '" SANDRUNNER_PROGRAM "' --duration 80000 --terrain rigid "
+                            "--out results " +
+                            arguments},
+                       {.folder = folder_.path("")});
+    if (close_output) child.close_out();
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!watches_for_signals(child.pid()) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    arguments.push_back(out);
-    std::vector<char*> argv = {const_cast<char*>(SANDRUNNER_PROGRAM)};
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    const std::string printed = captured_.path("out");
-    const pid_t child = fork();
-    if (child == 0) {
-      const int file = open(printed.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-      dup2(file, STDOUT_FILENO);
-      for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
-      if (in_child) in_child();
-      execv(SANDRUNNER_PROGRAM, argv.data());
-      _exit(127);
-    }
-    // The folder is made right before the run; until then a signal just kills.
-    for (int n = 0; n < 2000 && !std::filesystem::exists(out); ++n) sleep_ms(5);
-    sleep_ms(100);
-    kill(child, signal_number);
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    child.signal(signal_number);
+    return child.wait();
+  }
+  /// The program blocks them in all threads and waits for them in one: until then a signal just
+  /// kills.
+  static bool watches_for_signals(pid_t process) {
+    const std::string status = read_file("/proc/" + std::to_string(process) + "/status");
+    const std::string label = "SigBlk:\t";
+    const std::size_t at = status.find(label);
+    return at != std::string::npos &&
+           (std::stoull(status.substr(at + label.size()), nullptr, 16) >> (SIGTERM - 1) & 1) != 0;
   }
   /// Writes a policy that holds the nominal pose, so that the robot is still up when the signal
   /// comes.
@@ -204,21 +205,19 @@ class InterruptTest : public CommandLineTest {
     write_policy_file(folder_.path("calm"), file);
     return folder_.path("calm");
   }
-  static void sleep_ms(int duration) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(duration));
-  }
 };
 
 TEST_F(InterruptTest, WalkEndsInDampingWithItsResults) {
   const std::string calm = calm_policy();
   for (const std::string clock : {"lockstep", "realtime"})
     for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
-      EXPECT_EQ(interrupt({"--policy", calm, "--start", "walk", "--clock", clock}, signal_number),
-                0);
+      const Ended ended =
+          interrupt("--policy " + calm + " --start walk --clock " + clock, signal_number);
+      EXPECT_EQ(ended.code, 0);
       const Json j = summary("results");
       EXPECT_EQ(j.at("interrupted"), true);
       EXPECT_EQ(j.at("survived"), true) << j;
-      EXPECT_NE(output().find("interrupted, ended in damping"), std::string::npos) << output();
+      EXPECT_NE(ended.out.find("interrupted, ended in damping"), std::string::npos) << ended.out;
       const std::string csv = read_file(folder_.path("results/run.csv"));
       const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
       EXPECT_NE(last.find(",damping,"), std::string::npos) << last;
@@ -227,36 +226,28 @@ TEST_F(InterruptTest, WalkEndsInDampingWithItsResults) {
 }
 
 TEST_F(InterruptTest, KilledRunLeavesNoHalfFile) {
-  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGKILL), -SIGKILL);
+  EXPECT_EQ(interrupt("--policy " + calm_policy() + " --clock realtime", SIGKILL).code,
+            128 + SIGKILL);
   EXPECT_EQ(files_in("results"), std::set<std::string>{});
 }
 
 TEST_F(InterruptTest, ClosedStandardOutputLosesNoResults) {
-  const auto close_output = [] {
-    int ends[2];
-    if (pipe(ends) != 0) _exit(126);
-    close(ends[0]);
-    dup2(ends[1], STDOUT_FILENO);
-  };
-  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGINT, close_output), 3);
+  EXPECT_EQ(interrupt("--policy " + calm_policy() + " --clock realtime", SIGINT, "", true).code, 3);
   EXPECT_EQ(summary("results").at("interrupted"), true);
   EXPECT_EQ(files_in("results").size(), 5u);
 }
 
 TEST_F(InterruptTest, FullDiskLeavesNoHalfFile) {
-  // As if the disk had room for two thousand bytes a file.
-  const auto limit = [] {
-    signal(SIGXFSZ, SIG_IGN);
-    const rlimit bytes{2000, 2000};
-    setrlimit(RLIMIT_FSIZE, &bytes);
-  };
-  EXPECT_EQ(interrupt({"--policy", calm_policy(), "--clock", "realtime"}, SIGINT, limit), 2);
+  // As if the disk had room for 2 kB (4 blocks) a file.
+  const Ended ended = interrupt("--policy " + calm_policy() + " --clock realtime", SIGINT,
+                                "trap '' XFSZ && ulimit -f 4 && ");
+  EXPECT_EQ(ended.code, 2);
   for (const std::string& name : files_in("results")) {
     EXPECT_EQ(name.find(".part"), std::string::npos) << name;
     EXPECT_NE(name, "run.csv");
   }
   // What became of the robot is told all the same.
-  EXPECT_NE(output().find("interrupted, ended in damping"), std::string::npos) << output();
+  EXPECT_NE(ended.out.find("interrupted, ended in damping"), std::string::npos) << ended.out;
 }
 
 }  // namespace

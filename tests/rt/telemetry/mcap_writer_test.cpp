@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <zstd.h>
 
@@ -123,8 +122,7 @@ TEST(McapWriterTest, ChunkEndsAtOneMebibyteAndOnFlush) {
 TEST(McapWriterTest, KilledProcessLosesOnlyWhatWasNotFlushed) {
   const TemporaryFolder folder;
   const std::string path = folder.path("run.mcap");
-  const pid_t child = ::fork();
-  if (child == 0) {
+  const auto write_and_die = [&] {
     McapWriter writer(path);
     write_sample_start(writer);
     for (int i = 0; i < 150; ++i) {
@@ -132,10 +130,8 @@ TEST(McapWriterTest, KilledProcessLosesOnlyWhatWasNotFlushed) {
       if (i == 99) writer.flush();
     }
     ::kill(::getpid(), SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
+  };
+  ASSERT_EXIT(write_and_die(), testing::KilledBySignal(SIGKILL), "");
   const Content content = read_path(path);
   EXPECT_EQ(content.error, "");
   EXPECT_FALSE(content.complete);

@@ -4,14 +4,8 @@
 // differ by the rotation R: MuJoCo's is in world axes, Motion's in body axes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <mujoco/mujoco.h>
 
-#include <Eigen/Dense>
-#include <cstring>
-#include <memory>
-#include <string>
-#include <vector>
-
+#include "tests/sim/mujoco_robot.h"
 #include "tests/sim/support.h"
 
 namespace sandrunner::sim {
@@ -20,83 +14,12 @@ namespace {
 constexpr int kStates = 1000;
 constexpr double kTolerance = 1e-9;
 
-std::string text(const Vec3<double>& v) {
-  return fmt::format("{:.17g} {:.17g} {:.17g}", v.x, v.y, v.z);
-}
-
-// MuJoCo's own reader diagonalises `fullinertia` to 1e-7 only, so the principal axes are given.
-std::string inertial(const Body<double>& b) {
-  const Sym3<double>& i = b.inertia;
-  Eigen::Matrix3d inertia;
-  inertia << i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia);
-  Eigen::Matrix3d axes = principal.eigenvectors();
-  if (axes.determinant() < 0.0) axes.col(0) *= -1.0;
-  const Eigen::Quaterniond q(axes);
-  const Eigen::Vector3d& d = principal.eigenvalues();
-  return fmt::format(
-      "<inertial pos='{}' mass='{:.17g}' quat='{:.17g} {:.17g} {:.17g} {:.17g}' diaginertia='{}'/>",
-      text(b.com), b.mass, q.w(), q.x(), q.y(), q.z(), text({d[0], d[1], d[2]}));
-}
-
-std::string mjcf(const RobotModel<double>& m) {
-  std::string xml =
-      "<mujoco><compiler angle='radian'/><option gravity='0 0 -9.81'><flag "
-      "contact='disable'/></option>"
-      "<worldbody><body name='base'><freejoint/>" +
-      inertial(m.base);
-  for (int l = 0; l < kNumLegs; ++l) {
-    const LegModel<double>& leg = m.legs[l];
-    const auto body = [&](const char* link, int joint, const Vec3<double>& at, const char* axis,
-                          const Body<double>& b) {
-      return fmt::format("<body name='{}{}' pos='{}'><joint axis='{}' armature='{:.17g}'/>{}", link,
-                         l, text(at), axis, m.rotor_inertia[3 * l + joint], inertial(b));
-    };
-    xml += body("hip", 0, leg.haa, "1 0 0", leg.hip) +
-           body("thigh", 1, leg.hfe, "0 1 0", leg.thigh) +
-           body("shank", 2, leg.kfe, "0 1 0", leg.shank) + "</body></body></body>";
-  }
-  return xml + "</body></worldbody></mujoco>";
-}
-
 class MujocoTest : public testing::Test {
  protected:
-  MujocoTest() : robot_(load_raibo()) {
-    const std::string xml = mjcf(robot_.model);
-    const auto vfs = std::make_unique<mjVFS>();
-    mj_defaultVFS(vfs.get());
-    mj_makeEmptyFileVFS(vfs.get(), "robot.xml", static_cast<int>(xml.size()));
-    std::memcpy(vfs->filedata[0], xml.data(), xml.size());
-    char error[500] = "";
-    model_ = mj_loadXML("robot.xml", vfs.get(), error, sizeof error);
-    mj_deleteVFS(vfs.get());
-    if (model_ == nullptr) {
-      ADD_FAILURE() << error;
-      return;
-    }
-    data_ = mj_makeData(model_);
-  }
-  ~MujocoTest() override {
-    if (data_ != nullptr) mj_deleteData(data_);
-    if (model_ != nullptr) mj_deleteModel(model_);
-  }
-  void SetUp() override {
-    ASSERT_NE(model_, nullptr);
-    ASSERT_EQ(model_->nv, 18);
-  }
-
   /// Brings MuJoCo to our state, and evaluates both.
   void evaluate(const RigidState<double>& x, const std::array<double, kNumJoints>& torque_nm) {
-    const Quaternion<double>& o = x.orientation;
-    const double position[7] = {x.position.x, x.position.y, x.position.z, o.w, o.x, o.y, o.z};
-    const double velocity[6] = {x.velocity.x,         x.velocity.y,         x.velocity.z,
-                                x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
-    std::copy_n(position, 7, data_->qpos);
-    std::copy_n(velocity, 6, data_->qvel);
-    std::fill_n(data_->qfrc_applied, 6, 0.0);
-    std::copy_n(x.q.begin(), kNumJoints, data_->qpos + 7);
-    std::copy_n(x.qd.begin(), kNumJoints, data_->qvel + 6);
-    std::copy_n(torque_nm.begin(), kNumJoints, data_->qfrc_applied + 6);
+    mujoco_.set(x);
+    mujoco_.apply(torque_nm);
     mj_forward(model_, data_);
     dynamics_.update(robot_.model, x);
     rotation_ = rotation_matrix(x.orientation);
@@ -120,9 +43,10 @@ class MujocoTest : public testing::Test {
     return ours;
   }
 
-  Robot robot_;
-  mjModel* model_ = nullptr;
-  mjData* data_ = nullptr;
+  const Robot robot_ = load_raibo();
+  MujocoRobot mujoco_{robot_.model, false};
+  const mjModel* const model_ = mujoco_.model();
+  mjData* const data_ = mujoco_.data();
   Dynamics<double> dynamics_;
   Mat3<double> rotation_;
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/sim/support.h"
+#include "tests/support/csv.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -90,15 +91,15 @@ TEST(StandingTest, DrySandCarriesTheWeight) {
 }
 
 TEST(StandingTest, LoweredGentlyItSinksToTheStaticDepth) {
-  // All velocities damped by a tenth a step, so that the load comes slowly: reference column
-  // at 65.8 N a foot.
-  const struct {
-    double sigma_flat, sigma_cone, depth_mm;
-  } rows[] = {{1.0, 0.15, 47.3}, {1.0, 0.2, 38.2}};
-  for (const auto& row : rows) {
+  // All velocities damped by a tenth a step, so that the load comes slowly.
+  const double foot_load_n = Bench().robot.model.mass() * kGravity_mps2 / kNumLegs;
+  int checked = 0;
+  for (const CsvRow& row : read_csv(SANDRUNNER_GOLDEN_DIR "/static_depth.csv")) {
+    if (std::fabs(row.at("force_n") - foot_load_n) > 0.01) continue;  // that of another mass
+    ++checked;
     GroundParameters p;
-    p.sigma_flat_npm3 = 1e6 * row.sigma_flat;
-    p.sigma_cone_npm3 = 1e6 * row.sigma_cone;
+    p.sigma_flat_npm3 = 1e6 * row.at("sigma_flat_mnpm3");
+    p.sigma_cone_npm3 = 1e6 * row.at("sigma_cone_mnpm3");
     Bench bench(p);
     RigidState<double>& x = bench.state.rigid;
     for (int i = 0; i < 40000; ++i) {
@@ -109,8 +110,9 @@ TEST(StandingTest, LoweredGentlyItSinksToTheStaticDepth) {
     }
     double mean_mm = 0.0;
     for (const double z : bench.report.penetration) mean_mm += 1e3 * z / kNumLegs;
-    EXPECT_NEAR(mean_mm, row.depth_mm, 0.05 * row.depth_mm);
+    EXPECT_NEAR(mean_mm, row.at("depth_mm"), 0.05 * row.at("depth_mm"));
   }
+  EXPECT_EQ(checked, 2);
 }
 
 TEST(StandingTest, UnevenRigidGroundCarriesTheWeight) {

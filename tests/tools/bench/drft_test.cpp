@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/csv.h"
+
 namespace sandrunner::bench {
 namespace {
 
@@ -69,33 +71,14 @@ Vector alpha(double beta_rad, double gamma_rad) {
   return 1.0 / (kQuasistatic.stress_npm3 * kDepth_m * kArea_m2) * force;
 }
 
-TEST(DrftTest, StressesInThePlaneAreThePublishedOnes) {
-  const struct {
-    double beta, gamma, opposing, up;
-  } rows[] = {{0, kPi / 2, 0, 1.000},
-              {0, -kPi / 2, 0, -0.250},
-              {kPi / 2, 0, 0.370, 0.037},
-              {kPi / 4, kPi / 4, 0.3595, 0.5702},
-              {kPi / 6, kPi / 2, 0.1897, 0.7820}};
-  for (const auto& row : rows) {
-    SCOPED_TRACE(testing::Message() << row.beta << " " << row.gamma);
-    const Vector a = alpha<PlanarDrft>(row.beta, row.gamma);
-    EXPECT_NEAR(a.x, -row.opposing, 6e-5);
-    EXPECT_NEAR(a.z, row.up, 6e-5);
-  }
-}
-
-TEST(DrftTest, StressesInSpaceAreThePublishedOnes) {
-  const struct {
-    double beta, gamma, along, up;
-  } rows[] = {
-      {0, kPi / 2, 0, 1.0561}, {kPi / 2, 0, -0.1918, 0.0746}, {kPi / 4, kPi / 4, -0.3418, 0.7110}};
-  for (const auto& row : rows) {
-    SCOPED_TRACE(testing::Message() << row.beta << " " << row.gamma);
-    const Vector a = alpha<SpatialDrft>(row.beta, row.gamma);
-    EXPECT_NEAR(a.x, row.along, 6e-5);
+TEST(DrftTest, StressesOfAPlateMatchTheGoldenTable) {
+  for (const CsvRow& row : read_csv(SANDRUNNER_GOLDEN_DIR "/rft.csv")) {
+    SCOPED_TRACE(testing::PrintToString(row));
+    const auto of_plate = row.at("dimensions") == 2.0 ? alpha<PlanarDrft> : alpha<SpatialDrft>;
+    const Vector a = of_plate(row.at("beta_rad"), row.at("gamma_rad"));
+    EXPECT_NEAR(a.x, row.at("x"), 1e-8);
     EXPECT_NEAR(a.y, 0.0, 1e-12);
-    EXPECT_NEAR(a.z, row.up, 6e-5);
+    EXPECT_NEAR(a.z, row.at("z"), 1e-8);
   }
 }
 

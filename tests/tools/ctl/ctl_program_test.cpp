@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 
 #include "fake_robot.h"
@@ -272,10 +271,11 @@ TEST(CtlProgramTest, StatusOnceShowsTheRobot) {
 }
 
 TEST(CtlProgramTest, WithSecurityOnlyTheOperatorIsHeard) {
-  if (std::system("command -v openssl >/dev/null") != 0) GTEST_SKIP() << "no openssl";
+  if (run_shell("command -v openssl").code != 0) GTEST_SKIP() << "no openssl";
   const TemporaryFolder folder;
   const std::string keys = folder.path("keys");
-  ASSERT_EQ(std::system((SANDRUNNER_SECURITY_SCRIPT " " + keys + " >/dev/null").c_str()), 0);
+  const Ended made = run_process({SANDRUNNER_SECURITY_SCRIPT, keys});
+  ASSERT_EQ(made.code, 0) << made;
   DdsConfig config = test_config();
   config.security_dir = keys;
   FakeRobot robot(config);

@@ -45,8 +45,8 @@ TEST(GamepadTest, RestsAtZeroAndGrowsFromTheEdgeOfTheDeadZone) {
   EXPECT_EQ(command->wz_radps, 0.0);
   pad.event(EV_ABS, ABS_Y, 116);  // 9 % of the way
   EXPECT_EQ(pad.command(1.0)->vx_mps, 0.0);
-  pad.event(EV_ABS, ABS_Y, 114);  // 10.6 %
-  EXPECT_NEAR(pad.command(1.0)->vx_mps, 0.0065, 1e-3);
+  pad.event(EV_ABS, ABS_Y, 114);  // 10.6 %: of the 90 % beyond the dead zone
+  EXPECT_NEAR(pad.command(1.0)->vx_mps, ((127.5 - 114.0) / 127.5 - 0.1) / 0.9, 1e-9);
   pad.event(EV_ABS, ABS_Y, 0);
   EXPECT_DOUBLE_EQ(pad.command(1.0)->vx_mps, 1.0);
   pad.event(EV_ABS, ABS_Y, -1000);  // beyond what the device states

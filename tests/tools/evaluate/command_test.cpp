@@ -1,40 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program sandrunner-evaluate, as a user runs it.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "tests/policy/random_policy.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/program_test.h"
 
 namespace sandrunner {
 namespace {
 
-class EvaluateCommandTest : public testing::Test {
+class EvaluateCommandTest : public ProgramTest {
  protected:
-  EvaluateCommandTest() { write_policy_file(folder_.path("p"), random_policy_file()); }
-
-  int run(const std::string& arguments) {
-    const std::string command = "cd '" + folder_.path("") +
-                                "' && '" SANDRUNNER_EVALUATE_PROGRAM "' " + arguments +
-                                " >text 2>errors";
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  EvaluateCommandTest() : ProgramTest(SANDRUNNER_EVALUATE_PROGRAM) {
+    write_policy_file(folder_.path("p"), random_policy_file());
   }
   std::string read(const std::string& name) const { return read_file(folder_.path(name)); }
-
-  const TemporaryFolder folder_;
 };
 
 TEST_F(EvaluateCommandTest, WritesAllFilesTheSameForAnyThreads) {
   write_policy_file(folder_.path("q"), random_policy_file(2));
   const std::string common = "--policy p --against q --runs 2 --grid-runs 1 ";
-  ASSERT_EQ(run(common + "--threads 1 --out one"), 0) << read("errors");
-  EXPECT_EQ(read("errors"), "");
-  ASSERT_EQ(run(common + "--threads 3 --out three"), 0) << read("errors");
+  ASSERT_EQ(run(common + "--threads 1 --out one"), 0) << error();
+  EXPECT_EQ(error(), "");
+  ASSERT_EQ(run(common + "--threads 3 --out three"), 0) << error();
   for (const char* name : {"evaluation.json", "straight.csv", "grid.csv", "turn.csv", "robust.csv",
                            "straight_speed.png", "straight_cost.png", "grid.png"}) {
     const std::string file = read(std::string("one/") + name);
@@ -59,10 +48,10 @@ TEST_F(EvaluateCommandTest, WritesAllFilesTheSameForAnyThreads) {
 }
 
 TEST_F(EvaluateCommandTest, OnlySomeParts) {
-  ASSERT_EQ(run("--policy p --only turn --runs 1 --grid-runs 1 --out dir"), 0) << read("errors");
+  ASSERT_EQ(run("--policy p --only turn --runs 1 --grid-runs 1 --out dir"), 0) << error();
   EXPECT_TRUE(std::filesystem::exists(folder_.path("dir/turn.csv")));
   EXPECT_FALSE(std::filesystem::exists(folder_.path("dir/grid.csv")));
-  EXPECT_NE(read("text").find("sideways"), std::string::npos);
+  EXPECT_NE(output().find("sideways"), std::string::npos);
 }
 
 TEST_F(EvaluateCommandTest, RefusesBadInputInOneLine) {
@@ -83,13 +72,7 @@ TEST_F(EvaluateCommandTest, RefusesBadInputInOneLine) {
       {"--policy p --out p", "--out: folder 'p'"},
       {"--policy p --unknown", "--unknown"},
   };
-  for (const auto& [arguments, cause] : cases) {
-    EXPECT_EQ(run(arguments), 2) << arguments;
-    const std::string error = read("errors");
-    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
-    EXPECT_NE(error.find(cause), std::string::npos) << error;
-    EXPECT_EQ(read("text"), "") << arguments;
-  }
+  for (const auto& [arguments, cause] : cases) expect_refused(arguments, cause);
 }
 
 }  // namespace

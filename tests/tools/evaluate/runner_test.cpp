@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <filesystem>
 
 #include "rt/core/floating_point.h"
 #include "rt/run/run.h"
@@ -129,10 +128,8 @@ TEST_F(RunnerTest, FactsOfTheRobot) {
 
 // The control process in double and the evaluation in float are two programs around the same steps.
 TEST_F(RunnerTest, AgreesWithTheControlProcess) {
-  const std::string path = SANDRUNNER_SHARED_DIR "/reference-policy/reference.safetensors";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference policy at " << path;
   flush_denormals_to_zero();
-  Policy policy = published_policy(path);
+  Policy policy = load_shipped_policy();
   for (const char* ground : {"dry-sand", "rigid"}) {
     SCOPED_TRACE(ground);
     ConfigTree tree;

@@ -26,22 +26,6 @@ inline Policy standing_policy() {
   return {file.spec, Network(file.parameters)};
 }
 
-/// The published network; the file must exist.
-inline Policy published_policy(const std::string& path) {
-  PolicyFile file = read_bare_weights(path);
-  file.spec = standing_policy().spec();
-  const PolicyFile bare = read_bare_weights(path);
-  file.spec.estimate_mean = bare.spec.estimate_mean;
-  file.spec.estimate_variance = bare.spec.estimate_variance;
-  file.spec.action_scale_rad = 0.3;
-  file.spec.kp_nmprad = 50.0;
-  file.spec.kd_nmsprad = 0.5;
-  file.spec.torque_limit_nm = 63.45;
-  file.spec.yaw_command_clip_mps2 = 2.943;
-  file.parameters.observation_clip = 10.0f;
-  return {file.spec, Network(file.parameters)};
-}
-
 /// All figures of a run, bit by bit.
 inline std::vector<std::uint64_t> bits_of(const TrialFigures& run) {
   std::vector<std::uint64_t> bits = {std::bit_cast<std::uint64_t>(run.time_s)};

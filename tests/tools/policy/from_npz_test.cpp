@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The script from_npz.py, as a user runs it on weights saved by numpy.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <algorithm>
-#include <cstdlib>
 
 #include "policy/policy_file.h"
 #include "tests/policy/random_policy.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/program_test.h"
 
 namespace sandrunner {
 namespace {
@@ -31,8 +27,11 @@ for change in sys.argv[1:]: exec(change)
 np.savez('policy.npz', **arrays)
 )";
 
-class FromNpzTest : public testing::Test {
+class FromNpzTest : public ProgramTest {
  protected:
+  /// With Debian's Python, the one that python3-numpy belongs to.
+  FromNpzTest() : ProgramTest("/usr/bin/python3") {}
+
   void SetUp() override {
     write_policy_file(folder_.path("policy.safetensors"), random_policy_file());
     write_file(folder_.path("save.py"), kSave);
@@ -43,24 +42,20 @@ class FromNpzTest : public testing::Test {
     write_file(folder_.path("names.txt"), names);
   }
 
-  /// Runs Debian's Python, the one that python3-numpy belongs to, in the folder.
-  int python(const std::string& arguments) {
-    const std::string command =
-        "cd '" + folder_.path("") + "' && /usr/bin/python3 " + arguments + " >out 2>err";
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  void save(const std::string& change = "") { ASSERT_EQ(run("save.py " + change), 0) << error(); }
+  static std::string convert(const std::string& options) {
+    return "'" SANDRUNNER_FROM_NPZ "' policy.npz --out new.safetensors " + options;
   }
-  int convert(const std::string& options) {
-    return python("'" SANDRUNNER_FROM_NPZ "' policy.npz --out new.safetensors " + options);
+  void expect_refused(const std::string& options, const std::string& cause) {
+    ProgramTest::expect_refused(convert(options), cause);
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("new.safetensors"))) << options;
   }
-  std::string error() { return read_file(folder_.path("err")); }
-
-  const TemporaryFolder folder_;
 };
 
 TEST_F(FromNpzTest, WritesAPolicyFileThatPassesItsGoldenExample) {
-  ASSERT_EQ(python("save.py"), 0) << error();
-  ASSERT_EQ(convert("--map names.txt --name mine --set kp_nmprad=40 --set observation_clip=3"), 0)
+  save();
+  ASSERT_EQ(run(convert("--map names.txt --name mine --set kp_nmprad=40 --set observation_clip=3")),
+            0)
       << error();
   PolicyFile before = read_policy_file(folder_.path("policy.safetensors"));
   PolicyFile after = read_policy_file(folder_.path("new.safetensors"));  // runs the example
@@ -83,24 +78,13 @@ TEST_F(FromNpzTest, BadWeightsAreOneLineAndNoFile) {
       {"arrays['estimate.variance'] = np.full(8, -1.0)", "a variance below 0"},
   };
   for (const auto& [change, cause] : cases) {
-    ASSERT_EQ(python(std::string("save.py \"") + change + "\""), 0) << error();
-    EXPECT_EQ(convert("--map names.txt"), 2) << change;
-    const std::string line = error();
-    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
-    EXPECT_NE(line.find(cause), std::string::npos) << line;
-    EXPECT_FALSE(std::filesystem::exists(folder_.path("new.safetensors"))) << change;
+    save(std::string("\"") + change + "\"");
+    expect_refused("--map names.txt", cause);
   }
 }
 
 TEST_F(FromNpzTest, BadOptionsAndFilesAreOneLineAndNoFile) {
-  ASSERT_EQ(python("save.py"), 0) << error();
-  const auto expect_refused = [&](const std::string& options, const std::string& cause) {
-    EXPECT_EQ(convert(options), 2) << options;
-    const std::string line = error();
-    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << line;
-    EXPECT_NE(line.find(cause), std::string::npos) << line;
-    EXPECT_FALSE(std::filesystem::exists(folder_.path("new.safetensors"))) << options;
-  };
+  save();
   for (const char* bad : {"kp_nmprad=4O", "kd_nmsprad=-1", "action_scale_rad=0",
                           "torque_limit_nm=", "observation_clip=nan", "action_clip=1_0"}) {
     expect_refused(std::string("--map names.txt --set ") + bad, bad);

@@ -4,9 +4,9 @@
 
 #include <sstream>
 
-#include "tests/rt/telemetry/dds/child.h"
 #include "tests/rt/telemetry/dds/support.h"
 #include "tests/rt/telemetry/example_tick.h"
+#include "tests/support/child_process.h"
 
 namespace sandrunner {
 namespace {
@@ -22,7 +22,7 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
     ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
     ASSERT_TRUE(asker.ask("walk").accepted);
   }
-  Child fast({SANDRUNNER_FASTDDS_PEER, std::to_string(setup.config.domain), "0.7", "4"});
+  ChildProcess fast({SANDRUNNER_FASTDDS_PEER, std::to_string(setup.config.domain), "0.7", "4"});
   double fastest_mps = 0.0;
   const auto start = std::chrono::steady_clock::now();
   for (std::uint64_t tick = 0; tick < 4 * kControlHz;) {
@@ -31,19 +31,19 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
     fastest_mps = std::max(fastest_mps, setup.robot.speed_mps());
     sleep_s(0.002);
   }
-  const double sent = fast.number("sent");
+  const double sent = number_after(fast.wait().out, "sent");
   EXPECT_GT(sent, 50.0);
   EXPECT_GE(static_cast<double>(setup.inbox.counts().accepted), 0.9 * sent);
   EXPECT_EQ(fastest_mps, 0.7);
 
-  const std::string text = fast.wait();
+  const std::string text = fast.wait().out;
   SCOPED_TRACE(text);
   for (const char* topic : {"joint_states", "imu", "odom", "tf"}) {
-    EXPECT_GE(fast.number(std::string("\n") + topic), 150.0) << topic;
-    EXPECT_LE(fast.number(std::string("\n") + topic), 400.0) << topic;
+    EXPECT_GE(number_after(text, std::string("\n") + topic), 150.0) << topic;
+    EXPECT_LE(number_after(text, std::string("\n") + topic), 400.0) << topic;
   }
-  EXPECT_GE(fast.number("\ndiagnostics"), 1.0);
-  EXPECT_EQ(fast.number("\nrobot_description"), 1.0);
+  EXPECT_GE(number_after(text, "\ndiagnostics"), 1.0);
+  EXPECT_EQ(number_after(text, "\nrobot_description"), 1.0);
 
   const auto has = [&](const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << part;

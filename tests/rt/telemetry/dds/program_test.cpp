@@ -16,8 +16,8 @@
 #include "rt/realtime/setup.h"
 #include "rt/telemetry/recording/recording_file.h"
 #include "tests/rt/support.h"
-#include "tests/rt/telemetry/dds/child.h"
 #include "tests/rt/telemetry/dds/support.h"
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
@@ -44,9 +44,9 @@ std::string program(const DdsConfig& config) {
 }
 
 void expect_replays_bit_for_bit(const std::string& recording) {
-  Child replay({SANDRUNNER_REPLAY, recording});
-  EXPECT_EQ(replay.code(), 0);
-  EXPECT_NE(replay.wait().find("every bit agrees"), std::string::npos) << replay.wait();
+  ChildProcess replay({SANDRUNNER_REPLAY, recording});
+  EXPECT_EQ(replay.wait().code, 0);
+  EXPECT_NE(replay.wait().out.find("every bit agrees"), std::string::npos) << replay.wait();
 }
 
 /// Never rests, on the processor that the control thread does not have by default.
@@ -83,13 +83,13 @@ class DdsProgramTest : public testing::Test {
 
 TEST_F(DdsProgramTest, StateHashIsTheSameWithAndWithoutTelemetryAndRecording) {
   const auto hash = [&](const std::string& command, const std::string& more) {
-    Child robot(words_of(command + " --start walk --duration 2 --command 0.8,0,0.2 --out " +
-                         folder_.path("out") + more));
-    EXPECT_EQ(robot.code(), 0);
+    ChildProcess robot(words_of(command + " --start walk --duration 2 --command 0.8,0,0.2 --out " +
+                                folder_.path("out") + more));
+    EXPECT_EQ(robot.wait().code, 0);
     return summary("out").at("state_hash").get<std::string>();
   };
   const std::string without = hash(SANDRUNNER_PROGRAM, "");
-  Child watcher(words_of(peer(config_) + "watch 60"));
+  ChildProcess watcher(words_of(peer(config_) + "watch 60"));
   EXPECT_EQ(hash(program(config_), ""), without);
   EXPECT_EQ(hash(program(config_), " --record " + folder_.path("recording")), without);
   ASSERT_TRUE(watcher.wait_for("matched"));  // somebody listened
@@ -104,10 +104,11 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
     const bool to_fault = i % 3 == 2;
     const DdsConfig config = test_config();
     const std::string dir = folder_.path(std::to_string(i));
-    Child robot(words_of(program(config) + "--clock realtime --command dds --record " + dir +
-                         " --seed " + std::to_string(i) +
-                         " --set controller.stand.fold_s=0.4 --set controller.stand.extend_s=0.6" +
-                         (to_fault ? " --set controller.gate.speed_fault_radps=9" : "")));
+    ChildProcess robot(
+        words_of(program(config) + "--clock realtime --command dds --record " + dir + " --seed " +
+                 std::to_string(i) +
+                 " --set controller.stand.fold_s=0.4 --set controller.stand.extend_s=0.6" +
+                 (to_fault ? " --set controller.gate.speed_fault_radps=9" : "")));
     const DdsParticipant participant(config, "operator");
     Peer operators(config);
     Asker asker(operators);
@@ -126,8 +127,8 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
     sleep_s(0.8);
     robot.signal(SIGTERM);
     robot.wait();
-    EXPECT_NE(robot.wait().find(" in " + dir), std::string::npos) << robot.wait();
-    EXPECT_EQ(robot.wait().find("LOST"), std::string::npos) << robot.wait();
+    EXPECT_NE(robot.wait().out.find(" in " + dir), std::string::npos) << robot.wait();
+    EXPECT_EQ(robot.wait().out.find("LOST"), std::string::npos) << robot.wait();
 
     std::set<Mode> modes;
     std::uint64_t commands = 0, last_command = 0, skipped = 0;
@@ -159,13 +160,13 @@ TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne
     return words_of(command + " --clock realtime --start walk --command 0.5,0,0 --duration " +
                     std::to_string(watched_s) + " --out " + folder_.path(out));
   };
-  Child alone(walk(SANDRUNNER_PROGRAM, "alone"));
-  EXPECT_EQ(alone.code(), 0);
+  ChildProcess alone(walk(SANDRUNNER_PROGRAM, "alone"));
+  EXPECT_EQ(alone.wait().code, 0);
 
   const std::string watch = peer(config_) + "watch " + std::to_string(watched_s + 2);
-  Child live(words_of(watch)), stopped(words_of(watch)), killed(words_of(watch));
+  ChildProcess live(words_of(watch)), stopped(words_of(watch)), killed(words_of(watch));
   sleep_s(0.3);
-  Child robot(walk(program(config_) + "--record " + folder_.path(""), "watched"));
+  ChildProcess robot(walk(program(config_) + "--record " + folder_.path(""), "watched"));
   ASSERT_TRUE(live.wait_for("matched"));
   ASSERT_TRUE(stopped.wait_for("matched"));
   ASSERT_TRUE(killed.wait_for("matched"));
@@ -174,13 +175,13 @@ TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne
   killed.signal(SIGKILL);
   sleep_s(stop_s);
   stopped.signal(SIGCONT);
-  EXPECT_EQ(robot.code(), 0) << robot.wait();
-  EXPECT_EQ(robot.wait().find("LOST"), std::string::npos) << robot.wait();
-  EXPECT_EQ(live.number("gaps"), 0) << live.wait();
-  EXPECT_EQ(live.number("lost_ticks"), 0) << live.wait();
-  EXPECT_GT(live.number("batches"), 100 * watched_s - 100) << live.wait();
+  EXPECT_EQ(robot.wait().code, 0) << robot.wait();
+  EXPECT_EQ(robot.wait().out.find("LOST"), std::string::npos) << robot.wait();
+  EXPECT_EQ(number_after(live.wait().out, "gaps"), 0) << live.wait();
+  EXPECT_EQ(number_after(live.wait().out, "lost_ticks"), 0) << live.wait();
+  EXPECT_GT(number_after(live.wait().out, "batches"), 100 * watched_s - 100) << live.wait();
   if (stop_s < 2.0) {  // what kBatchDepth holds
-    EXPECT_EQ(stopped.number("gaps"), 0) << stopped.wait();
+    EXPECT_EQ(number_after(stopped.wait().out, "gaps"), 0) << stopped.wait();
   }
 
   const nlohmann::json before = summary("alone").at("realtime");
@@ -200,7 +201,7 @@ TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne
                 j.at("ticks_skipped").dump().c_str(), us(j, "late_us", "p50"),
                 us(j, "late_us", "p99"), us(j, "control_us", "p50"), us(j, "control_us", "p99"));
   }
-  std::printf("live: %sstopped: %s", live.wait().c_str(), stopped.wait().c_str());
+  std::printf("live: %sstopped: %s", live.wait().out.c_str(), stopped.wait().out.c_str());
 }
 
 TEST_F(DdsProgramTest, ANetworkInterfaceThatGoesAwayIsNoticedByNeitherControlNorRecording) {
@@ -209,7 +210,7 @@ TEST_F(DdsProgramTest, ANetworkInterfaceThatGoesAwayIsNoticedByNeitherControlNor
   const std::string interface =
       "ip link set lo up && ip link add v0 type veth peer name v1 && "
       "ip addr add 10.9.8.7/24 dev v0 && ip link set v0 up && ip link set v1 up";
-  if (std::system((unshare + " sh -c '" + interface + "' 2>/dev/null").c_str()) != 0) {
+  if (run_shell(unshare + " sh -c '" + interface + "'").code != 0) {
     GTEST_SKIP() << "no network namespace with an interface of its own is to be had here";
   }
   const std::string on_v0 = std::to_string(config_.domain) + " v0 ";
@@ -222,10 +223,10 @@ TEST_F(DdsProgramTest, ANetworkInterfaceThatGoesAwayIsNoticedByNeitherControlNor
                  " & robot=$!\nsleep 1.5; ip link del v0\nwait $robot; code=$?\n"
                  "kill -9 $watcher; exit $code\n");
   const auto start = std::chrono::steady_clock::now();
-  Child robot(words_of("/usr/bin/env " + unshare + " sh " + folder_.path("script")));
-  EXPECT_EQ(robot.code(), 0) << robot.wait();
+  ChildProcess robot(words_of(unshare + " sh " + folder_.path("script")));
+  EXPECT_EQ(robot.wait().code, 0) << robot.wait();
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
-  EXPECT_EQ(robot.wait().find("LOST"), std::string::npos) << robot.wait();
+  EXPECT_EQ(robot.wait().out.find("LOST"), std::string::npos) << robot.wait();
   EXPECT_EQ(summary("out").at("realtime").at("records_dropped"), 0);
   expect_replays_bit_for_bit(folder_.path("run.mcap"));
 }

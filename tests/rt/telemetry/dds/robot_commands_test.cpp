@@ -10,9 +10,9 @@
 #include "rt/run/dds_bridge.h"
 #include "sim/simulator.h"
 #include "tests/rt/support.h"
-#include "tests/rt/telemetry/dds/child.h"
 #include "tests/rt/telemetry/dds/support.h"
 #include "tests/rt/telemetry/renamed_robot.h"
+#include "tests/support/child_process.h"
 
 namespace sandrunner {
 namespace {
@@ -128,7 +128,7 @@ TEST_F(RobotCommandsTest, AfterTheLastCommandTheRobotSlowsToAStand) {
 }
 
 TEST_F(RobotCommandsTest, APublisherThatIsKilledLeavesAStandingRobot) {
-  std::unique_ptr<Child> driver = std::make_unique<Child>(std::vector<std::string>{
+  std::unique_ptr<ChildProcess> driver = std::make_unique<ChildProcess>(std::vector<std::string>{
       SANDRUNNER_DDS_PEER, std::to_string(config_.dds.domain), "lo", "drive", "0.8", "10000"});
   double killed_s = 0.0;
   walk(5.4, [&](double time_s) {

@@ -59,6 +59,13 @@ inline void sleep_s(double duration_s) {
   std::this_thread::sleep_for(std::chrono::duration<double>(duration_s));
 }
 
+/// The number after this word, in what a process printed; -1 without.
+inline double number_after(const std::string& printed, const std::string& word) {
+  const std::string text = "\n" + printed;
+  const std::size_t at = text.find(word + " ");
+  return at == std::string::npos ? -1.0 : std::stod(text.substr(at + word.size()));
+}
+
 /// Another participant of the same process and domain, with a mind of its own about QoS.
 class Peer {
  public:

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What only shows between processes: deaths, stops, certificates.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 
-#include "tests/rt/telemetry/dds/child.h"
 #include "tests/rt/telemetry/dds/support.h"
 #include "tests/rt/telemetry/example_tick.h"
+#include "tests/support/child_process.h"
 
 namespace sandrunner {
 namespace {
@@ -21,12 +19,12 @@ std::vector<std::string> peer_command(const DdsConfig& config, std::vector<std::
 
 TEST(TwoProcessesTest, APublisherThatIsKilledLosesTheCommandAfterTheStaleTime) {
   LiveSetup setup;
-  Child first(peer_command(setup.config, {"drive", "0.5", "1000"}));
+  ChildProcess first(peer_command(setup.config, {"drive", "0.5", "1000"}));
   ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted > 5; }));
   first.signal(SIGKILL);
   first.wait();
-  Child second(peer_command(setup.config, {"drive", "0.6", "20"}));
-  EXPECT_EQ(second.number("sent"), 20);
+  ChildProcess second(peer_command(setup.config, {"drive", "0.6", "20"}));
+  EXPECT_EQ(number_after(second.wait().out, "sent"), 20);
   const CommandCounts before = setup.inbox.counts();
   EXPECT_GE(before.accepted, 20u);  // he came 0.3 s after the kill at the earliest
 }
@@ -35,8 +33,8 @@ TEST(TwoProcessesTest, AStoppedSubscriberHoldsUpNobodyAndALiveOneMissesNothing) 
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
   Telemetry telemetry(participant, config, example_robot(), nullptr);
-  Child live(peer_command(config, {"watch", "6"}));
-  Child stopped(peer_command(config, {"watch", "60"}));
+  ChildProcess live(peer_command(config, {"watch", "6"}));
+  ChildProcess stopped(peer_command(config, {"watch", "60"}));
   publish_for(telemetry, 0, 1.0);
   ASSERT_TRUE(live.wait_for("matched"));
   ASSERT_TRUE(stopped.wait_for("matched"));
@@ -46,8 +44,8 @@ TEST(TwoProcessesTest, AStoppedSubscriberHoldsUpNobodyAndALiveOneMissesNothing) 
   publish_for(telemetry, 18000, 0.3);
   EXPECT_EQ(telemetry.failed_writes(), 0u);
   EXPECT_LT(longest_s, 0.1);  // half a second of ticks is what the control loop's ring holds
-  EXPECT_EQ(live.number("gaps"), 0);
-  EXPECT_GT(live.number("ticks"), 14000);  // at least all since the stop
+  EXPECT_EQ(number_after(live.wait().out, "gaps"), 0);
+  EXPECT_GT(number_after(live.wait().out, "ticks"), 14000);  // at least all since the stop
   RecordProperty("longest_add_us", static_cast<int>(longest_s * 1e6));
 }
 
@@ -56,17 +54,17 @@ TEST(TwoProcessesTest, ANetworkInterfaceThatGoesAwayHoldsUpNobodyNotEvenTheEnd) 
   const std::string make_interface =
       "ip link set lo up && ip link add v0 type veth peer name v1 && "
       "ip addr add 10.9.8.7/24 dev v0 && ip link set v0 up && ip link set v1 up";
-  if (std::system((in_own_network + "'" + make_interface + "' 2>/dev/null").c_str()) != 0) {
+  if (run_shell(in_own_network + "'" + make_interface + "'").code != 0) {
     GTEST_SKIP() << "no network namespace with an interface of its own is to be had here";
   }
   const std::string peer = std::string(SANDRUNNER_DDS_PEER) + " 100 v0 ";
   const std::string script = make_interface + "\n" + peer + "watch 60 >&2 & watcher=$!\n" + peer +
                              "publish 3 & publisher=$!\n"
                              "sleep 1.5; ip link del v0; wait $publisher; kill -9 $watcher";
-  Child robot({"/usr/bin/unshare", "--map-root-user", "--net", "/bin/sh", "-c", script});
+  ChildProcess robot({"unshare", "--map-root-user", "--net", "sh", "-c", script});
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_LT(robot.number("longest_us"), 100e3);
-  EXPECT_EQ(robot.number("failed"), 0);
+  EXPECT_LT(number_after(robot.wait().out, "longest_us"), 100e3);
+  EXPECT_EQ(number_after(robot.wait().out, "failed"), 0);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
 }
 
@@ -76,12 +74,11 @@ class SecurityTest : public testing::Test {
     dir_ = std::filesystem::temp_directory_path() /
            ("sandrunner-dds-security-" + std::to_string(getpid()));
     std::filesystem::create_directory(dir_);
-    have_openssl_ = std::system("command -v openssl >/dev/null") == 0;
+    have_openssl_ = run_shell("command -v openssl").code == 0;
     if (!have_openssl_) return;
     for (const char* name : {"ours", "theirs"}) {
-      const std::string make =
-          std::string(SANDRUNNER_SECURITY_SCRIPT) + " " + (dir_ / name).string() + " >/dev/null";
-      ASSERT_EQ(std::system(make.c_str()), 0);
+      const Ended made = run_process({SANDRUNNER_SECURITY_SCRIPT, folder(name)});
+      ASSERT_EQ(made.code, 0) << made;
     }
   }
   static void TearDownTestSuite() { std::filesystem::remove_all(dir_); }
@@ -100,8 +97,8 @@ class SecurityTest : public testing::Test {
     LiveSetup setup(config);
     std::vector<std::string> words{"drive", "0.5", "50"};
     words.insert(words.end(), credentials.begin(), credentials.end());
-    Child peer(peer_command(config, words));
-    const std::string said = peer.wait();
+    ChildProcess peer(peer_command(config, words));
+    const std::string said = peer.wait().out;
     sleep_s(0.1);
     return {setup.inbox.counts(), said};
   }
@@ -138,9 +135,9 @@ TEST_F(SecurityTest, AViewerMayNotCommandButSeesTheTelemetry) {
   config.security_dir = folder("ours");
   DdsParticipant participant(config);
   Telemetry telemetry(participant, config, example_robot(), nullptr);
-  Child viewer(peer_command(config, {"watch", "2", folder("ours"), "viewer"}));
+  ChildProcess viewer(peer_command(config, {"watch", "2", folder("ours"), "viewer"}));
   publish_for(telemetry, 0, 2.0);
-  EXPECT_GT(viewer.number("batches"), 50);
+  EXPECT_GT(number_after(viewer.wait().out, "batches"), 50);
 }
 
 TEST_F(SecurityTest, AMissingFileIsNamed) {

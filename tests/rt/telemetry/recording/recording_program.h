@@ -3,10 +3,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <bit>
-#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
@@ -14,6 +12,7 @@
 #include "rt/loop/tick_fields.h"
 #include "rt/telemetry/recording/recorder.h"
 #include "rt/telemetry/recording/recording_file.h"
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
@@ -60,21 +59,23 @@ inline void flip(const std::string& from, const std::string& to, std::uint64_t t
 class RecordingProgramTest : public testing::Test {
  protected:
   /// Runs `sandrunner` or `sandrunner-replay`; returns the exit code.
-  int run(const char* program, const std::string& arguments, const std::string& before = "") {
-    const std::string command =
-        before + "'" + program + "' " + arguments + " >'" + captured_.path("out") + "' 2>&1";
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  int run(const std::string& program, const std::string& arguments,
+          const std::string& before = "") {
+    const Ended ended = run_shell(before + "'" + program + "' " + arguments);
+    output_ = ended.out + ended.err;
+    return ended.code;
   }
   /// As if the disk had room for 600 kB a file (blocks of 512 bytes): the policy's attachment alone
   /// takes 430.
-  int run_on_full_disk(const char* program, const std::string& arguments) {
+  int run_on_full_disk(const std::string& program, const std::string& arguments) {
     return run(program, arguments, "trap '' XFSZ && ulimit -f 1172 && ");
   }
-  std::string output() const { return read_file(captured_.path("out")); }
+  const std::string& output() const { return output_; }
 
-  const TemporaryFolder folder_;    ///< of the recordings
-  const TemporaryFolder captured_;  ///< what the program printed
+  const TemporaryFolder folder_;  ///< of the recordings
+
+ private:
+  std::string output_;
 };
 
 }  // namespace sandrunner

@@ -3,15 +3,14 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/inotify.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 
 #include "policy/policy_file.h"
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
@@ -59,32 +58,16 @@ class CheckpointWatch {
 
 class TrainCommandTest : public testing::Test {
  protected:
-  /// Starts the program on the short training; returns its process.
-  pid_t start(const std::string& out, std::vector<std::string> more) {
+  /// The program on the short training.
+  std::vector<std::string> training(const std::string& out,
+                                    const std::vector<std::string>& more) const {
     std::vector<std::string> words = {SANDRUNNER_TRAIN_PROGRAM, "--out", folder_.path(out)};
     words.insert(words.end(), kShort.begin(), kShort.end());
     words.insert(words.end(), more.begin(), more.end());
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const pid_t child = ::fork();
-    if (child == 0) {
-      if (!std::freopen(folder_.path("out.txt").c_str(), "a", stdout) ||
-          !std::freopen(folder_.path("err.txt").c_str(), "w", stderr)) {
-        ::_exit(9);
-      }
-      ::execv(arguments[0], arguments.data());
-      ::_exit(9);
-    }
-    return child;
+    return words;
   }
-  static int wait_for(pid_t child) {
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  }
-  int run(const std::string& out, const std::vector<std::string>& more) {
-    return wait_for(start(out, more));
+  int run(const std::string& out, const std::vector<std::string>& more) const {
+    return run_process(training(out, more)).code;
   }
   PolicyFile policy(const std::string& out) const {
     return read_policy_file(folder_.path(out) + "/policy.safetensors");
@@ -101,8 +84,9 @@ class TrainCommandTest : public testing::Test {
   }
   void expect_refused(const std::string& out, const std::vector<std::string>& more,
                       const std::string& named) {
-    EXPECT_EQ(run(out, more), 2) << named;
-    const std::string error = read_file(folder_.path("err.txt"));
+    const Ended ended = run_process(training(out, more));
+    EXPECT_EQ(ended.code, 2) << named;
+    const std::string& error = ended.err;
     EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
     EXPECT_NE(error.find(named), std::string::npos) << error;
   }
@@ -129,11 +113,11 @@ TEST_F(TrainCommandTest, FiveKillsAndResumesEndInTheWeightsOfAnUninterruptedRun)
   std::vector<std::string> often = kOften;
   for (int kill = 0; kill < 5; ++kill) {
     CheckpointWatch watch(folder_.path("killed"));
-    const pid_t child = start("killed", often);
+    ChildProcess child(training("killed", often));
     if (kill == 0) often.push_back("--resume");
     EXPECT_TRUE(watch.wait_for(1 + kill % 3));
-    ::kill(child, SIGKILL);
-    EXPECT_EQ(wait_for(child), -SIGKILL) << "the run was over before kill " << kill;
+    child.signal(SIGKILL);
+    EXPECT_EQ(child.wait().code, 128 + SIGKILL) << "the run was over before kill " << kill;
   }
   ASSERT_EQ(run("killed", often), 0);
   expect_same_weights(policy("whole"), policy("killed"));
@@ -198,10 +182,10 @@ TEST_F(TrainCommandTest, FolderThatCannotBeWrittenIsRefusedBeforeTheTraining) {
 TEST_F(TrainCommandTest, InterruptKeepsEverythingAndResumeEndsInTheSameWeights) {
   ASSERT_EQ(run("whole", {"--threads", "1"}), 0);
   CheckpointWatch watch(folder_.path("stopped"));
-  const pid_t child = start("stopped", kOften);
+  ChildProcess child(training("stopped", kOften));
   EXPECT_TRUE(watch.wait_for(2));
-  ::kill(child, SIGINT);
-  ASSERT_EQ(wait_for(child), 0);
+  child.signal(SIGINT);
+  ASSERT_EQ(child.wait().code, 0);
   EXPECT_LT(std::stoi(policy("stopped").spec.provenance.at("transitions")), 12800);
   EXPECT_TRUE(std::filesystem::exists(folder_.path("stopped") + "/curve.csv"));
   std::vector<std::string> again = kOften;
