@@ -28,10 +28,9 @@ inline constexpr int kMaxDelayTicks = 64;
 struct SimulatorConfig {
   TerrainDescription terrain;
   SensorNoise noise;
-  int sensor_delay_ticks = 0;    ///< age of what read() delivers, 0..63
-  int actuator_delay_ticks = 0;  ///< ticks until a command acts, 0..63
-  bool torque_speed_line = false;
-  TorqueSpeedLine line;
+  int sensor_delay_ticks = 0;         ///< age of what read() delivers, 0..63
+  int actuator_delay_ticks = 0;       ///< ticks until a command acts, 0..63
+  TorqueSpeedLine torque_speed_line;  ///< of the drives; by default none
   StepSettings step;
   std::uint64_t seed = 0;
 };
@@ -93,7 +92,8 @@ class Simulator final : public RobotIo {
   StepReport<double> report_;
 };
 
-/// Reads the table [sim] of `config` and its terrain. Throws InputError.
-SimulatorConfig read_simulator_config(ConfigTree& config);
+/// Reads the table [sim] of `config` and its terrain; figures of the drives are `robot`'s unless
+/// set. Throws InputError.
+SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot);
 
 }  // namespace sandrunner::sim

@@ -16,7 +16,7 @@ namespace {
 SimulatorConfig config_of(const std::string& preset) {
   ConfigTree config;
   add_terrain_layer(config, preset);
-  SimulatorConfig c = read_simulator_config(config);
+  SimulatorConfig c = read_simulator_config(config, load_raibo());
   config.reject_unknown();
   return c;
 }
@@ -295,7 +295,7 @@ TEST(SimulatorTest, DrivesClampTheirTorqueAndCanFollowATorqueSpeedLine) {
   plain.write(SafeCommand{});
   EXPECT_EQ(plain.state().torque_nm[1], 0.0);  // off
 
-  config.torque_speed_line = true;
+  config.torque_speed_line = robot.torque_speed_line;
   Simulator limited(robot, config);
   SimulatorState s = limited.state();
   s.robot.rigid.position.z = 10.0;

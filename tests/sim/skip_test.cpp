@@ -37,7 +37,7 @@ TEST(SimulatorSkipTest, SkippedTicksAreTicksUnderTheHeldCommand) {
   const Robot robot = load_raibo();
   ConfigTree tree;
   add_terrain_layer(tree, "dry-sand");
-  SimulatorConfig config = read_simulator_config(tree);
+  SimulatorConfig config = read_simulator_config(tree, robot);
   config.seed = 4;
   config.noise.joint_position_rad = 0.01;
   for (const auto& [sensor, actuator, skipped] :
@@ -75,7 +75,7 @@ TEST(SimulatorSkipTest, NothingSkippedIsNothingDone) {
   const Robot robot = load_raibo();
   ConfigTree tree;
   add_terrain_layer(tree, "rigid");
-  SimulatorConfig config = read_simulator_config(tree);
+  SimulatorConfig config = read_simulator_config(tree, robot);
   config.sensor_delay_ticks = config.actuator_delay_ticks = 5;
   Simulator simulator(robot, config);
   run(simulator, robot, 10);

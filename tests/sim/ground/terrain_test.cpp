@@ -133,7 +133,7 @@ TEST(TerrainTest, SimulatorTableRefusesBadValues) {
     ConfigTree config;
     config.add_text(toml, "my.toml");
     try {
-      read_simulator_config(config);
+      read_simulator_config(config, load_raibo());
       config.reject_unknown();
     } catch (const InputError&) {
       return true;

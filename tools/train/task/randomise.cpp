@@ -143,7 +143,7 @@ void Task::new_robot(int env, Env& e) {
   drive.kp = static_cast<float>(config_.policy.kp_nmprad * spread(r.kp_spread));
   drive.kd = static_cast<float>(config_.policy.kd_nmsprad * spread(r.kd_spread));
   drive.torque_scale = static_cast<float>(spread(r.torque_spread));
-  const sim::TorqueSpeedLine line;
+  const sim::TorqueSpeedLine& line = robot_.torque_speed_line;
   drive.stall_torque_nm = r.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
   drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
   drive.switch_tick =

@@ -167,7 +167,7 @@ class LiveRobot {
   }
 
   DdsOperator& operator_;
-  ControllerConfig controller_;
+  ControllerConfig controller_ = test_robot();
   std::unique_ptr<FakeLoop> loop_;
   std::atomic<bool> end_{false}, broken_{false};
   std::atomic<Mode> mode_{Mode::kPassive};
