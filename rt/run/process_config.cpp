@@ -84,6 +84,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
   p.controller = controller_config(p.robot);
   ControllerConfig& c = p.controller;
   if (spec) {
+    require_joints(*spec, p.robot.description);
     c.walk.kp_nmprad = spec->kp_nmprad;
     c.walk.kd_nmsprad = spec->kd_nmsprad;
     c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;

@@ -262,6 +262,7 @@ class Training {
       spec.estimate_mean[i] = scales.estimate_mean[i];
       spec.estimate_variance[i] = scales.estimate_deviation[i] * scales.estimate_deviation[i];
     }
+    spec.joint_names = sim::load_raibo().description.joint_names;
     spec.provenance = {
         {"config", config_.effective},
         {"seed", std::to_string(arguments_.seed)},
