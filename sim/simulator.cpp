@@ -152,7 +152,7 @@ bool Simulator::truth(RobotTruth& truth) const noexcept {
     const Vec3<double>& centre = report_.foot_centre[l];
     truth.foot_centre_m[l] = array(centre);
     truth.foot_penetration_m[l] = report_.penetration[l];
-    const SurfaceAxes<double> axes = surface_axes(terrain_, centre.x, centre.y);
+    const SurfaceAxes<double> axes = surface_axes(surface_at(terrain_, centre.x, centre.y));
     const auto& force = report_.foot_force[l];
     truth.foot_force_n[l] = array(force[0] * axes.t1 + force[1] * axes.t2 + force[2] * axes.n);
   }
@@ -173,7 +173,7 @@ void Simulator::add_to(StateHash& hash) const noexcept {
 }
 
 double Simulator::surface_height(double x_m, double y_m) const noexcept {
-  return sim::surface_height(terrain_, x_m, y_m);
+  return surface_at(terrain_, x_m, y_m).height;
 }
 
 SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot) {

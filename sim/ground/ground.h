@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 
 #include "sim/ground/foot_profile.h"
@@ -93,7 +94,7 @@ struct Cone {
 };
 template <typename S>
 inline Cone<S> cone_integrals(const Ground<S>& g, S z, S p0, S p1) noexcept {
-  const S pi = S(3.14159265358979323846);
+  const S pi = S(std::numbers::pi);
   // pi (P0 - 2 k P1 + k^2 z^3 / 3)
   const S growing = pi * fma(z * (z * z), g.k2_third, fma(S(-2.0) * g.k, p1, p0));
   const S flat = select(z < g.full_depth, growing, g.full_flat);
@@ -103,7 +104,7 @@ inline Cone<S> cone_integrals(const Ground<S>& g, S z, S p0, S p1) noexcept {
 template <typename S>
 inline S flat_area(const Ground<S>& g, S z, S hydraulic_radius) noexcept {
   const S r = max(fma(-g.k, z, hydraulic_radius), S(0.0));
-  return S(3.14159265358979323846) * (r * r);
+  return S(std::numbers::pi) * (r * r);
 }
 /// Quasistatic force F_p = sigma_flat I_flat + sigma_cone I_cone, N.
 template <typename S>

@@ -80,7 +80,7 @@ class RobotStepper {
                       const Vec3<S>& r_hip, int leg, int joints, S radius, bool only_rigid,
                       const Mask<S>& near, int slot, RobotState<S>& x, S& touched) noexcept;
   void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
-  Frame surface_frame(S slope_x, S slope_y) const noexcept;
+  Frame contact_frame(const Ground<S>& ground, const Surface<S>& surface) const noexcept;
 
   Dynamics<S> dynamics_;
   Mat3<S> rotation_;  // body to world

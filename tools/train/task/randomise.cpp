@@ -177,7 +177,7 @@ void Task::hard_reset(int env, Env& e) {
   x.position = {draw(5.0), draw(5.0), 0.0f};
   new_ground(env, e, x.position.x);
   const sim::Ground<float>& ground = e.terrain.ground[0];
-  const float height = sim::surface_height(e.terrain, x.position.x, x.position.y);
+  const float height = sim::surface_at(e.terrain, x.position.x, x.position.y).height;
   x.position.z =
       static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
   const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
