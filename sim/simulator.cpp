@@ -35,8 +35,7 @@ void Simulator::disturb(double height_above_m) {
     x.velocity = {draw(), draw(), draw()};
     x.angular_velocity = {draw(), draw(), draw()};
   }
-  // Lowest point of the feet (and, lying, of the box) to the wanted height above the surface. What
-  // stands undisturbed on level ground stands at its nominal height.
+  // An undisturbed robot on level ground stands at its nominal height.
   if (config_.seed > 0 || height_above_m == 0.0 || terrain_.highest > 0.0) {
     const double lowest = lowest_clearance(
         model_, x.q, [this](double x_m, double y_m) { return surface_height(x_m, y_m); });
@@ -70,7 +69,7 @@ SensorFrame Simulator::sample() const noexcept {
   f.imu.angular_velocity_radps = {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
   f.imu.linear_acceleration_mps2 = state_.linear_acceleration_mps2;
   const SensorNoise& n = config_.noise;
-  std::uint64_t counter = state_.tick * 64;  // fewer than 64 draws a tick
+  std::uint64_t counter = state_.tick * 64;  // fewer than 64 draws per tick
   const auto noise = [&](double sigma) {
     return sigma > 0.0 ? sigma * random_normal(config_.seed, kNoiseStream, counter++) : 0.0;
   };
@@ -95,8 +94,8 @@ void Simulator::read(std::uint64_t tick, SensorFrame& frame) noexcept {
     state_.sensors[state_.tick % kMaxDelayTicks] = sample();
     frame = state_.sensors[(state_.tick - std::min(delay, state_.tick)) % kMaxDelayTicks];
   }
-  // Delayed values do not look old to the controller: the delay lies in the sensor, which stamps on
-  // arrival.
+  // Delayed values do not look old to the controller: the delay is inside the sensor, which stamps
+  // its values when they arrive.
   frame.tick = frame.imu.tick = tick;
   frame.joints.tick.fill(tick);
 }

@@ -52,11 +52,11 @@ class Simulator final : public RobotIo {
   Simulator(const Robot& robot, const SimulatorConfig& config);
 
   /// On its feet in the nominal pose, at rest, base at the robot's nominal height (`--start walk`);
-  /// on uneven ground as high as the feet find it, the lowest 2 mm above.
-  /// A seed above 0 disturbs it: joints +-0.1 rad, base twist +-0.1 (m/s, rad/s), height such that
-  /// the lowest foot is 2 mm above the ground; uniform draws from the seed.
+  /// on uneven ground so high that its lowest part is 2 mm above it. A seed above 0 disturbs this:
+  /// joints +-0.1 rad, base velocity +-0.1 m/s and +-0.1 rad/s, the lowest part 2 mm above the
+  /// ground; uniform draws from the seed.
   void reset_standing();
-  /// On its belly in the lying pose, at rest (disturbed likewise, but kept on the ground).
+  /// On its belly in the lying pose, at rest; disturbed in the same way, but touching the ground.
   void reset_lying();
 
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;

@@ -52,7 +52,7 @@ Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double
   const bool rough = p.kind == GroundKind::kRigid && p.roughness_m > 0.0;
   g.roughness = rough ? p.roughness_m : 0.0;
   g.wave_number = 2.0 * std::numbers::pi / p.roughness_wavelength_m;
-  // Any spread of seeds over [0, 2 pi).
+  // Spreads the seeds over [0, 2 pi).
   g.phase = 2.0 * std::numbers::pi *
             static_cast<double>((p.roughness_seed * 0x9E3779B97F4A7C15u) >> 40) / 16777216.0;
   return g;

@@ -42,7 +42,7 @@ struct GroundParameters {
   bool inertial_drag = true;  ///< c_d m_a' z_dot
   bool added_mass = true;     ///< m_a z_ddot
   bool plastic_memory =
-      true;  ///< force only beyond the remembered depth (else wherever the foot goes down)
+      true;  ///< force only beyond the remembered depth (else whenever the foot goes down)
   bool healing = true;  ///< the remembered depth heals as the foot moves sideways
   bool filter = true;   ///< moving average of the normal force (eq. S16)
   bool stroke_resistance = true;
@@ -60,7 +60,7 @@ struct GroundParameters {
 };
 
 /// Constants of one patch, derived once from GroundParameters, whose symbols and units they keep
-/// (N/m^3, N/m, N s/m, m; ratios without unit). S: one robot, or a value a lane.
+/// (N/m^3, N/m, N s/m, m; ratios without unit). S: one robot, or a value per lane.
 template <typename S>
 struct Ground {
   S is_granular{}, is_rigid{}, is_linear{};  ///< exactly one of them is 1

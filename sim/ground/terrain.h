@@ -21,7 +21,7 @@ struct Terrain {
   S count = S(1.0);
   std::array<Ground<S>, kMaxRegions> ground;
   std::array<S, kMaxRegions>
-      start_x{};  ///< from where on patch i counts; ascending, that of patch 0 is ignored
+      start_x{};  ///< where patch i begins, m; ascending, that of patch 0 is ignored
   /// Upper bound of the surface's height, m: 0 without roughness.
   S highest{};
 
@@ -34,8 +34,8 @@ struct Terrain {
     }
     return index;
   }
-  /// The patch of each lane; `scratch` is where lanes that stand on different patches are put
-  /// together.
+  /// The patch of each lane; where lanes stand on different patches, they are put together in
+  /// `scratch`.
   const Ground<S>& pick(S index, Ground<S>& scratch) const noexcept {
     if constexpr (std::is_floating_point_v<S>) {
       return ground[static_cast<std::size_t>(index)];

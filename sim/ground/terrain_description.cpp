@@ -17,8 +17,8 @@ namespace {
 const std::vector<std::string> kPresets = {"dry-sand",       "wet-sand", "grass",
                                            "athletic-track", "vinyl",    "rigid"};
 
-// Reads the ground under `prefix` ("terrain." or, in a patch, ""); what is not there stays as in
-// `p`.
+// Reads the ground under `prefix` ("terrain." or, in a patch, ""); a key that is missing leaves
+// `p` as it is.
 void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) {
   const auto number = [&](const char* key, double& value, double min, double max) {
     value = c.number(prefix + key, value, min, max);
@@ -101,7 +101,7 @@ TerrainDescription read_terrain(ConfigTree& config) {
   read_ground(config, "terrain.", first.ground);
   terrain.patches.push_back(first);
   for (ConfigTree& table : config.tables("terrain.patch")) {
-    // A patch is a preset, or else the first ground, with the differences that it names.
+    // A patch is a preset, or else the first ground, except for the keys it gives.
     TerrainPatch patch = terrain.patches.front();
     const std::string preset = table.text("preset", "");
     if (!preset.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One 0.25 ms step of a robot on its ground: dynamics, contact law of each foot, contact problem,
-// semi-implicit Euler. Free of clock, heap and branches that depend on one lane; instantiated for
+// semi-implicit Euler. No clock, no heap, and no branch that depends on one lane; instantiated for
 // double (the simulator behind RobotIo) and for float and float packs (training).
 #pragma once
 
@@ -27,7 +27,7 @@ struct RobotState {
   std::array<S, kNumJoints> stop_impulse{};            ///< signed: > 0 at the lower stop
 };
 
-/// What a step shows to those who watch: sensors, statistics, rewards, pictures.
+/// What sensors, statistics, rewards and pictures need to know of a step.
 template <typename S>
 struct StepReport {
   std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m, at the start of the step
