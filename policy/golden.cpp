@@ -35,7 +35,7 @@ Doubles perceptron(const std::array<DenseParameters, 3>& layers, Doubles values)
 
 double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
-/// The network again, as plainly as it can be written: the definition that `Network` is checked
+/// The network again, written as plainly as possible: the definition that `Network` is checked
 /// against.
 class PlainNetwork {
  public:

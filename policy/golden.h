@@ -25,9 +25,9 @@ struct GoldenExample {
 /// that a plain double-precision evaluation gives.
 GoldenExample make_golden_example(const NetworkParameters& parameters);
 
-/// Runs the example through `network` and returns the largest deviation of an output, relative as
-/// the tolerance. Throws InputError ("<file>: golden example fails at step ...") where that exceeds
-/// kGoldenTolerance.
+/// Runs the example through `network` and returns the largest deviation of an output, relative to
+/// max(1, |expected output|). Throws InputError ("<file>: golden example fails at step ...") if it
+/// exceeds kGoldenTolerance.
 double check_golden_example(const std::string& file, const Network& network,
                             const GoldenExample& golden);
 

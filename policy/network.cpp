@@ -16,7 +16,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr int kLanes = 8;  // of one AVX register: x86-64-v3 is the floor
+constexpr int kLanes = 8;  // in an AVX register
 
 /// A layer's weights in the order in which `multiply` reads them, so that a step is one forward
 /// stream through memory: panels of up to 64 rows; in each the bias, then one column after the
@@ -151,7 +151,7 @@ constexpr std::align_val_t kHugePageAlignment{kHugePageBytes};
 /// Memory of that size and alignment.
 void* allocate_huge_page() {
   void* const memory = ::operator new(kHugePageBytes, kHugePageAlignment);
-  madvise(memory, kHugePageBytes, MADV_HUGEPAGE);  // refused: small pages do
+  madvise(memory, kHugePageBytes, MADV_HUGEPAGE);  // without it, small pages work too
   return memory;
 }
 

@@ -6,7 +6,19 @@
 #include <limits>
 #include <utility>
 
+#include "policy/text.h"
+
 namespace sandrunner {
+
+void require_joints(const PolicySpec& spec, const RobotDescription& robot) {
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (spec.joint_names[j] == robot.joint_names[j]) continue;
+    throw InputError(fmt::format(
+        "policy '{}' is for another robot: found joint {} '{}', expected '{}' of robot '{}'",
+        printable(spec.name), j + 1, printable(spec.joint_names[j]), robot.joint_names[j],
+        robot.name));
+  }
+}
 
 Policy::Policy(PolicySpec spec, Network network)
     : spec_(std::move(spec)), network_(std::move(network)) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "policy/network.h"
+#include "rt/core/robot_description.h"
 
 namespace sandrunner {
 
@@ -13,7 +14,8 @@ namespace sandrunner {
 /// a file holds it.
 struct PolicySpec {
   std::string name;
-  /// In the order kJointNames.
+  /// The robot's joints in the order of messages.h; all arrays of joints are in it.
+  JointArray<std::string> joint_names;
   JointArray<double> nominal_position_rad{};
   double action_scale_rad = 0.0;
   /// Limit of |action|, before the scale; 0: none.
@@ -30,6 +32,9 @@ struct PolicySpec {
   /// Where the policy comes from: free text under free keys.
   std::map<std::string, std::string> provenance;
 };
+
+/// Throws InputError unless the policy is for a robot with these joints, in the same order.
+void require_joints(const PolicySpec& spec, const RobotDescription& robot);
 
 /// What one step of the policy yields.
 struct PolicyStep {

@@ -20,8 +20,6 @@ constexpr const char* kFormatVersion = "1";
 constexpr double kLargestObservationClip = 1e6;
 constexpr std::string_view kProvenancePrefix = "provenance.";
 
-std::string joint_names() { return joined(kJointNames, ","); }
-
 /// Takes the keys out of the metadata one by one; what is left at the end is unknown.
 class Metadata {
  public:
@@ -56,19 +54,38 @@ class Metadata {
 
   bool contains(const std::string& key) const { return values_.contains(key); }
 
-  JointArray<double> joint_numbers(const std::string& key) {
+  /// One text for each joint, from a list with commas.
+  JointArray<std::string> joint_texts(const std::string& key) {
     const std::string list = text(key);
     const auto count = std::count(list.begin(), list.end(), ',') + 1;
     if (count != kNumJoints) {
-      fail_file(path_, "metadata '{}' has {} numbers, expected {}", key, count, kNumJoints);
+      fail_file(path_, "metadata '{}' has {} values, expected {}", key, count, kNumJoints);
     }
-    JointArray<double> result;
+    JointArray<std::string> result;
     std::size_t begin = 0;
-    for (double& value : result) {
+    for (std::string& value : result) {
       const std::size_t end = std::min(list.find(',', begin), list.size());
-      value = parse(key, std::string_view(list).substr(begin, end - begin));
+      value = list.substr(begin, end - begin);
       begin = end + 1;
     }
+    return result;
+  }
+
+  JointArray<std::string> joint_names(const std::string& key) {
+    const JointArray<std::string> names = joint_texts(key);
+    for (auto name = names.begin(); name != names.end(); ++name) {
+      if (name->empty() || std::find(names.begin(), name, *name) != name) {
+        fail_file(path_, "metadata '{}' has the joint name '{}', expected {} different names", key,
+                  printable(*name), kNumJoints);
+      }
+    }
+    return names;
+  }
+
+  JointArray<double> joint_numbers(const std::string& key) {
+    const JointArray<std::string> texts = joint_texts(key);
+    JointArray<double> result;
+    for (int j = 0; j < kNumJoints; ++j) result[j] = parse(key, texts[j]);
     return result;
   }
 
@@ -111,11 +128,11 @@ PolicySpec read_spec(const std::string& path, const std::map<std::string, std::s
               "('sandrunner-policy import' takes bare weights)");
   }
   values.expect("sandrunner.format", kFormatVersion);
-  values.expect("sandrunner.joint_names", joint_names());
   values.expect("sandrunner.policy_hz", std::to_string(kPolicyHz));
   values.expect("sandrunner.control_hz", std::to_string(kControlHz));
   PolicySpec spec;
   spec.name = values.text("sandrunner.name");
+  spec.joint_names = values.joint_names("sandrunner.joint_names");
   spec.nominal_position_rad = values.joint_numbers("sandrunner.nominal_position_rad");
   spec.action_scale_rad = values.positive("sandrunner.action_scale_rad");
   if (values.contains("sandrunner.action_clip")) {
@@ -142,7 +159,7 @@ std::map<std::string, std::string> write_spec(const PolicySpec& spec, float obse
   std::map<std::string, std::string> metadata = {
       {"sandrunner.format", kFormatVersion},
       {"sandrunner.name", spec.name},
-      {"sandrunner.joint_names", joint_names()},
+      {"sandrunner.joint_names", joined(spec.joint_names, ",")},
       {"sandrunner.policy_hz", text(kPolicyHz)},
       {"sandrunner.control_hz", text(kControlHz)},
       {"sandrunner.nominal_position_rad", joined(spec.nominal_position_rad, ",")},

@@ -19,8 +19,8 @@ struct PolicyFile {
 };
 
 /// Reads a file, checks all of it and runs its golden example. Throws InputError, in one line that
-/// names the file and the tensor or key, if anything is missing, unknown, of another size or out of
-/// range.
+/// names the file and the tensor or key, if anything is missing, unknown, of the wrong size or out
+/// of range.
 PolicyFile read_policy_file(const std::string& path);
 
 /// The policy of a file, ready to run. Errors as read_policy_file.
@@ -36,8 +36,8 @@ std::string_view shipped_policy_text() noexcept;
 /// InputError.
 void write_policy_file(const std::string& path, const PolicyFile& file);
 
-/// Reads the layout in which others publish such networks: the same tensors without golden example,
-/// and metadata that mean nothing here and become the provenance. The rest of the result is left at
+/// Reads the layout in which others publish such networks: the same tensors without a golden
+/// example; whatever metadata they have becomes the provenance. The rest of the result is left at
 /// its defaults. Throws InputError.
 PolicyFile read_bare_weights(const std::string& path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text of files and of messages about them, which are one line each, whatever the file holds.
+// Text in files, and messages about files: one line each, whatever the file holds.
 #pragma once
 
 #include <fmt/format.h>

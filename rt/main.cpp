@@ -75,6 +75,7 @@ ProcessConfig read_config(const Options& options, const PolicySpec& spec) {
   if (!options.dds_security_dir.empty()) {
     tree.set_text("dds.security_dir", options.dds_security_dir, "--dds-security");
   }
+  if (!options.robot_path.empty()) tree.set_text("robot", options.robot_path, "--robot");
   ProcessConfig config = read_process_config(tree, &spec);
   config.simulator.seed = options.seed;
   return config;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sim/lanes/random.h"
+#include "sim/robot/clearance.h"
 #include "sim/step/ground_truth.h"
 
 namespace sandrunner::sim {
@@ -34,26 +35,10 @@ void Simulator::disturb(double height_above_m) {
     x.velocity = {draw(), draw(), draw()};
     x.angular_velocity = {draw(), draw(), draw()};
   }
-  // Lowest point of the feet (and, lying, of the box) to the wanted height above the surface. What
-  // stands undisturbed on level ground stands at its nominal height.
+  // An undisturbed robot on level ground stands at its nominal height.
   if (config_.seed > 0 || height_above_m == 0.0 || terrain_.highest > 0.0) {
-    double lowest = 1e9;
-    for (int l = 0; l < kNumLegs; ++l) {
-      const LegPose<double> p =
-          leg_pose(model_.legs[l], x.q[3 * l], x.q[3 * l + 1], x.q[3 * l + 2]);
-      const Vec3<double> foot = hip_to_base(model_.legs[l], p, p.foot);
-      const Vec3<double> knee = hip_to_base(model_.legs[l], p, p.knee);
-      lowest = std::min(lowest, foot.z - model_.foot_radius_m - surface_height(foot.x, foot.y));
-      lowest = std::min(lowest, knee.z - model_.knee_radius_m - surface_height(knee.x, knee.y));
-    }
-    for (const double side_x : {-1.0, 1.0}) {
-      for (const double side_y : {-1.0, 1.0}) {
-        const double corner_x = model_.base_box_centre_m.x + side_x * model_.base_box_half_m.x;
-        const double corner_y = model_.base_box_centre_m.y + side_y * model_.base_box_half_m.y;
-        lowest = std::min(lowest, model_.base_box_centre_m.z - model_.base_box_half_m.z -
-                                      surface_height(corner_x, corner_y));
-      }
-    }
+    const double lowest = lowest_clearance(
+        model_, x.q, [this](double x_m, double y_m) { return surface_height(x_m, y_m); });
     x.position.z = height_above_m - lowest;
   }
 }
@@ -84,7 +69,7 @@ SensorFrame Simulator::sample() const noexcept {
   f.imu.angular_velocity_radps = {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
   f.imu.linear_acceleration_mps2 = state_.linear_acceleration_mps2;
   const SensorNoise& n = config_.noise;
-  std::uint64_t counter = state_.tick * 64;  // fewer than 64 draws a tick
+  std::uint64_t counter = state_.tick * 64;  // fewer than 64 draws per tick
   const auto noise = [&](double sigma) {
     return sigma > 0.0 ? sigma * random_normal(config_.seed, kNoiseStream, counter++) : 0.0;
   };
@@ -109,8 +94,8 @@ void Simulator::read(std::uint64_t tick, SensorFrame& frame) noexcept {
     state_.sensors[state_.tick % kMaxDelayTicks] = sample();
     frame = state_.sensors[(state_.tick - std::min(delay, state_.tick)) % kMaxDelayTicks];
   }
-  // Delayed values do not look old to the controller: the delay lies in the sensor, which stamps on
-  // arrival.
+  // Delayed values do not look old to the controller: the delay is inside the sensor, which stamps
+  // its values when they arrive.
   frame.tick = frame.imu.tick = tick;
   frame.joints.tick.fill(tick);
 }
@@ -125,13 +110,13 @@ void Simulator::write(const SafeCommand& command) noexcept {
   }
   const JointCommand& c = acting.joints();
   RigidState<double>& x = state_.robot.rigid;
-  const double stall = config_.torque_speed_line ? config_.line.stall_torque_nm : 0.0;
+  const TorqueSpeedLine& line = config_.torque_speed_line;
   for (int j = 0; j < kNumJoints; ++j) {
     state_.torque_nm[j] =
         acting.enabled()
             ? drive_torque(x.q[j], x.qd[j], c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j],
-                           c.kd_nmsprad[j], c.feedforward_nm[j], model_.torque_limit_nm[j], stall,
-                           1.0 / config_.line.no_load_speed_radps)
+                           c.kd_nmsprad[j], c.feedforward_nm[j], model_.torque_limit_nm[j],
+                           line.stall_torque_nm, 1.0 / line.no_load_speed_radps)
             : 0.0;
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
@@ -166,7 +151,7 @@ bool Simulator::truth(RobotTruth& truth) const noexcept {
     const Vec3<double>& centre = report_.foot_centre[l];
     truth.foot_centre_m[l] = array(centre);
     truth.foot_penetration_m[l] = report_.penetration[l];
-    const SurfaceAxes<double> axes = surface_axes(terrain_, centre.x, centre.y);
+    const SurfaceAxes<double> axes = surface_axes(surface_at(terrain_, centre.x, centre.y));
     const auto& force = report_.foot_force[l];
     truth.foot_force_n[l] = array(force[0] * axes.t1 + force[1] * axes.t2 + force[2] * axes.n);
   }
@@ -187,10 +172,10 @@ void Simulator::add_to(StateHash& hash) const noexcept {
 }
 
 double Simulator::surface_height(double x_m, double y_m) const noexcept {
-  return sim::surface_height(terrain_, x_m, y_m);
+  return surface_at(terrain_, x_m, y_m).height;
 }
 
-SimulatorConfig read_simulator_config(ConfigTree& config) {
+SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot) {
   SimulatorConfig c;
   c.terrain = read_terrain(config);
   const auto number = [&](const char* key, double& value, double min, double max) {
@@ -206,9 +191,10 @@ SimulatorConfig read_simulator_config(ConfigTree& config) {
   };
   c.sensor_delay_ticks = ticks("sim.sensor_delay_ticks");
   c.actuator_delay_ticks = ticks("sim.actuator_delay_ticks");
-  c.torque_speed_line = config.flag("sim.torque_speed_line", c.torque_speed_line);
-  number("sim.stall_torque_nm", c.line.stall_torque_nm, 1.0, 1e4);
-  number("sim.no_load_speed_radps", c.line.no_load_speed_radps, 1.0, 1e3);
+  TorqueSpeedLine line = robot.torque_speed_line;
+  number("sim.stall_torque_nm", line.stall_torque_nm, 1e-3, 1e4);
+  number("sim.no_load_speed_radps", line.no_load_speed_radps, 1e-3, 1e4);
+  if (config.flag("sim.torque_speed_line", false)) c.torque_speed_line = line;
   number("sim.solver_tolerance_ns", c.step.tolerance_ns, 1e-12, 1e-2);
   return c;
 }

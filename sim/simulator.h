@@ -28,10 +28,9 @@ inline constexpr int kMaxDelayTicks = 64;
 struct SimulatorConfig {
   TerrainDescription terrain;
   SensorNoise noise;
-  int sensor_delay_ticks = 0;    ///< age of what read() delivers, 0..63
-  int actuator_delay_ticks = 0;  ///< ticks until a command acts, 0..63
-  bool torque_speed_line = false;
-  TorqueSpeedLine line;
+  int sensor_delay_ticks = 0;         ///< age of what read() delivers, 0..63
+  int actuator_delay_ticks = 0;       ///< ticks until a command acts, 0..63
+  TorqueSpeedLine torque_speed_line;  ///< of the drives; by default none
   StepSettings step;
   std::uint64_t seed = 0;
 };
@@ -53,11 +52,11 @@ class Simulator final : public RobotIo {
   Simulator(const Robot& robot, const SimulatorConfig& config);
 
   /// On its feet in the nominal pose, at rest, base at the robot's nominal height (`--start walk`);
-  /// on uneven ground as high as the feet find it, the lowest 2 mm above.
-  /// A seed above 0 disturbs it: joints +-0.1 rad, base twist +-0.1 (m/s, rad/s), height such that
-  /// the lowest foot is 2 mm above the ground; uniform draws from the seed.
+  /// on uneven ground so high that its lowest part is 2 mm above it. A seed above 0 disturbs this:
+  /// joints +-0.1 rad, base velocity +-0.1 m/s and +-0.1 rad/s, the lowest part 2 mm above the
+  /// ground; uniform draws from the seed.
   void reset_standing();
-  /// On its belly in the lying pose, at rest (disturbed likewise, but kept on the ground).
+  /// On its belly in the lying pose, at rest; disturbed in the same way, but touching the ground.
   void reset_lying();
 
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
@@ -93,7 +92,8 @@ class Simulator final : public RobotIo {
   StepReport<double> report_;
 };
 
-/// Reads the table [sim] of `config` and its terrain. Throws InputError.
-SimulatorConfig read_simulator_config(ConfigTree& config);
+/// Reads the table [sim] of `config` and its terrain; figures of the drives are `robot`'s unless
+/// set. Throws InputError.
+SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot);
 
 }  // namespace sandrunner::sim

@@ -16,10 +16,13 @@
 
 namespace sandrunner {
 
+// What a robot or a policy gives is 0 here: without them nothing moves. Everything else has its
+// default; settings of these names override both (rt/README.md).
+
 /// Walk: joint targets of the policy with the policy's gains.
 struct WalkConfig {
-  double kp_nmprad = 50.0;
-  double kd_nmsprad = 0.5;
+  double kp_nmprad = 0.0;   ///< from the policy's file
+  double kd_nmsprad = 0.0;  ///< from the policy's file
   /// A policy output takes effect this many ticks after its input was sampled, 1 to 39; one that
   /// comes later takes effect at once and counts as late.
   std::uint64_t latency_ticks = 1;
@@ -34,12 +37,12 @@ struct WalkConfig {
 
 /// StandUp and Stand.
 struct StandConfig {
-  double kp_nmprad = 100.0;
-  double kd_nmsprad = 1.0;
-  /// Posture of Stand, and of Walk until the first policy output.
-  JointArray<double> nominal_rad{0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672,
-                                 0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672};
-  std::array<double, kJointsPerLeg> fold_rad{0.0, 1.2, -2.4};  ///< of each leg, before it extends
+  double kp_nmprad = 0.0;   ///< from the robot's file
+  double kd_nmsprad = 0.0;  ///< from the robot's file
+  /// Posture of Stand, and of Walk until the first policy output. From the robot's file.
+  JointArray<double> nominal_rad{};
+  /// Posture of each leg before it extends. From the robot's file.
+  std::array<double, kJointsPerLeg> fold_rad{};
   double fold_s = 1.0;
   double extend_s = 1.5;
   double skip_fold_rad = 0.3;    ///< no folding if all joints are nearer than this to nominal
@@ -49,8 +52,8 @@ struct StandConfig {
 
 /// Damping and the damping after a fault.
 struct DampingConfig {
-  double kd_nmsprad = 2.0;
-  double fault_s = 2.0;  ///< after a fault: damping for this long, then drives off
+  double kd_nmsprad = 0.0;  ///< from the robot's file
+  double fault_s = 2.0;     ///< after a fault: damping for this long, then drives off
 };
 
 /// Shaping of the velocity command.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "rt/core/joint_pd.h"
 
@@ -52,7 +53,7 @@ std::uint64_t age(std::uint64_t now, std::uint64_t sampled) noexcept { return no
 /// Cosine for thresholds, from arithmetic alone so that it has the same bits everywhere: series at
 /// an eighth of the angle, then cos 2x = 2 cos^2 x - 1 three times. To 1e-13 in [0, 180] degrees.
 double cos_of_degrees(double angle_deg) noexcept {
-  const double x = angle_deg * (3.14159265358979323846 / 180.0 / 8.0);
+  const double x = angle_deg * (std::numbers::pi / 180.0 / 8.0);
   const double x2 = x * x;
   double term = 1.0;
   double cosine = 1.0;

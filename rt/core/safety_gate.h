@@ -44,32 +44,44 @@ inline JointArray<double> all_joints(double value) noexcept {
   return all;
 }
 
-/// Thresholds. The defaults of the faults lie beyond what the published network does in normal
-/// running (46 rad/s, a knee 0.3 rad past its range). Speed and torque are those of the
-/// reference robot; its stops come from its URDF.
+/// Thresholds. A value that equals its threshold passes. The robot's figures come from its file and
+/// are 0 without one: every movement is then a fault, every feed-forward torque is clamped away.
 struct GateConfig {
-  JointArray<double> joint_lower_rad{-3.1416, -6.2832, -2.4696, -3.1416, -6.2832, -2.4696,
-                                     -3.1416, -6.2832, -2.4696, -3.1416, -6.2832, -2.4696};
-  JointArray<double> joint_upper_rad{3.1416, 6.2832, -0.0262, 3.1416, 6.2832, -0.0262,
-                                     3.1416, 6.2832, -0.0262, 3.1416, 6.2832, -0.0262};
-  double joint_fault_rad = 0.35;   ///< fault: measured this far past a stop (limit: past it at all)
-  double target_margin_rad = 1.0;  ///< a commanded position is clamped to the stops plus this
-  JointArray<double> speed_limit_radps =
-      all_joints(25.7);  ///< counted; a commanded velocity is clamped to it
-  double speed_fault_radps = 60.0;
-  JointArray<double> torque_limit_nm =
-      all_joints(63.45);            ///< a feed-forward torque is clamped to it
-  double torque_fault_ratio = 1.2;  ///< fault: measured torque over this times its limit ...
-  double torque_fault_s = 0.005;    ///< ... in all samples of a joint for this long
-  double tilt_limit_deg = 45.0;     ///< between the body's and the world's z axis; only counted
+  // Joint positions, rad.
+  JointArray<double> joint_lower_rad{};  ///< stops; limit: past one is counted. From the URDF
+  JointArray<double> joint_upper_rad{};
+  /// Fault: measured this far past a stop. The published network goes 0.3 rad past a knee's in
+  /// normal running.
+  double joint_fault_rad = 0.35;
+  /// A commanded position is clamped to the stops plus this. A target past a stop is how a policy
+  /// asks for torque there: 1 rad is 50 N m at the published network's Kp.
+  double target_margin_rad = 1.0;
+
+  // Joint speeds, rad/s.
+  /// Limit: counted; a commanded velocity is clamped to it. From the URDF.
+  JointArray<double> speed_limit_radps{};
+  double speed_fault_radps = 0.0;  ///< fault, of any joint. From the robot's map
+
+  // Joint torques, N m.
+  /// A feed-forward torque is clamped to it. From the URDF.
+  JointArray<double> torque_limit_nm{};
+  /// Fault: measured torque over this times its limit (drives regulate to a few percent) ...
+  double torque_fault_ratio = 1.2;
+  double torque_fault_s = 0.005;  ///< ... in all samples of a joint for this long
+
+  // Tilt: angle between the body's and the world's z axis, degrees. A robot on its feet on the
+  // steepest sand (the angle of repose, about 34 degrees) is below both.
+  double tilt_limit_deg = 45.0;  ///< only counted
   double tilt_fault_deg = 60.0;
-  // Ages, in control ticks of 0.25 ms. A value as old as this passes, an older one does not.
-  std::uint64_t joints_limit_ticks = 2;
-  std::uint64_t joints_fault_ticks = 8;
-  std::uint64_t imu_limit_ticks = 8;
-  std::uint64_t imu_fault_ticks = 40;
-  std::uint64_t policy_fault_ticks =
-      120;  ///< since the input of the policy output in use was sampled
+
+  // Ages, in control ticks of 0.25 ms.
+  std::uint64_t joints_limit_ticks = 2;  ///< counted: a bus cycle that came late
+  std::uint64_t joints_fault_ticks = 8;  ///< fault: 2 ms without joint values
+  std::uint64_t imu_limit_ticks = 8;     ///< counted
+  std::uint64_t imu_fault_ticks = 40;    ///< fault: a policy period without an IMU sample
+  /// Fault: age of the input from which the policy output in use was computed; three policy
+  /// periods.
+  std::uint64_t policy_fault_ticks = 120;
 };
 
 /// Ticks since the start in which ...

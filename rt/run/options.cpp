@@ -22,6 +22,10 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--policy", o.policy_path, "policy file (default: the one that ships)")
       ->type_name("FILE")
       ->capture_default_str();
+  app.add_option("--robot", o.robot_path,
+                 "map of a robot (sim/robot/README.md; default: the one that ships)")
+      ->type_name("FILE")
+      ->capture_default_str();
   app.add_option(
          "--terrain", o.terrain,
          fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))

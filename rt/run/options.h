@@ -11,6 +11,7 @@ namespace sandrunner {
 /// The command line of `sandrunner`, as typed; files are not looked at here.
 struct Options {
   std::string policy_path;  ///< empty: the policy that ships
+  std::string robot_path;   ///< map of a robot; empty: the robot that ships
   std::string terrain = "dry-sand";
   std::string command = "1.5,0,0";
   bool live = false;         ///< --command dds

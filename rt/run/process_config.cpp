@@ -62,17 +62,29 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
 
 }  // namespace
 
+ControllerConfig controller_config(const sim::Robot& robot) {
+  ControllerConfig c;
+  c.stand.kp_nmprad = robot.stand_kp_nmprad;
+  c.stand.kd_nmsprad = robot.stand_kd_nmsprad;
+  c.stand.nominal_rad = robot.nominal_rad;
+  c.stand.fold_rad = robot.fold_rad;
+  c.damping.kd_nmsprad = robot.damping_kd_nmsprad;
+  c.gate.joint_lower_rad = robot.model.lower_rad;
+  c.gate.joint_upper_rad = robot.model.upper_rad;
+  c.gate.speed_limit_radps = robot.model.speed_limit_radps;
+  c.gate.speed_fault_radps = robot.speed_fault_radps;
+  c.gate.torque_limit_nm = robot.model.torque_limit_nm;
+  return c;
+}
+
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
   ProcessConfig p;
   const std::string robot = config.text("robot", "raibo");
   p.robot = robot == "raibo" ? sim::load_raibo() : sim::load_robot(robot);
+  p.controller = controller_config(p.robot);
   ControllerConfig& c = p.controller;
-  c.gate.joint_lower_rad = p.robot.model.lower_rad;
-  c.gate.joint_upper_rad = p.robot.model.upper_rad;
-  c.gate.speed_limit_radps = p.robot.model.speed_limit_radps;
-  c.gate.torque_limit_nm = p.robot.model.torque_limit_nm;
-  c.stand.nominal_rad = p.robot.nominal_rad;
   if (spec) {
+    require_joints(*spec, p.robot.description);
     c.walk.kp_nmprad = spec->kp_nmprad;
     c.walk.kd_nmsprad = spec->kd_nmsprad;
     c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;
@@ -85,13 +97,14 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
   // Who commands from afar may be lost on the way: the robot then slows down and stands.
   if (p.dds.enabled) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
   read_controller(config, c);
-  p.simulator = sim::read_simulator_config(config);
+  p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   p.recording.bytes = static_cast<std::uint64_t>(
       config.integer("recording.limit_bytes", static_cast<std::int64_t>(p.recording.bytes), 1,
                      std::int64_t{1} << 50));
   p.recording.time_s = config.number("recording.limit_s", p.recording.time_s, 0.1, 1e9);
-  p.motor_constant = config.number("summary.motor_constant", p.motor_constant, 1e-3, 1e3);
+  p.motor_constant =
+      config.number("summary.motor_constant", p.robot.motor_constant_nmpsqrtw, 1e-3, 1e3);
   config.reject_unknown();
   p.effective = config.effective();
   return p;

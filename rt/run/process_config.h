@@ -20,12 +20,15 @@ struct ProcessConfig {
   RealtimeConfig realtime;
   RecordingLimits recording;
   DdsConfig dds;
-  double motor_constant = 3.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
+  double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   std::string effective;        ///< TOML of all settings that counted
 };
 
-/// Reads everything and rejects what is unknown. The robot's stops and limits and the policy's
-/// gains (`spec` may be null) are the defaults of the controller's. Throws InputError.
+/// What the controller takes from a robot: posture, gains, limits. Walk's gains are the policy's.
+ControllerConfig controller_config(const sim::Robot& robot);
+
+/// Reads everything and rejects what is unknown. The robot's figures and the policy's gains (`spec`
+/// may be null) are the defaults of the controller's. Throws InputError.
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec);
 
 }  // namespace sandrunner

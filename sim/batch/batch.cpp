@@ -10,7 +10,7 @@ namespace sandrunner::sim {
 namespace {
 
 bool runs_here(BatchWidth width) noexcept {
-  if (width != BatchWidth::kSixteen) return true;  // x86-64-v3 is the floor of the whole program
+  if (width != BatchWidth::kSixteen) return true;  // all of the program is built for x86-64-v3
   return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
          __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
          __builtin_cpu_supports("avx512cd");

@@ -23,7 +23,7 @@ struct BatchDrive {
   S inverse_no_load_speed{};  ///< s/rad
 };
 
-/// Share of the drives' speed limit up to which no joint is too fast for `speed_excess`.
+/// Share of a joint's speed limit above which a speed counts in `speed_excess`.
 inline constexpr double kSpeedMargin = 0.9;
 
 /// Sums over the ticks of one policy period, for rewards and statistics.
@@ -40,7 +40,7 @@ struct BatchSums {
   S base_contact{}, thigh_contact{};      ///< 1: touched the ground in the period
 };
 
-/// What the last tick of the period showed.
+/// The last tick of the period.
 template <typename S>
 struct BatchReport {
   std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m
@@ -61,9 +61,9 @@ struct BatchRobot {
   BatchReport<S> report;
 };
 
-/// Robots to a pack: 1, 8 (AVX2) or 16 (AVX-512).
+/// Robots in a pack: 1, 8 (AVX2) or 16 (AVX-512).
 enum class BatchWidth : int { kOne = 1, kEight = 8, kSixteen = 16 };
-/// The widest that this processor runs.
+/// The widest that this processor can run.
 BatchWidth best_batch_width() noexcept;
 
 namespace detail {
@@ -81,15 +81,15 @@ const BatchKernel& batch_kernel_x16() noexcept;
 }  // namespace detail
 
 /// A batch of robots with one kind of foot. Robots are written and read one by one, in float; packs
-/// advance independently of each other, so that threads may share them out.
+/// advance independently of each other, so that threads may share them.
 class Batch {
  public:
-  /// Throws std::invalid_argument if the processor cannot do the width.
+  /// Throws std::invalid_argument if the processor cannot run the width.
   Batch(int robots, const FootProfile<double>& foot, const StepSettings& settings,
         BatchWidth width = best_batch_width());
 
   int size() const noexcept { return robots_; }
-  /// Robots to a pack.
+  /// Robots in a pack.
   int width() const noexcept { return kernel_.width; }
   int packs() const noexcept { return (robots_ + width() - 1) / width(); }
 

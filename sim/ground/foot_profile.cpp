@@ -2,6 +2,7 @@
 #include "sim/ground/foot_profile.h"
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace sandrunner::sim {
@@ -12,7 +13,7 @@ namespace {
 template <typename F>
 void interpolate(const F& f, int n, double* coefficients) {
   using Real = long double;
-  const Real pi = 3.14159265358979323846264338327950288L;
+  const Real pi = std::numbers::pi_v<Real>;
   std::vector<Real> value(n + 1), chebyshev(n + 1, 0.0L);
   for (int i = 0; i <= n; ++i) {
     value[i] = f(0.5L * (1.0L + std::cos(pi * (i + 0.5L) / (n + 1))));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the granular model must know of a foot's shape: the hydraulic radius of its cross-section
-// with the surface as a function of depth, and two integrals of it that serve every soil.
+// with the surface as a function of depth, and two integrals of it that serve any soil.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ struct FootProfile {
     const S t = zr * inverse_radius;  // s^2
     const S s = sqrt(t);
     const S x = fma(S(2.0), s, S(-1.0));
-    // Odd and even coefficients apart: two chains half as long.
+    // Odd and even coefficients separately: two chains half as long.
     const S x2 = x * x;
     S u = p0[kDegree], v = p1[kDegree], u_even = p0[kDegree - 1], v_even = p1[kDegree - 1];
     for (int i = kDegree - 2; i > 0; i -= 2) {

@@ -21,7 +21,7 @@ template <typename S>
 struct FootContact {
   S active{};                ///< 1 from touchdown to lift-off
   S region{};                ///< index of the patch of ground it touched down on
-  S velocity{};              ///< v of the previous step; kept up in the air too, m/s
+  S velocity{};              ///< v of the previous step, also in the air, m/s
   S memory_depth{};          ///< deepest penetration so far, less what has healed, m
   S memory_x{}, memory_y{};  ///< where that was, world, m
   S memory_travel{};         ///< greatest horizontal distance from there since, m
@@ -93,7 +93,7 @@ inline GranularForce<S> granular_step(const Ground<S>& g, const FootProfile<S>& 
   c.memory_travel = max(c.memory_travel, travel);
   const S marker_depth = c.memory_depth;
   c.memory_depth = max(fma(-g.healing_slope, further, c.memory_depth), zero);
-  // Ploughing into the wall starts a new cone, once a contact.
+  // Ploughing into the wall starts a new cone, once per contact.
   const Mask<S> latch = both(both(touching, both(travel > g.crater_radius, overlap > zero)),
                              both(c.stroke_latched == zero, g.stroke_stiffness > zero));
   c.stroke_latched = select(latch, one, c.stroke_latched);
@@ -117,8 +117,8 @@ inline GranularForce<S> granular_step(const Ground<S>& g, const FootProfile<S>& 
   f.friction_bound = select(both(touching, either(pushing, g.friction_gated == zero)),
                             g.friction * quasistatic, zero);
 
-  // Stroke resistance: only beyond the crater latched, only into fresh ground, only when buried by
-  // a radius.
+  // Stroke resistance: only beyond the latched crater, only into fresh ground, only when buried
+  // deeper than a radius.
   const S sx = x - c.stroke_x, sy = y - c.stroke_y;
   const S stroke_travel = sqrt(fma(sx, sx, sy * sy));
   const S stroke_overlap =

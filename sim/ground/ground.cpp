@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/ground/ground.h"
 
+#include <numbers>
+
 namespace sandrunner::sim {
 
 Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double>& foot,
@@ -27,7 +29,7 @@ Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double
   double p0, p1;
   foot.integrals(g.full_depth, p0, p1);
   const double z3 = g.full_depth * g.full_depth * g.full_depth;
-  g.full_flat = 3.14159265358979323846 * (p0 - 2.0 * g.k * p1 + g.k2_third * z3);
+  g.full_flat = std::numbers::pi * (p0 - 2.0 * g.k * p1 + g.k2_third * z3);
   const double recruited = p.mass_scaling * p.packing * p.grain_density_kgpm3 * p.recruitment;
   g.added_mass = p.added_mass ? recruited : 0.0;
   g.drag = p.inertial_drag ? p.drag * recruited : 0.0;
@@ -49,9 +51,9 @@ Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double
   g.damping = p.damping_nspm;
   const bool rough = p.kind == GroundKind::kRigid && p.roughness_m > 0.0;
   g.roughness = rough ? p.roughness_m : 0.0;
-  g.wave_number = 6.283185307179586 / p.roughness_wavelength_m;
-  // Any spread of seeds over [0, 2 pi).
-  g.phase = 6.283185307179586 *
+  g.wave_number = 2.0 * std::numbers::pi / p.roughness_wavelength_m;
+  // Spreads the seeds over [0, 2 pi).
+  g.phase = 2.0 * std::numbers::pi *
             static_cast<double>((p.roughness_seed * 0x9E3779B97F4A7C15u) >> 40) / 16777216.0;
   return g;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 
 #include "sim/ground/foot_profile.h"
@@ -41,7 +42,7 @@ struct GroundParameters {
   bool inertial_drag = true;  ///< c_d m_a' z_dot
   bool added_mass = true;     ///< m_a z_ddot
   bool plastic_memory =
-      true;  ///< force only beyond the remembered depth (else wherever the foot goes down)
+      true;  ///< force only beyond the remembered depth (else whenever the foot goes down)
   bool healing = true;  ///< the remembered depth heals as the foot moves sideways
   bool filter = true;   ///< moving average of the normal force (eq. S16)
   bool stroke_resistance = true;
@@ -59,7 +60,7 @@ struct GroundParameters {
 };
 
 /// Constants of one patch, derived once from GroundParameters, whose symbols and units they keep
-/// (N/m^3, N/m, N s/m, m; ratios without unit). S: one robot, or a value a lane.
+/// (N/m^3, N/m, N s/m, m; ratios without unit). S: one robot, or a value per lane.
 template <typename S>
 struct Ground {
   S is_granular{}, is_rigid{}, is_linear{};  ///< exactly one of them is 1
@@ -93,7 +94,7 @@ struct Cone {
 };
 template <typename S>
 inline Cone<S> cone_integrals(const Ground<S>& g, S z, S p0, S p1) noexcept {
-  const S pi = S(3.14159265358979323846);
+  const S pi = S(std::numbers::pi);
   // pi (P0 - 2 k P1 + k^2 z^3 / 3)
   const S growing = pi * fma(z * (z * z), g.k2_third, fma(S(-2.0) * g.k, p1, p0));
   const S flat = select(z < g.full_depth, growing, g.full_flat);
@@ -103,7 +104,7 @@ inline Cone<S> cone_integrals(const Ground<S>& g, S z, S p0, S p1) noexcept {
 template <typename S>
 inline S flat_area(const Ground<S>& g, S z, S hydraulic_radius) noexcept {
   const S r = max(fma(-g.k, z, hydraulic_radius), S(0.0));
-  return S(3.14159265358979323846) * (r * r);
+  return S(std::numbers::pi) * (r * r);
 }
 /// Quasistatic force F_p = sigma_flat I_flat + sigma_cone I_cone, N.
 template <typename S>

@@ -21,7 +21,7 @@ struct Terrain {
   S count = S(1.0);
   std::array<Ground<S>, kMaxRegions> ground;
   std::array<S, kMaxRegions>
-      start_x{};  ///< from where on patch i counts; ascending, that of patch 0 is ignored
+      start_x{};  ///< where patch i begins, m; ascending, that of patch 0 is ignored
   /// Upper bound of the surface's height, m: 0 without roughness.
   S highest{};
 
@@ -34,8 +34,8 @@ struct Terrain {
     }
     return index;
   }
-  /// The patch of each lane; `scratch` is where lanes that stand on different patches are put
-  /// together.
+  /// The patch of each lane; where lanes stand on different patches, they are put together in
+  /// `scratch`.
   const Ground<S>& pick(S index, Ground<S>& scratch) const noexcept {
     if constexpr (std::is_floating_point_v<S>) {
       return ground[static_cast<std::size_t>(index)];
@@ -75,38 +75,44 @@ Terrain<To> convert_terrain(const Terrain<double>& from) noexcept {
   return to;
 }
 
-/// Height of the undisturbed surface at (x, y), world, m; 0 where it is even. S: float or double.
+/// The undisturbed surface at a point: height, m, and gradient. Zeros where it is even.
 template <typename S>
-S surface_height(const Terrain<S>& terrain, S x, S y) noexcept {
-  const Ground<S>& ground = terrain.ground[static_cast<std::size_t>(terrain.region_at(x))];
-  if (!(ground.roughness > S(0.0))) return S(0.0);
-  S height, slope_x, slope_y;
-  rough_surface(ground, x, y, height, slope_x, slope_y);
-  return height;
+struct Surface {
+  S height{}, slope_x{}, slope_y{};
+};
+
+/// That of a patch of ground at (x, y), world, m.
+template <typename S>
+Surface<S> surface_at(const Ground<S>& ground, S x, S y) noexcept {
+  const S zero = S(0.0);
+  Surface<S> s{zero, zero, zero};
+  const Mask<S> rough = ground.roughness > zero;
+  if (!any(rough)) return s;
+  rough_surface(ground, x, y, s.height, s.slope_x, s.slope_y);
+  return {select(rough, s.height, zero), select(rough, s.slope_x, zero),
+          select(rough, s.slope_y, zero)};
+}
+/// That of a terrain. S: float or double.
+template <typename S>
+Surface<S> surface_at(const Terrain<S>& terrain, S x, S y) noexcept {
+  return surface_at(terrain.ground[static_cast<std::size_t>(terrain.region_at(x))], x, y);
 }
 
-/// Axes of the contact frame on a surface z = h(x, y): n its normal, t1 the tangent nearest to world
-/// x, t2 = n x t1; all in the world frame.
+/// Axes of the contact frame: n is the surface's normal, t1 the tangent nearest to world x,
+/// t2 = n x t1; all in the world frame.
 template <typename S>
 struct SurfaceAxes {
   Vec3<S> t1, t2, n;
 };
 template <typename S>
-SurfaceAxes<S> surface_axes(S slope_x, S slope_y) noexcept {
+SurfaceAxes<S> surface_axes(const Surface<S>& surface) noexcept {
   const S one = S(1.0);
-  const S n = one / sqrt(fma(slope_x, slope_x, fma(slope_y, slope_y, one)));
-  const Vec3<S> normal{-(slope_x * n), -(slope_y * n), n};
-  const S t = one / sqrt(fma(slope_x, slope_x, one));
-  const Vec3<S> tangent{t, S(0.0), slope_x * t};
+  const S &x = surface.slope_x, &y = surface.slope_y;
+  const S n = one / sqrt(fma(x, x, fma(y, y, one)));
+  const Vec3<S> normal{-(x * n), -(y * n), n};
+  const S t = one / sqrt(fma(x, x, one));
+  const Vec3<S> tangent{t, S(0.0), x * t};
   return {tangent, cross(normal, tangent), normal};
-}
-/// Those of the terrain at (x, y), world, m; the world's own axes where it is even.
-template <typename S>
-SurfaceAxes<S> surface_axes(const Terrain<S>& terrain, S x, S y) noexcept {
-  const Ground<S>& ground = terrain.ground[static_cast<std::size_t>(terrain.region_at(x))];
-  S height, slope_x = S(0.0), slope_y = S(0.0);
-  if (ground.roughness > S(0.0)) rough_surface(ground, x, y, height, slope_x, slope_y);
-  return surface_axes(slope_x, slope_y);
 }
 
 }  // namespace sandrunner::sim

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "rt/base/errors.h"
 #include "sim/ground/embedded.h"
@@ -16,8 +17,8 @@ namespace {
 const std::vector<std::string> kPresets = {"dry-sand",       "wet-sand", "grass",
                                            "athletic-track", "vinyl",    "rigid"};
 
-// Reads the ground under `prefix` ("terrain." or, in a patch, ""); what is not there stays as in
-// `p`.
+// Reads the ground under `prefix` ("terrain." or, in a patch, ""); a key that is missing leaves
+// `p` as it is.
 void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) {
   const auto number = [&](const char* key, double& value, double min, double max) {
     value = c.number(prefix + key, value, min, max);
@@ -33,9 +34,9 @@ void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) 
   number("sigma_flat_npm3", p.sigma_flat_npm3, 1.0, 1e10);
   number("sigma_cone_npm3", p.sigma_cone_npm3, 1.0, 1e10);
   number("recruitment", p.recruitment, 0.01, 20.0);
-  double degrees = p.cone_angle_rad * (180.0 / 3.14159265358979323846);
+  double degrees = p.cone_angle_rad * (180.0 / std::numbers::pi);
   number("cone_angle_deg", degrees, 5.0, 85.0);
-  p.cone_angle_rad = degrees * (3.14159265358979323846 / 180.0);
+  p.cone_angle_rad = degrees * (std::numbers::pi / 180.0);
   number("mass_scaling", p.mass_scaling, 0.0, 20.0);
   number("packing", p.packing, 0.0, 1.0);
   number("grain_density_kgpm3", p.grain_density_kgpm3, 0.0, 2e4);
@@ -45,9 +46,9 @@ void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) 
   number("stroke_damping_nspm", p.stroke_damping_nspm, 0.0, 1e3);
   number("stroke_depth_scaling", p.stroke_depth_scaling, 0.0, 10.0);
   number("crater_radius_m", p.crater_radius_m, 0.0, 1.0);
-  degrees = p.crater_angle_rad * (180.0 / 3.14159265358979323846);
+  degrees = p.crater_angle_rad * (180.0 / std::numbers::pi);
   number("crater_angle_deg", degrees, 5.0, 85.0);
-  p.crater_angle_rad = degrees * (3.14159265358979323846 / 180.0);
+  p.crater_angle_rad = degrees * (std::numbers::pi / 180.0);
   number("stiffness_npm", p.stiffness_npm, 1.0, 1e6);
   number("damping_nspm", p.damping_nspm, 0.0, 2e3);
   number("roughness_m", p.roughness_m, 0.0, 0.2);
@@ -100,7 +101,7 @@ TerrainDescription read_terrain(ConfigTree& config) {
   read_ground(config, "terrain.", first.ground);
   terrain.patches.push_back(first);
   for (ConfigTree& table : config.tables("terrain.patch")) {
-    // A patch is a preset, or else the first ground, with the differences that it names.
+    // A patch is a preset, or else the first ground, except for the keys it gives.
     TerrainPatch patch = terrain.patches.front();
     const std::string preset = table.text("preset", "");
     if (!preset.empty()) {

@@ -27,7 +27,7 @@ inline float floor(float a) noexcept { return std::floor(a); }
 inline double abs(double a) noexcept { return std::fabs(a); }
 inline float abs(float a) noexcept { return std::fabs(a); }
 
-// Operand order as of the x86 instructions: the second operand where neither is smaller (larger).
+// As the x86 instructions do it: the second operand where neither is smaller (larger).
 inline double min(double a, double b) noexcept { return a < b ? a : b; }
 inline float min(float a, float b) noexcept { return a < b ? a : b; }
 inline double max(double a, double b) noexcept { return a > b ? a : b; }

@@ -30,8 +30,7 @@ inline double random_uniform(std::uint64_t seed, std::uint64_t stream,
 }
 
 /// Close to standard normal: the sum of twelve 16-bit uniforms, from three draws (excess kurtosis
-/// -0.1, bounded by
-/// +-6). No logarithm, so the same bits everywhere.
+/// -0.1, within +-6). No logarithm, so the same bits everywhere.
 inline double random_normal(std::uint64_t seed, std::uint64_t stream,
                             std::uint64_t counter) noexcept {
   std::uint64_t sum = 0;

@@ -73,7 +73,7 @@ inline Mat3<S> operator*(const Mat3<S>& a, const Mat3<S>& b) noexcept {
   return {transposed_times(b, a.r0), transposed_times(b, a.r1), transposed_times(b, a.r2)};
 }
 
-/// [dw]x + [w]x [w]x: what a point of a body that turns at w is accelerated by, per its place.
+/// [dw]x + [w]x [w]x: times the position of a point, its acceleration on a body that turns at w.
 template <typename S>
 inline Mat3<S> turning_acceleration(const Vec3<S>& dw, const Vec3<S>& w) noexcept {
   const S xx = w.x * w.x, yy = w.y * w.y, zz = w.z * w.z;
@@ -164,8 +164,8 @@ inline Mat3<S> rotation_matrix(const Quaternion<S>& q) noexcept {
           {fma(q.x, z2, -wy), fma(q.y, z2, wx), one - (xx + yy)}};
 }
 /// q (x) exp(w/2): turns q by the rotation vector w (rad) given in the body frame; the result is
-/// normalised. |w| must be below 0.5, which an angular velocity of 2,000 rad/s at 0.25 ms is:
-/// series, so no division.
+/// normalised. |w| must be below 0.5 (an angular velocity of 2,000 rad/s for 0.25 ms): the series
+/// are cut off.
 template <typename S>
 inline Quaternion<S> integrate(const Quaternion<S>& q, const Vec3<S>& w) noexcept {
   const S h = S(0.25) * dot(w, w);  // (|w|/2)^2

@@ -17,8 +17,8 @@
 
 namespace sandrunner::sim {
 
-/// Configuration and velocity of one robot (or one a lane). Joints in the order of kJointNames:
-/// HAA, HFE, KFE of LF, RF, LH, RH.
+/// Configuration and velocity of one robot (or one per lane). Joints in the order of
+/// messages.h: HAA, HFE, KFE of the legs left front, right front, left hind, right hind.
 template <typename S>
 struct RigidState {
   Vec3<S> position;                ///< base origin, world, m
@@ -172,7 +172,7 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   // Body by body outwards, all in the hip frame: velocity and bias acceleration (recursive
   // Newton-Euler at zero acceleration; gravity enters as an upward acceleration of the base), and
   // what the body adds to the leg's bias wrench, first moment and inertia about the HAA origin. One
-  // body is finished before the next is begun: there are not registers for more.
+  // body is finished before the next is begun: there are too few registers for more.
   const S qd1 = x.qd[3 * l], qd2 = x.qd[3 * l + 1], qd3 = x.qd[3 * l + 2];
   const Vec3<S>& wb = x.angular_velocity;
   const Vec3<S> a0 = unrotate_x(p.s1, p.c1, cross_add(wb, cross(wb, m.haa), gravity_up));

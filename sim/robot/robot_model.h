@@ -55,14 +55,30 @@ struct RobotModel {
   }
 };
 
-/// A RobotModel with what controller and program must know beside it.
+/// Electrical limit of a drive, seen at the joint: |torque| <= stall torque (1 - |speed| / no-load
+/// speed) while it drives in the direction of motion. A stall torque of 0: no such limit.
+struct TorqueSpeedLine {
+  double stall_torque_nm = 0.0;
+  double no_load_speed_radps = 0.0;
+};
+
+/// A RobotModel with what controller and program must know beside it, all from the robot's file
+/// (sim/robot/README.md says what each figure is and where it comes from).
 struct Robot {
   RobotDescription description;
   RobotModel<double> model;
-  JointArray<double> nominal_rad{};  ///< pose of `--start walk`
+  JointArray<double> nominal_rad{};  ///< posture of Stand; pose of `--start walk`
   double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching
   JointArray<double> lying_rad{};    ///< pose in which it lies on its belly
-  double lying_height_m = 0.0;
+  /// Pose of each leg from which it stands up.
+  std::array<double, kJointsPerLeg> fold_rad{};
+  double stand_kp_nmprad = 0.0;  ///< gains of StandUp and Stand
+  double stand_kd_nmsprad = 0.0;
+  double damping_kd_nmsprad = 0.0;  ///< gain of Damping, and of the damping after a fault
+  double speed_fault_radps = 0.0;   ///< a joint measured above it is a fault
+  TorqueSpeedLine torque_speed_line;
+  /// k_m at the joint: a torque heats the motor by torque^2 / k_m^2, in W.
+  double motor_constant_nmpsqrtw = 0.0;
 };
 
 /// The robot that ships (sim/robot/raibo.urdf and raibo.toml, embedded in the program).

@@ -6,18 +6,9 @@
 
 namespace sandrunner::sim {
 
-/// Electrical limit of a drive, seen at the joint: |tau| <= stall torque (1 - |qd| / no-load speed)
-/// while it drives in the direction of motion. Defaults from the published figures of the robot's
-/// motor (0.253 N m/A, 0.32 ohm line to line, 48 V) and gear (6.75): 48/0.253/6.75 = 28.1 rad/s,
-/// 48/0.32*0.253*6.75 = 256 N m. The line leaves the full 63.45 N m up to 21.1 rad/s.
-struct TorqueSpeedLine {
-  double stall_torque_nm = 256.0;
-  double no_load_speed_radps = 28.1;
-};
-
-/// Torque of a joint drive, N m: the PD law, clamped to +-`limit_nm` (and to the line, if there is
-/// one: stall > 0). Positions rad, rates rad/s, kp N m/rad, kd N m s/rad, `inverse_no_load_speed`
-/// s/rad.
+/// Torque of a joint drive, N m: the PD law, clamped to +-`limit_nm` and, with a stall torque above
+/// 0, to the drive's TorqueSpeedLine (sim/robot/robot_model.h). Positions rad, rates rad/s, kp
+/// N m/rad, kd N m s/rad, `inverse_no_load_speed` s/rad.
 template <typename S>
 inline S drive_torque(S q, S qd, S q_desired, S qd_desired, S kp, S kd, S feedforward_nm,
                       S limit_nm, S stall_torque_nm, S inverse_no_load_speed) noexcept {

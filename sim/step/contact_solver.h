@@ -7,8 +7,7 @@
 //
 // The paper projects lambda_t - c_t v_t onto the disc, contact by contact, until an iteration
 // changes less than 1e-5 N s. The fixed point is the same here, but each visit solves its contact
-// exactly and the start is warm, so that a few sweeps do. `solve_by_projection` is the paper's own
-// iteration, for comparison in tests.
+// exactly and starts from the last step's impulses, so that a few sweeps are enough.
 #pragma once
 
 #include <array>
@@ -138,7 +137,7 @@ inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& t
     s = max(s + step, zero);
   }
   const S x = fma(-s, bx, px), y = fma(-s, by, py);
-  // What Newton left is taken up radially, so that the bound holds exactly.
+  // Newton's remaining error is removed radially, so that the bound holds exactly.
   const S scale = radius / max(sqrt(fma(x, x, y * y)), tiny);
   tx = select(slides, x * scale, tx);
   ty = select(slides, y * scale, ty);
@@ -187,7 +186,7 @@ inline void solve_hard(const Sym3<S>& g, const std::array<S, 3>& b, S friction, 
     const S u = fma(high - low, f_low / max(f_low - f_high, tiny), low);
     const S f = excess(scale * (u / max(one - u, tiny)));
     const Mask<S> outside = f > zero;
-    // Illinois: the end that stays has its value halved, so that the other one moves as well.
+    // Illinois: the value of the end that stays is halved, so that the other end moves as well.
     const S kept = S(0.5);
     const S next_low = select(outside, u, low), next_high = select(outside, high, u);
     const S next_f_low = select(outside, f, kept * f_low),
@@ -201,7 +200,7 @@ inline void solve_hard(const Sym3<S>& g, const std::array<S, 3>& b, S friction, 
     f_high = select(running, next_f_high, f_high);
     running = both(running, abs(f) >= tolerance);
   }
-  // What the iteration left is taken up radially: a sliding impulse lies on the cone.
+  // The iteration's remaining error is removed radially: a sliding impulse lies on the cone.
   const Mask<S> slides = f_start > zero;
   const S size = sqrt(fma(tx, tx, ty * ty));
   const S to_cone = select(slides, (friction * tn) / max(size, tiny), one);
@@ -281,7 +280,7 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
         next = projected_step(c, hard, vx, vy, vz);
       } else {
         if (any(no(hard))) {
-          // What the first sweep finds is found again by the second: the start will do.
+          // The second sweep solves this again: Newton's starting point is good enough here.
           solve_on_disc(c.g.xx, c.g.xy, c.g.yy, bx, by, c.disc, next[0], next[1],
                         sweep == 1 ? 0 : kDiscIterations<S>);
         }
@@ -316,36 +315,6 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
     if (!any(running)) break;
   }
   return sweep;
-}
-
-/// The paper's iteration (algorithm S1; constants of the authors' code): one projected gradient
-/// step a visit, cold start, at most `max_sweeps` sweeps. For tests: slow.
-template <typename S, int kPoints>
-inline int solve_by_projection(std::array<PointContact<S>, kPoints>& points, int num_points,
-                               S tolerance, int max_sweeps, ImpulseSum<S>& sum) noexcept {
-  sum = {};
-  for (int i = 0; i < num_points; ++i) {
-    PointContact<S>& c = points[i];
-    c.impulse[0] = c.impulse[1] = S(0.0);
-    if (any(c.hard)) c.impulse[2] = S(0.0);
-    if (any(c.active)) add_impulse(c.w[2], c.j[2], c.leg, c.impulse[2], sum);
-  }
-  for (int sweep = 1; sweep <= max_sweeps; ++sweep) {
-    S change = S(0.0);
-    for (int i = 0; i < num_points; ++i) {
-      PointContact<S>& c = points[i];
-      if (!any(c.active)) continue;
-      std::array<S, 3> v;
-      for (int r = 0; r < 3; ++r) v[r] = row_velocity(c.w[r], c.p[r], c.leg, c.free[r], sum);
-      const std::array<S, 3> next = projected_step(c, c.hard, v[0], v[1], v[2]);
-      for (int r = 0; r < 3; ++r) add_impulse(c.w[r], c.j[r], c.leg, next[r] - c.impulse[r], sum);
-      const S dx = next[0] - c.impulse[0], dy = next[1] - c.impulse[1];
-      change = change + abs(next[2] - c.impulse[2]) + sqrt(fma(dx, dx, dy * dy));
-      c.impulse = next;
-    }
-    if (!any(change >= tolerance)) return sweep;
-  }
-  return max_sweeps;
 }
 
 }  // namespace sandrunner::sim

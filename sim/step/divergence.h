@@ -7,8 +7,9 @@
 
 namespace sandrunner::sim {
 
-/// Whether a simulation has left all that a robot does (a speed of 100 m/s and rad/s in sum, 10 m
-/// of height), or is not a number. Flags of contact do not show it: comparisons with nan are false.
+/// Whether a simulation is lost: it is not a number, or faster or higher than any robot (speeds
+/// that add up to 100 m/s and rad/s, a height of 10 m). The contact flags of a step do not show it:
+/// comparisons with nan are false.
 inline bool diverged(const RigidState<float>& x) noexcept {
   const float speed = std::fabs(x.velocity.x) + std::fabs(x.velocity.y) + std::fabs(x.velocity.z) +
                       std::fabs(x.angular_velocity.x) + std::fabs(x.angular_velocity.y) +

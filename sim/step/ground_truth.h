@@ -20,7 +20,7 @@ StateEstimate ground_truth(const RobotModel<double>& model, const RobotState<S>&
   const RigidState<S>& x = state.rigid;
   const Mat3<S> r = rotation_matrix(x.orientation);
   const Vec3<S> v = transposed_times(r, x.velocity);
-  const S surface = surface_height(terrain, x.position.x, x.position.y);
+  const S surface = surface_at(terrain, x.position.x, x.position.y).height;
   S deepest = S(0.0);
   StateEstimate truth;
   truth.velocity_mps = {v.x, v.y, v.z};

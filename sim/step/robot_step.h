@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One 0.25 ms step of a robot on its ground: dynamics, contact law of each foot, contact problem,
-// semi-implicit Euler. Free of clock, heap and branches that depend on one lane; instantiated for
+// semi-implicit Euler. No clock, no heap, and no branch that depends on one lane; instantiated for
 // double (the simulator behind RobotIo) and for float and float packs (training).
 #pragma once
 
@@ -27,7 +27,7 @@ struct RobotState {
   std::array<S, kNumJoints> stop_impulse{};            ///< signed: > 0 at the lower stop
 };
 
-/// What a step shows to those who watch: sensors, statistics, rewards, pictures.
+/// What sensors, statistics, rewards and pictures need to know of a step.
 template <typename S>
 struct StepReport {
   std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m, at the start of the step
@@ -80,7 +80,7 @@ class RobotStepper {
                       const Vec3<S>& r_hip, int leg, int joints, S radius, bool only_rigid,
                       const Mask<S>& near, int slot, RobotState<S>& x, S& touched) noexcept;
   void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
-  Frame surface_frame(S slope_x, S slope_y) const noexcept;
+  Frame contact_frame(const Ground<S>& ground, const Surface<S>& surface) const noexcept;
 
   Dynamics<S> dynamics_;
   Mat3<S> rotation_;  // body to world

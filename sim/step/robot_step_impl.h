@@ -5,11 +5,15 @@
 namespace sandrunner::sim {
 
 template <typename S>
-typename RobotStepper<S>::Frame RobotStepper<S>::surface_frame(S slope_x,
-                                                               S slope_y) const noexcept {
-  const SurfaceAxes<S> axes = surface_axes(slope_x, slope_y);
-  return {transposed_times(rotation_, axes.t1), transposed_times(rotation_, axes.t2),
-          transposed_times(rotation_, axes.n)};
+typename RobotStepper<S>::Frame RobotStepper<S>::contact_frame(
+    const Ground<S>& ground, const Surface<S>& surface) const noexcept {
+  const Frame level{rotation_.r0, rotation_.r1, rotation_.r2};
+  const Mask<S> rough = ground.roughness > S(0.0);
+  if (!any(rough)) return level;
+  const SurfaceAxes<S> axes = surface_axes(surface);
+  return {select(rough, transposed_times(rotation_, axes.t1), level.t1),
+          select(rough, transposed_times(rotation_, axes.t2), level.t2),
+          select(rough, transposed_times(rotation_, axes.n), level.n)};
 }
 
 template <typename S>
@@ -80,25 +84,13 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     // A contact keeps the patch on which it began.
     contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
     const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
-    S height = zero, slope_x = zero, slope_y = zero;
-    const Mask<S> rough = ground.roughness > zero;
-    if (any(rough)) {
-      rough_surface(ground, centre.x, centre.y, height, slope_x, slope_y);
-      height = select(rough, height, zero);
-      slope_x = select(rough, slope_x, zero);
-      slope_y = select(rough, slope_y, zero);
-    }
-    Frame frame{rotation_.r0, rotation_.r1, rotation_.r2};
-    if (any(rough)) {
-      const Frame tilted = surface_frame(slope_x, slope_y);
-      frame = {select(rough, tilted.t1, frame.t1), select(rough, tilted.t2, frame.t2),
-               select(rough, tilted.n, frame.n)};
-    }
+    const Surface<S> surface = surface_at(ground, centre.x, centre.y);
+    const Frame frame = contact_frame(ground, surface);
     // Deepest point: a foot radius from the centre against the normal; depth measured along the
     // normal.
     const Vec3<S> r_base = mul_add(frame.n, -model.foot_radius_m, centre_base);
     const S normal_z = dot(frame.n, rotation_.r2);
-    const S penetration = model.foot_radius_m - (centre.z - height) * normal_z;
+    const S penetration = model.foot_radius_m - (centre.z - surface.height) * normal_z;
     report.foot_centre[l] = centre;
     report.penetration[l] = penetration;
     const Columns columns = dynamics_.leg_jacobian(
@@ -152,19 +144,9 @@ void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S
   const Mask<S> close = both(near, place.z - radius < terrain.highest);
   if (!any(close)) return forget();
   const Ground<S>& ground = terrain.pick(terrain.region_at(place.x), mixed_ground_);
-  S height = zero, slope_x = zero, slope_y = zero;
-  const Mask<S> rough = ground.roughness > zero;
-  if (any(rough)) {
-    rough_surface(ground, place.x, place.y, height, slope_x, slope_y);
-    height = select(rough, height, zero);
-    slope_x = select(rough, slope_x, zero);
-    slope_y = select(rough, slope_y, zero);
-  }
-  const Frame tilted = surface_frame(slope_x, slope_y);
-  const Frame level{rotation_.r0, rotation_.r1, rotation_.r2};
-  const Frame frame{select(rough, tilted.t1, level.t1), select(rough, tilted.t2, level.t2),
-                    select(rough, tilted.n, level.n)};
-  const S penetration = radius - (place.z - height) * dot(frame.n, rotation_.r2);
+  const Surface<S> surface = surface_at(ground, place.x, place.y);
+  const Frame frame = contact_frame(ground, surface);
+  const S penetration = radius - (place.z - surface.height) * dot(frame.n, rotation_.r2);
   Mask<S> active = both(close, penetration >= zero);
   if (only_rigid) active = both(active, ground.is_rigid == one);
   touched = select(active, one, touched);

@@ -176,11 +176,22 @@ TEST_F(PolicyFileTest, RefusesAFailingGoldenExample) {
                        "golden example fails at step 1: estimate[0] is ");
 }
 
-TEST_F(PolicyFileTest, RefusesForeignJointsAndRates) {
-  expect_refused_with("sandrunner.joint_names",
-                      "RF_HAA,RF_HFE,RF_KFE,LF_HAA,LF_HFE,LF_KFE,"
-                      "LH_HAA,LH_HFE,LH_KFE,RH_HAA,RH_HFE,RH_KFE",
-                      "'sandrunner.joint_names' is 'RF_HAA");
+TEST_F(PolicyFileTest, KeepsTheJointNamesOfAnyRobot) {
+  PolicyFile other = file_;
+  for (std::string& name : other.spec.joint_names) name += "_motor";
+  write_policy_file(path_, other);
+  EXPECT_EQ(read_policy_file(path_).spec.joint_names, other.spec.joint_names);
+}
+
+TEST_F(PolicyFileTest, RefusesJointsThatCannotBeToldApart) {
+  expect_refused_with("sandrunner.joint_names", "a,b,c", "has 3 values, expected 12");
+  expect_refused_with("sandrunner.joint_names", "a,b,c,d,e,f,g,h,i,j,k,",
+                      "has the joint name '', expected 12 different names");
+  expect_refused_with("sandrunner.joint_names", "a,b,c,d,e,f,g,h,i,j,k,b",
+                      "has the joint name 'b', expected 12 different names");
+}
+
+TEST_F(PolicyFileTest, RefusesOtherRates) {
   expect_refused_with("sandrunner.policy_hz", "50", "is '50', expected '100'");
   expect_refused_with("sandrunner.control_hz", "1000", "is '1000', expected '4000'");
 }
@@ -192,7 +203,7 @@ TEST_F(PolicyFileTest, RefusesBadMetadata) {
   expect_refused_with("sandrunner.torque_limit_nm", "63.45 N", "is '63.45 N', expected a number");
   expect_refused_with("sandrunner.action_scale_rad", "0", "is 0, expected more than 0");
   expect_refused_with("sandrunner.observation_clip", "1e999", "is '1e999', expected a number");
-  expect_refused_with("sandrunner.nominal_position_rad", "0,0.5,-1", "has 3 numbers, expected 12");
+  expect_refused_with("sandrunner.nominal_position_rad", "0,0.5,-1", "has 3 values, expected 12");
   expect_refused_with("sandrunner.nominal_position_rad", "0,0.5,,0,0,0,0,0,0,0,0,0",
                       "is '', expected a number");
   expect_refused_with("sandrunner.kp", "50", "unknown metadata key 'sandrunner.kp'");

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
+#include "rt/base/errors.h"
 #include "tests/policy/allocation_counter.h"
 #include "tests/policy/random_policy.h"
 
@@ -24,6 +26,22 @@ class PolicyTest : public testing::Test {
     return output;
   }
 };
+
+TEST_F(PolicyTest, IsRefusedForARobotWithOtherJoints) {
+  RobotDescription robot;
+  robot.name = "cart";
+  robot.joint_names = file_.spec.joint_names;
+  EXPECT_NO_THROW(require_joints(file_.spec, robot));
+  std::swap(robot.joint_names[3], robot.joint_names[4]);
+  try {
+    require_joints(file_.spec, robot);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "policy 'random' is for another robot: found joint 4 'RF_HAA', expected 'RF_HFE' "
+                 "of robot 'cart'");
+  }
+}
 
 TEST_F(PolicyTest, TargetIsNominalPlusScaledAction) {
   const JointArray<double> target = Policy(file_.spec, network_).step(observation_).target_rad;

@@ -3,6 +3,7 @@
 // one that walks.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -48,6 +49,7 @@ inline PolicyFile random_policy_file(std::uint64_t seed = 1) {
   file.parameters.observation_clip = 3.0f;
   PolicySpec& spec = file.spec;
   spec.name = "random";
+  std::copy(kJointNames.begin(), kJointNames.end(), spec.joint_names.begin());
   for (int leg = 0; leg < kNumLegs; ++leg) {
     spec.nominal_position_rad[kJointsPerLeg * leg + 1] = 0.5;
     spec.nominal_position_rad[kJointsPerLeg * leg + 2] = -1.0;

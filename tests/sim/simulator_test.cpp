@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "tests/sim/support.h"
@@ -16,7 +17,7 @@ namespace {
 SimulatorConfig config_of(const std::string& preset) {
   ConfigTree config;
   add_terrain_layer(config, preset);
-  SimulatorConfig c = read_simulator_config(config);
+  SimulatorConfig c = read_simulator_config(config, load_raibo());
   config.reject_unknown();
   return c;
 }
@@ -37,7 +38,7 @@ SafeCommand walking(const Robot& robot, std::uint64_t tick) {
 void run(Simulator& simulator, const Robot& robot, int ticks) {
   SensorFrame frame;
   for (int i = 0; i < ticks; ++i) {
-    simulator.read(frame);
+    simulator.read(simulator.state().tick, frame);
     simulator.write(walking(robot, simulator.state().tick));
   }
 }
@@ -123,7 +124,7 @@ TEST(SimulatorTest, LiesOnItsBellyAndStaysThere) {
     const double z = simulator.state().robot.rigid.position.z;
     for (int i = 0; i < 4000; ++i) {
       SensorFrame frame;
-      simulator.read(frame);
+      simulator.read(simulator.state().tick, frame);
       simulator.write(pass_gate(pd_command(robot.lying_rad, 0.0, 1.0)));
     }
     const RigidState<double>& x = simulator.state().robot.rigid;
@@ -176,7 +177,7 @@ TEST(SimulatorTest, SensorsShowTheStateWithoutNoise) {
   Simulator simulator(robot, config_of("rigid"));
   run(simulator, robot, 500);
   SensorFrame f;
-  simulator.read(f);
+  simulator.read(simulator.state().tick, f);
   const SimulatorState& s = simulator.state();
   EXPECT_EQ(f.tick, s.tick);
   EXPECT_EQ(f.joints.position_rad, s.robot.rigid.q);
@@ -191,7 +192,7 @@ TEST(SimulatorTest, AccelerometerFeelsGravityAtRest) {
   Simulator simulator(robot, config_of("rigid"));
   SensorFrame f;
   for (int i = 0; i < 20000; ++i) {  // its sway takes some seconds to die away
-    simulator.read(f);
+    simulator.read(simulator.state().tick, f);
     simulator.write(pass_gate(pd_command(robot.nominal_rad, 300.0, 5.0)));
   }
   const Vector3& a = f.imu.linear_acceleration_mps2;
@@ -211,7 +212,7 @@ TEST(SimulatorTest, NoiseFollowsTheSeedAndHasItsDeviation) {
     Simulator simulator(robot, config);
     std::vector<SensorFrame> f(500);
     for (SensorFrame& frame : f) {
-      simulator.read(frame);
+      simulator.read(simulator.state().tick, frame);
       simulator.write(walking(robot, simulator.state().tick));
     }
     return f;
@@ -240,7 +241,7 @@ TEST(SimulatorTest, NoiseFollowsTheSeedAndHasItsDeviation) {
         std::fmin(1.0, std::fabs(o[0] * e.w + o[1] * e.x + o[2] * e.y + o[3] * e.z));
     turn += std::pow(2.0 * std::acos(inner), 2) / 3.0;
     SensorFrame f;
-    simulator.read(f);
+    simulator.read(simulator.state().tick, f);
     EXPECT_EQ(f.joints.position_rad, noisy.joints.position_rad);
     simulator.write(walking(robot, simulator.state().tick));
   }
@@ -262,8 +263,8 @@ TEST(SimulatorTest, DelaysShiftSensorsAndCommandsByTheirTicks) {
   std::vector<JointArray<double>> truth;
   for (int i = 0; i < 100; ++i) {
     SensorFrame a, b;
-    prompt.read(a);
-    late.read(b);
+    prompt.read(prompt.state().tick, a);
+    late.read(late.state().tick, b);
     truth.push_back(a.joints.position_rad);
     EXPECT_EQ(b.joints.position_rad, truth[static_cast<std::size_t>(std::max(0, i - 7))]);
     EXPECT_EQ(b.tick, a.tick);
@@ -295,7 +296,7 @@ TEST(SimulatorTest, DrivesClampTheirTorqueAndCanFollowATorqueSpeedLine) {
   plain.write(SafeCommand{});
   EXPECT_EQ(plain.state().torque_nm[1], 0.0);  // off
 
-  config.torque_speed_line = true;
+  config.torque_speed_line = robot.torque_speed_line;
   Simulator limited(robot, config);
   SimulatorState s = limited.state();
   s.robot.rigid.position.z = 10.0;

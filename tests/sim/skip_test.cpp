@@ -24,7 +24,7 @@ SafeCommand command_at(const Robot& robot, std::uint64_t tick) {
 void run(Simulator& simulator, const Robot& robot, int ticks) {
   SensorFrame frame;
   for (int i = 0; i < ticks; ++i) {
-    simulator.read(frame);
+    simulator.read(simulator.state().tick, frame);
     simulator.write(command_at(robot, simulator.state().tick));
   }
 }
@@ -37,7 +37,7 @@ TEST(SimulatorSkipTest, SkippedTicksAreTicksUnderTheHeldCommand) {
   const Robot robot = load_raibo();
   ConfigTree tree;
   add_terrain_layer(tree, "dry-sand");
-  SimulatorConfig config = read_simulator_config(tree);
+  SimulatorConfig config = read_simulator_config(tree, robot);
   config.seed = 4;
   config.noise.joint_position_rad = 0.01;
   for (const auto& [sensor, actuator, skipped] :
@@ -53,15 +53,15 @@ TEST(SimulatorSkipTest, SkippedTicksAreTicksUnderTheHeldCommand) {
     stalled.skip(skipped, held);
     SensorFrame frame, late;
     for (std::uint64_t i = 0; i < skipped; ++i) {
-      punctual.read(frame);
+      punctual.read(punctual.state().tick, frame);
       punctual.write(held);
     }
     EXPECT_EQ(stalled.state().tick, 80 + skipped);
     EXPECT_EQ(hash_of(stalled), hash_of(punctual));
     // What comes out of the delays afterwards is the same as well.
     for (int i = 0; i < 70; ++i) {
-      stalled.read(late);
-      punctual.read(frame);
+      stalled.read(stalled.state().tick, late);
+      punctual.read(punctual.state().tick, frame);
       ASSERT_EQ(late.tick, frame.tick);
       ASSERT_EQ(late.joints.position_rad, frame.joints.position_rad) << i;
       run(stalled, robot, 1);
@@ -75,7 +75,7 @@ TEST(SimulatorSkipTest, NothingSkippedIsNothingDone) {
   const Robot robot = load_raibo();
   ConfigTree tree;
   add_terrain_layer(tree, "rigid");
-  SimulatorConfig config = read_simulator_config(tree);
+  SimulatorConfig config = read_simulator_config(tree, robot);
   config.sensor_delay_ticks = config.actuator_delay_ticks = 5;
   Simulator simulator(robot, config);
   run(simulator, robot, 10);

@@ -60,7 +60,7 @@ TrottingBatch::TrottingBatch(const sim::Robot& robot, int robots, sim::BatchWidt
   const sim::TerrainDescription sand = dry_sand();
   const auto terrain = sim::convert_terrain<float>(
       sim::make_terrain(sand, sim::make_foot_profile(sand, robot.model), robot.model));
-  const sim::TorqueSpeedLine line;
+  const sim::TorqueSpeedLine& line = robot.torque_speed_line;
   for (int i = 0; i < robots; ++i) {
     const auto draw = [&](std::uint64_t counter) {
       return sim::random_uniform(kSeed, static_cast<std::uint64_t>(i), counter);
@@ -130,7 +130,7 @@ TrottingRobot::TrottingRobot(const sim::Robot& robot) : robot_(robot) {
 }
 
 void TrottingRobot::advance(int periods) {
-  const sim::TorqueSpeedLine line;
+  const sim::TorqueSpeedLine& line = robot_.torque_speed_line;
   for (int k = 0; k < periods; ++k, ++periods_) {
     target_before_ = target_;
     target_ = trot_targets(robot_.nominal_rad, static_cast<double>(periods_) / kPolicyHz, 0.0);

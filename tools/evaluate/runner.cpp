@@ -45,7 +45,7 @@ class PackRun {
     model.torque_limit_nm = facts.torque_limit_nm;
     const PolicySpec& spec = policy.spec();
     sim::BatchDrive<float> drive;
-    const sim::TorqueSpeedLine line;
+    const sim::TorqueSpeedLine& line = robot.torque_speed_line;
     drive.kp = static_cast<float>(spec.kp_nmprad);
     drive.kd = static_cast<float>(spec.kd_nmsprad);
     drive.stall_torque_nm =
@@ -226,6 +226,7 @@ RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
   RobotFacts facts;
   facts.mass_kg = robot.model.mass();
   facts.torque_limit_nm = robot.model.torque_limit_nm;
+  facts.motor_constant = robot.motor_constant_nmpsqrtw;
   if (policy.torque_limit_nm > 0.0) {
     for (double& limit : facts.torque_limit_nm) limit = std::min(limit, policy.torque_limit_nm);
   }

@@ -21,6 +21,7 @@ namespace {
 /// How the published controller of Raibo is wired (compliant-gym; Choi et al. 2023, "Controller
 /// structure").
 void set_raibo_conventions(PolicySpec& spec) {
+  std::copy(kJointNames.begin(), kJointNames.end(), spec.joint_names.begin());
   for (int leg = 0; leg < kNumLegs; ++leg) {
     spec.nominal_position_rad[kJointsPerLeg * leg + 0] = 0.0;
     spec.nominal_position_rad[kJointsPerLeg * leg + 1] = 0.559836;
@@ -66,6 +67,7 @@ void print_info(const std::string& path) {
   row("observation", fmt::format("{} values, normalised, limited to +-{}", kObservationSize,
                                  file.parameters.observation_clip));
   row("rates", fmt::format("policy {} Hz, control {} Hz", kPolicyHz, kControlHz));
+  row("joints", printable(joined(spec.joint_names, ", "), 200));
   row("joint target",
       fmt::format("nominal + {} rad * action, action {}", spec.action_scale_rad,
                   spec.action_clip > 0.0 ? fmt::format("limited to +-{}", spec.action_clip)

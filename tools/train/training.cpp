@@ -219,6 +219,7 @@ PolicyFile Training::policy_file() const {
   const PolicySettings& policy = config_.task.policy;
   PolicySpec& spec = file.spec;
   spec.name = robot_.description.name;
+  spec.joint_names = robot_.description.joint_names;
   spec.nominal_position_rad = robot_.nominal_rad;
   spec.action_scale_rad = policy.action_scale_rad;
   spec.action_clip = policy.action_clip;

@@ -24,6 +24,22 @@ TEST(ControllerTest, StartsPassiveWithDrivesOff) {
   }
 }
 
+TEST(ControllerTest, NothingMovesWithoutTheFiguresOfARobot) {
+  for (const Mode mode : {Mode::kDamping, Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
+    FakeLoop loop(Mode::kPassive, ControllerConfig{});
+    loop.robot.now.joints.position_rad = {};
+    loop.reach(mode);
+    EXPECT_EQ(loop.output.mode, mode);
+    const JointCommand& command = loop.output.command.joints();
+    EXPECT_EQ(command.kp_nmprad, JointArray<double>{});
+    EXPECT_EQ(command.kd_nmsprad, JointArray<double>{});
+    EXPECT_EQ(command.feedforward_nm, JointArray<double>{});
+    loop.robot.now.joints.velocity_radps[3] = 0.1;
+    loop.tick();
+    EXPECT_EQ(loop.controller.state().gate.first_fault, Fault::kJointSpeed);
+  }
+}
+
 TEST(ControllerTest, RequestCountsOnceForItsId) {
   FakeLoop loop;
   loop.request(ModeRequest::kDamp);
@@ -113,7 +129,7 @@ TEST(ControllerTest, LongWayTakesLongerInsteadOfFaster) {
 }
 
 TEST(ControllerTest, DoesNotFoldWhenNearlyStanding) {
-  JointArray<double> posture_rad = StandConfig{}.nominal_rad;
+  JointArray<double> posture_rad = test_robot().stand.nominal_rad;
   for (double& q : posture_rad) q += 0.29;
   double nearest_to_fold_rad = 0.0;
   EXPECT_NEAR(stand_up(posture_rad, &nearest_to_fold_rad), 1.5, 0.001);
@@ -162,7 +178,7 @@ TEST(ControllerTest, StopEndsAfterItsLongestWaitIfTheRobotNeverRests) {
 }
 
 TEST(ControllerTest, StopWaitsForTheSlewToReachZero) {
-  ControllerConfig config;
+  ControllerConfig config = test_robot();
   config.shaping.acceleration_limit_mps2 = 0.5;  // slower than the stop's own
   FakeLoop loop(Mode::kPassive, config);
   loop.reach(Mode::kWalk);
@@ -224,7 +240,7 @@ std::uint64_t hash_of(const ControllerOutput& output, const ControllerState& sta
 }
 
 TEST(ControllerTest, SnapshotContinuesWithTheSameBits) {
-  ControllerConfig config;
+  ControllerConfig config = test_robot();
   config.shaping.acceleration_limit_mps2 = 1.0;
   FakeLoop loop(Mode::kPassive, config);
   std::vector<ControllerInput> inputs;

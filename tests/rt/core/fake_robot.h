@@ -9,6 +9,7 @@
 #include "printing.h"
 #include "rt/core/controller.h"
 #include "rt/core/joint_pd.h"
+#include "test_robot.h"
 
 namespace sandrunner {
 
@@ -49,10 +50,11 @@ class FakeRobot : public RobotIo {
   SafeCommand last;
 };
 
-/// Controller, robot and a policy that answers every release at once with `action_rad`.
+/// Controller of the test robot, robot and a policy that answers every release at once with
+/// `action_rad`.
 class FakeLoop {
  public:
-  explicit FakeLoop(Mode start = Mode::kPassive, const ControllerConfig& config_in = {})
+  explicit FakeLoop(Mode start = Mode::kPassive, const ControllerConfig& config_in = test_robot())
       : config(config_in),
         controller(config, start),
         robot(start == Mode::kWalk ? config.stand.nominal_rad : kLyingPosture_rad),

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kTicksIn2ms = 8;
 
 std::array<double, 4> tilted(double angle_deg) {
-  const double half_rad = angle_deg * M_PI / 360.0;
+  const double half_rad = angle_deg * std::numbers::pi / 360.0;
   return {std::cos(half_rad), 0.0, std::sin(half_rad), 0.0};
 }
 
@@ -46,13 +47,13 @@ const FaultCase kFaultCases[] = {
     {Fault::kImuStale, Mode::kStandUp, 40,
      [](auto& seen, auto& last) { seen.sensors.imu = last.sensors.imu; }},
     {Fault::kJointPosition, Mode::kStand, 0,
-     [](auto& seen, auto&) { seen.sensors.joints.position_rad[2] = -0.0262 + 0.351; }},
+     [](auto& seen, auto&) { seen.sensors.joints.position_rad[2] = 0.351; }},
     {Fault::kJointPosition, Mode::kDamping, 0,
-     [](auto& seen, auto&) { seen.sensors.joints.position_rad[8] = -2.4696 - 0.351; }},
+     [](auto& seen, auto&) { seen.sensors.joints.position_rad[8] = -2.5 - 0.351; }},
     {Fault::kJointSpeed, Mode::kWalk, 0,
      [](auto& seen, auto&) { seen.sensors.joints.velocity_radps[7] = -60.1; }},
     {Fault::kJointTorque, Mode::kWalk, 19,
-     [](auto& seen, auto&) { seen.sensors.joints.torque_nm[5] = -76.2; }},
+     [](auto& seen, auto&) { seen.sensors.joints.torque_nm[5] = -72.1; }},
     {Fault::kTilt, Mode::kWalk, 0,
      [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(60.1); }},
     {Fault::kTilt, Mode::kStandUp, 0,
@@ -136,7 +137,7 @@ TEST(FaultsTest, PolicyThatNeverAnswersIsStaleToo) {
 }
 
 TEST(FaultsTest, ControllerThatComputesNonsenseIsStopped) {
-  ControllerConfig config;
+  ControllerConfig config = test_robot();
   config.walk.kp_nmprad = kNan;
   FakeLoop loop(Mode::kWalk, config);
   for (int n = 0; n < 2; ++n) {

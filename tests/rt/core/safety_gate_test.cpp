@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <string>
 #include <type_traits>
@@ -28,21 +29,21 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 class SafetyGateTest : public testing::Test {
  protected:
   SafetyGateTest() {
-    sensors.joints.position_rad = StandConfig{}.nominal_rad;
-    wanted.position_rad = StandConfig{}.nominal_rad;
+    sensors.joints.position_rad = test_robot().stand.nominal_rad;
+    wanted.position_rad = test_robot().stand.nominal_rad;
     wanted.kp_nmprad.fill(100.0);
     wanted.kd_nmsprad.fill(1.0);
   }
   std::uint64_t judge(Mode mode) { return gate.judge({sensors, command}, mode, state); }
   void tilt(double angle_deg) {
-    const double half_rad = angle_deg * M_PI / 360.0;
+    const double half_rad = angle_deg * std::numbers::pi / 360.0;
     // About an axis in the plane, with a yaw before it: neither may matter.
     const double c = std::cos(half_rad), s = std::sin(half_rad), h = std::sqrt(0.5);
     sensors.imu.orientation_wxyz = {h * c, h * s * 0.6 - h * s * 0.8, h * s * 0.6 + h * s * 0.8,
                                     h * c};
   }
 
-  GateConfig config;
+  GateConfig config = test_robot().gate;
   SafetyGate gate{config, 2.0};
   GateState state;
   SensorFrame sensors;
@@ -58,8 +59,8 @@ TEST_F(SafetyGateTest, DefaultCommandIsOff) {
 }
 
 TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
-  wanted.feedforward_nm.fill(63.45);
-  wanted.velocity_radps.fill(-25.7);
+  wanted.feedforward_nm.fill(60.0);
+  wanted.velocity_radps.fill(-25.0);
   const SafeCommand passed = gate.pass(wanted, true, state);
   EXPECT_TRUE(passed.enabled());
   EXPECT_EQ(passed.joints().position_rad, wanted.position_rad);
@@ -74,17 +75,17 @@ TEST_F(SafetyGateTest, ClampsAndCountsCommandedPositions) {
   wanted.position_rad[2] = 5.0;
   wanted.position_rad[5] = -5.0;
   const SafeCommand passed = gate.pass(wanted, true, state);
-  EXPECT_EQ(passed.joints().position_rad[2], -0.0262 + 1.0);
-  EXPECT_EQ(passed.joints().position_rad[5], -2.4696 - 1.0);
+  EXPECT_EQ(passed.joints().position_rad[2], 1.0);
+  EXPECT_EQ(passed.joints().position_rad[5], -2.5 - 1.0);
   EXPECT_EQ(state.counters.position_clamped, 1u);  // ticks, not joints
 }
 
 TEST_F(SafetyGateTest, ClampsAndCountsCommandedVelocitiesAndTorques) {
   wanted.velocity_radps[0] = 30.0;
-  wanted.feedforward_nm[11] = -64.0;
+  wanted.feedforward_nm[11] = -61.0;
   const SafeCommand passed = gate.pass(wanted, true, state);
-  EXPECT_EQ(passed.joints().velocity_radps[0], 25.7);
-  EXPECT_EQ(passed.joints().feedforward_nm[11], -63.45);
+  EXPECT_EQ(passed.joints().velocity_radps[0], 25.0);
+  EXPECT_EQ(passed.joints().feedforward_nm[11], -60.0);
   EXPECT_EQ(state.counters.velocity_clamped, 1u);
   EXPECT_EQ(state.counters.torque_clamped, 1u);
 }
@@ -118,8 +119,8 @@ TEST_F(SafetyGateTest, NothingButDampingPassesWhileLatched) {
 }
 
 TEST_F(SafetyGateTest, LimitsAreCountedWithoutAFault) {
-  sensors.joints.position_rad[2] = -0.0262 + 0.35;
-  sensors.joints.position_rad[5] = 0.0;
+  sensors.joints.position_rad[2] = 0.35;
+  sensors.joints.position_rad[5] = 0.1;
   sensors.joints.velocity_radps[4] = -60.0;
   tilt(59.999);
   sensors.tick = 40;
@@ -135,8 +136,8 @@ TEST_F(SafetyGateTest, LimitsAreCountedWithoutAFault) {
 }
 
 TEST_F(SafetyGateTest, NothingIsCountedWithinLimits) {
-  sensors.joints.position_rad[2] = -0.0262;
-  sensors.joints.velocity_radps[4] = 25.7;
+  sensors.joints.position_rad[2] = 0.0;
+  sensors.joints.velocity_radps[4] = 25.0;
   tilt(44.999);
   sensors.tick = 10;
   sensors.joints.tick = 8;
@@ -177,7 +178,7 @@ TEST_F(SafetyGateTest, TorqueFaultNeedsTwentySamplesOfOneJointInARow) {
     return judge(Mode::kWalk);
   };
   for (int n = 0; n < 19; ++n) EXPECT_EQ(sample(2, -77.0), 0u);
-  EXPECT_EQ(sample(2, 76.0), 0u);  // below 1.2 * 63.45
+  EXPECT_EQ(sample(2, 72.0), 0u);  // 1.2 * 60
   for (int n = 0; n < 100; ++n) EXPECT_EQ(sample(n % 2, 77.0), 0u);
   for (int n = 0; n < 19; ++n) EXPECT_EQ(sample(8, 77.0), 0u);
   EXPECT_EQ(sample(8, 77.0), static_cast<std::uint64_t>(Fault::kJointTorque));

@@ -5,6 +5,7 @@
 #include "sim/robot/embedded.h"
 #include "tests/policy/random_policy.h"
 #include "tests/support/program_test.h"
+#include "tests/support/small_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -133,6 +134,13 @@ TEST_F(BadInputTest, Robots) {
   write("raibo.urdf", urdf);
   write("map.toml", map + "[wheels]\nradius_m = 0.1\n");
   expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
+  expect_refused("--robot map.toml", "map.toml:57: unknown key 'wheels.radius_m'");
+  expect_refused("--robot absent.toml", "absent.toml: cannot be read");
+  write("map.toml", map.substr(0, map.find("[gains]")));
+  expect_refused("--robot map.toml", "map.toml: 'gains.stand_kp_nmprad' is missing");
+  expect_refused("--robot " + write_small_robot(folder_),
+                 "policy 'raibo' is for another robot: found joint 1 'LF_HAA', expected 'fl_roll' "
+                 "of robot 'small'");
 }
 
 TEST_F(BadInputTest, OutputFolders) {

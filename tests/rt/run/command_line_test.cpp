@@ -7,8 +7,10 @@
 #include <thread>
 
 #include "policy/policy_file.h"
+#include "sim/robot/robot_model.h"
 #include "tests/policy/random_policy.h"
 #include "tests/support/program_test.h"
+#include "tests/support/small_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -34,11 +36,24 @@ class CommandLineTest : public ProgramTest {
 TEST_F(CommandLineTest, HelpNamesEveryOption) {
   EXPECT_EQ(run("--help"), 0);
   EXPECT_EQ(error(), "");
-  for (const char* text :
-       {"--policy", "--terrain", "--command", "--duration", "--start", "--seed", "--config",
-        "--set", "--out", "--version", "--clock", "rt-report", "dry-sand", "athletic-track"}) {
+  for (const char* text : {"--policy", "--robot", "--terrain", "--command", "--duration", "--start",
+                           "--seed", "--config", "--set", "--out", "--version", "--clock",
+                           "rt-report", "dry-sand", "athletic-track"}) {
     EXPECT_NE(output().find(text), std::string::npos) << text;
   }
+}
+
+TEST_F(CommandLineTest, RobotMayLieInAFileOfAnyName) {
+  const sim::Robot robot = sim::load_robot(write_small_robot(folder_));
+  PolicyFile file = random_policy_file();
+  file.spec.joint_names = robot.description.joint_names;
+  write_policy_file(folder_.path("policy"), file);
+  std::filesystem::copy(folder_.path("small.toml"), folder_.path("a \"= robot\n.toml"));
+  run("--robot 'a \"= robot\n.toml' --policy policy --start walk --duration 0.02 --out results");
+  EXPECT_EQ(error(), "");
+  const std::string config = read_file(folder_.path("results/config.toml"));
+  EXPECT_NE(config.find("robot = \"a \\\"= robot\\n.toml\""), std::string::npos) << config;
+  EXPECT_NE(config.find("stall_torque_nm = 80"), std::string::npos) << config;
 }
 
 TEST_F(CommandLineTest, VersionIsOneLine) {

@@ -42,13 +42,14 @@ TEST(ProcessConfigTest, LaterLayersWin) {
 TEST(ProcessConfigTest, SettingsReachSimulatorControllerAndGate) {
   const ProcessConfig config =
       config_of("rigid", {"sim.sensor_delay_ticks=5", "sim.noise.joint_velocity_radps=0.25",
-                          "sim.torque_speed_line=true", "policy.latency_ticks=20",
-                          "controller.walk.kd_nmsprad=0.7", "controller.damping.kd_nmsprad=3",
-                          "controller.gate.tilt_fault_deg=50",
+                          "sim.torque_speed_line=true", "sim.stall_torque_nm=99",
+                          "policy.latency_ticks=20", "controller.walk.kd_nmsprad=0.7",
+                          "controller.damping.kd_nmsprad=3", "controller.gate.tilt_fault_deg=50",
                           "controller.gate.joints_fault_ticks=9", "summary.motor_constant=2.5"});
   EXPECT_EQ(config.simulator.sensor_delay_ticks, 5);
   EXPECT_EQ(config.simulator.noise.joint_velocity_radps, 0.25);
-  EXPECT_TRUE(config.simulator.torque_speed_line);
+  EXPECT_EQ(config.simulator.torque_speed_line.stall_torque_nm, 99.0);
+  EXPECT_EQ(config.simulator.torque_speed_line.no_load_speed_radps, 28.1);
   EXPECT_EQ(config.controller.walk.latency_ticks, 20u);
   EXPECT_EQ(config.controller.walk.kd_nmsprad, 0.7);
   EXPECT_EQ(config.controller.damping.kd_nmsprad, 3.0);
@@ -95,14 +96,14 @@ TEST(ProcessConfigTest, RobotGivesTheLimitsOfTheGate) {
     }
   };
   replace_all("effort=\"63.45\" velocity=\"25.7\"", "effort=\"44\" velocity=\"21\"");
-  replace_all("lower=\"-2.4696\"", "lower=\"-2.2\"");
+  replace_all("lower=\"-2.4696\"", "lower=\"-2.45\"");
   std::string map(embedded_robot_file("raibo.toml"));
   map.replace(map.find("nominal_rad = [0.0, 0.559836"), 28, "nominal_rad = [0.0, 0.6");
   const TemporaryFolder folder;
   write_file(folder.path("raibo.urdf"), urdf);
   write_file(folder.path("other.toml"), map);
   const ProcessConfig config = config_of("rigid", {"robot=" + folder.path("other.toml")});
-  EXPECT_EQ(config.controller.gate.joint_lower_rad[5], -2.2);
+  EXPECT_EQ(config.controller.gate.joint_lower_rad[5], -2.45);
   EXPECT_EQ(config.controller.gate.speed_limit_radps, all_joints(21.0));
   EXPECT_EQ(config.controller.gate.torque_limit_nm, all_joints(44.0));
   EXPECT_EQ(config.controller.stand.nominal_rad[10], 0.6);

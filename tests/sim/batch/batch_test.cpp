@@ -123,7 +123,7 @@ struct Story {
     drive.kd = static_cast<float>(draw(0.3, 3.0));
     drive.torque_scale = static_cast<float>(draw(0.9, 1.1));
     drive.switch_tick = std::floor(static_cast<float>(draw(0.0, 40.0)));
-    const TorqueSpeedLine line;
+    const TorqueSpeedLine& line = raibo().torque_speed_line;
     drive.stall_torque_nm = number % 3 ? static_cast<float>(line.stall_torque_nm) : 0.0f;
     drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
     drive.target_before = drive.target = start.rigid.q;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "sim/ground/foot_profile.h"
 #include "tests/sim/support.h"
@@ -13,7 +14,7 @@
 namespace sandrunner::sim {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double kTyreRadius_m = 0.0295;
 constexpr double kTyreWidth_m = 0.025;
 
@@ -24,11 +25,11 @@ double radius_by_definition(FootShape shape, double r, double width, double fact
     case FootShape::kTyre:
       return factor * (2.0 * a * width) / (2.0 * (2.0 * a + width));
     case FootShape::kSphere:
-      return factor * (kPi * a * a) / (2.0 * kPi * a);
+      return factor * (pi * a * a) / (2.0 * pi * a);
     case FootShape::kDisc:
       break;
   }
-  return factor * (kPi * r * r) / (2.0 * kPi * r);
+  return factor * (pi * r * r) / (2.0 * pi * r);
 }
 
 /// int_0^z z'^m r_h(z')^n dz' by Simpson's rule in s with z' = z s^2, which takes the root at 0
@@ -107,7 +108,7 @@ ConeFigures figures(const GroundParameters& parameters, const FootProfile<double
   ConeFigures f;
   f.radius = foot.hydraulic_radius(z);
   f.flat_area = flat_area(g, z, f.radius);
-  f.cone_area = (kPi * f.radius * f.radius - f.flat_area) * g.inverse_cos;
+  f.cone_area = (pi * f.radius * f.radius - f.flat_area) * g.inverse_cos;
   f.flat_integral = cone.flat_integral;
   f.cone_integral = cone.cone_integral;
   f.added_mass = g.added_mass * cone.flat_integral;
@@ -171,7 +172,7 @@ TEST(ConeTest, TyreIntegralsMatchDirectQuadrature) {
     for (int i = 0; i < kPanels; ++i) {  // midpoints in s, z' = z s^2
       const double s = (i + 0.5) / kPanels, at = z * s * s;
       const double r = radius_by_definition(FootShape::kTyre, kTyreRadius_m, kTyreWidth_m, 4.0, at);
-      const double weight = kPi * 2.0 * z * s / kPanels;
+      const double weight = pi * 2.0 * z * s / kPanels;
       flat += weight * std::pow(std::fmax(r - k * at, 0.0), 2);
       whole += weight * r * r;
     }

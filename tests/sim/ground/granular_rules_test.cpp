@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/sim/ground/granular_foot.h"
 
@@ -73,8 +74,7 @@ class PlainReading {
     if (pushes) {
       f.raw = f_p;
       if (p_.inertial_drag)
-        f.raw +=
-            p_.drag * recruited * 3.14159265358979323846 * flat_radius * flat_radius * q.v * q.v;
+        f.raw += p_.drag * recruited * std::numbers::pi * flat_radius * flat_radius * q.v * q.v;
       if (p_.added_mass) {
         f.raw += recruited * std::fmax(cone.flat_integral - flat_at_restart_, 0.0) *
                  (q.v - v_before) / kDt_s;

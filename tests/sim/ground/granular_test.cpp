@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "tests/sim/ground/granular_foot.h"
@@ -148,7 +149,7 @@ TEST(GranularTest, StrokeResistanceIsTheSameInAllDirections) {
     return foot.move(at, {0.3 + 0.08 * std::cos(angle), -0.2 + 0.08 * std::sin(angle), 0.06}, 300);
   };
   const double along_x = push(0.0).stroke;
-  for (const double angle : {0.7, 1.5707963267948966, 2.5, -2.0}) {
+  for (const double angle : {0.7, std::numbers::pi / 2.0, 2.5, -2.0}) {
     const GranularForce<double> f = push(angle);
     EXPECT_NEAR(f.stroke, along_x, 1e-9);
     EXPECT_NEAR(f.direction_x, std::cos(angle), 1e-9);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "rt/base/errors.h"
 #include "sim/ground/terrain_description.h"
@@ -52,7 +53,7 @@ TEST(TerrainTest, PresetsHaveTheirFigures) {
   EXPECT_EQ(sand.friction, 0.8);
   // The rest: defaults of the authors' code.
   EXPECT_EQ(sand.recruitment, 2.0);
-  EXPECT_NEAR(sand.cone_angle_rad, 3.14159265358979323846 / 3.0, 1e-15);
+  EXPECT_NEAR(sand.cone_angle_rad, std::numbers::pi / 3.0, 1e-15);
   EXPECT_EQ(sand.mass_scaling, 2.7);
   EXPECT_EQ(sand.packing, 0.57);
   EXPECT_EQ(sand.grain_density_kgpm3, 1000.0);
@@ -133,7 +134,7 @@ TEST(TerrainTest, SimulatorTableRefusesBadValues) {
     ConfigTree config;
     config.add_text(toml, "my.toml");
     try {
-      read_simulator_config(config);
+      read_simulator_config(config, load_raibo());
       config.reject_unknown();
     } catch (const InputError&) {
       return true;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "sim/lanes/vec.h"
 #include "tests/sim/support.h"
@@ -39,7 +40,7 @@ TEST(SincosTest, DoubleIsWithinTwoUlpsBesideMultiplesOfHalfPi) {
   // Where the reduced argument is small against x, the reduction shows its error.
   double worst = 0.0;
   for (int k = -6000; k <= 6000; ++k) {
-    double x = k * 1.5707963267948966;
+    double x = k * (std::numbers::pi / 2.0);
     for (int i = 0; i < 4; ++i, x = std::nextafter(x, 1e9)) {
       double s, c;
       sincos(x, s, c);
@@ -109,7 +110,7 @@ TEST(QuaternionTest, TurnsOnceAroundInAThousandSteps) {
   // Constant rate about a fixed axis is exact for the exponential map: back to the start after 2
   // pi.
   Quaternion<double> q;
-  const double step = 2.0 * 3.14159265358979323846 / 1000.0;
+  const double step = 2.0 * std::numbers::pi / 1000.0;
   for (int i = 0; i < 1000; ++i) q = integrate(q, Vec3<double>{0.6 * step, 0.0, 0.8 * step});
   EXPECT_NEAR(std::fabs(q.w), 1.0, 1e-13);
   EXPECT_NEAR(q.x, 0.0, 1e-13);

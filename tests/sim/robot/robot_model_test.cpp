@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -63,6 +64,14 @@ TEST(RobotModelTest, ShippedRobotHasTheReferenceFigures) {
   EXPECT_EQ(m.foot_radius_m, 0.0295);
   EXPECT_EQ(m.foot_width_m, 0.025);
   EXPECT_EQ(robot.nominal_height_m, 0.4725);
+  EXPECT_EQ(robot.fold_rad, (std::array<double, 3>{0.0, 1.2, -2.4}));
+  EXPECT_EQ(robot.stand_kp_nmprad, 100.0);
+  EXPECT_EQ(robot.stand_kd_nmsprad, 1.0);
+  EXPECT_EQ(robot.damping_kd_nmsprad, 2.0);
+  EXPECT_EQ(robot.speed_fault_radps, 60.0);
+  EXPECT_EQ(robot.torque_speed_line.stall_torque_nm, 256.0);
+  EXPECT_EQ(robot.torque_speed_line.no_load_speed_radps, 28.1);
+  EXPECT_EQ(robot.motor_constant_nmpsqrtw, 3.0);
   for (int j = 0; j < kNumJoints; ++j) {
     EXPECT_EQ(m.rotor_inertia[j], 0.005741839);
     EXPECT_EQ(m.torque_limit_nm[j], 63.45);
@@ -105,12 +114,6 @@ TEST(RobotModelTest, ShippedRobotIsSymmetric) {
       EXPECT_NEAR(p.inertia.yz, -q.inertia.yz, 1e-15);
     }
   }
-}
-
-TEST(RobotModelTest, LyingPoseTouchesTheGroundWithItsLowestPart) {
-  const Robot robot = load_raibo();
-  EXPECT_GE(robot.lying_height_m, 0.03625 + 0.06 - 1e-12);
-  EXPECT_LT(robot.lying_height_m, 0.3);
 }
 
 TEST(RobotModelTest, PublishedDescriptionLoadsWithTheSameFigures) {
@@ -269,6 +272,52 @@ TEST(RobotModelTest, RefusesUnknownAndWrongKeysOfTheMap) {
     EXPECT_NE(what(map).find(key), std::string::npos) << what(map);
   }
   EXPECT_THROW(load_robot("/nonexistent/robot.toml"), InputError);
+}
+
+TEST(RobotModelTest, EveryFigureOfTheMapIsNeeded) {
+  // But not those that follow from others.
+  const std::string optional[] = {"nominal_height_m", "constant_nmpsqrtw"};
+  std::istringstream lines(shipped_map());
+  std::string table;
+  int needed = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("[")) table = line.substr(1, line.find(']') - 1) + ".";
+    const auto end = line.find(" = ");
+    if (line.starts_with("#") || end == std::string::npos) continue;
+    const std::string key = line.substr(0, end);
+    const std::string what =
+        refusal(shipped_urdf(), edited(shipped_map(), "\n" + key + " = ", line, ""));
+    if (std::ranges::find(optional, key) != std::end(optional)) {
+      EXPECT_EQ(what, "(accepted)");
+    } else {
+      EXPECT_EQ(what, "my.toml: '" + table + key + "' is missing");
+      ++needed;
+    }
+  }
+  EXPECT_EQ(needed, 26);
+}
+
+TEST(RobotModelTest, FollowsWhatTheMapLeavesOut) {
+  const std::string map =
+      edited(edited(shipped_map(), "nominal_height_m", "nominal_height_m = 0.4725", ""),
+             "constant_nmpsqrtw", "constant_nmpsqrtw = 3.0", "");
+  const Robot robot = parse_robot(map, "my.toml", shipped_urdf(), "my.urdf");
+  EXPECT_NEAR(robot.nominal_height_m, 0.4725, 5e-5);
+  // 0.253 N m/A, 0.32 ohm, gear 6.75.
+  EXPECT_NEAR(robot.motor_constant_nmpsqrtw, 6.75 * 0.253 / std::sqrt(0.32), 2e-3);
+}
+
+TEST(RobotModelTest, RefusesAPosePastAStop) {
+  for (const std::string pose : {"nominal_rad", "lying_rad", "fold_rad"}) {
+    const std::string map = shipped_map();
+    const auto at = map.find(pose + " = ");
+    const std::string line = map.substr(at, map.find('\n', at) - at);
+    const std::string what =
+        refusal(shipped_urdf(), edited(map, pose, line, pose + " = [0.0, 0.5, -2.5]"));
+    EXPECT_EQ(what, "my.toml: pose." + pose +
+                        ": -2.5 rad is past a stop of joint 'LF_KFE', which turns from -2.4696 to "
+                        "-0.0262");
+  }
 }
 
 TEST(RobotModelTest, MergesFixedFootAndRotatedInertialFrames) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/robot/clearance.h"
 #include "tests/sim/support.h"
 #include "tests/support/csv.h"
 
@@ -307,7 +308,8 @@ TEST(RobotStepTest, BaseAndKneesAreHardAgainstEveryGround) {
     Bench bench(ground_of_kind(kind));
     RigidState<double>& x = bench.state.rigid;
     x.q = bench.robot.lying_rad;
-    x.position.z = bench.robot.lying_height_m + 0.02;
+    const auto level = [](double, double) { return 0.0; };
+    x.position.z = 0.02 - lowest_clearance(bench.robot.model, x.q, level);
     double lowest = 1.0;
     for (int i = 0; i < 8000; ++i) {
       std::array<double, kNumJoints> torque;

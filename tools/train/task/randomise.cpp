@@ -146,7 +146,7 @@ void Task::new_robot(int env, Env& e) {
   drive.kp = static_cast<float>(config_.policy.kp_nmprad * spread(r.kp_spread));
   drive.kd = static_cast<float>(config_.policy.kd_nmsprad * spread(r.kd_spread));
   drive.torque_scale = static_cast<float>(spread(r.torque_spread));
-  const sim::TorqueSpeedLine line;
+  const sim::TorqueSpeedLine& line = robot_.torque_speed_line;
   drive.stall_torque_nm = r.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
   drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
   drive.switch_tick =
@@ -180,7 +180,7 @@ void Task::hard_reset(int env, Env& e) {
   x.position = {draw(5.0), draw(5.0), 0.0f};
   new_ground(env, e, x.position.x);
   const sim::Ground<float>& ground = e.terrain.ground[0];
-  const float height = sim::surface_height(e.terrain, x.position.x, x.position.y);
+  const float height = sim::surface_at(e.terrain, x.position.x, x.position.y).height;
   x.position.z =
       static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
   const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};

@@ -203,7 +203,7 @@ class LiveRobot {
   }
 
   DdsOperator& operator_;
-  ControllerConfig controller_;
+  ControllerConfig controller_ = test_robot();
   std::unique_ptr<FakeLoop> loop_;
   std::atomic<bool> end_{false}, broken_{false};
   std::atomic<std::uint64_t> ticks_{0};

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rt/core/controller.h"
+
+namespace sandrunner {
+
+/// What the controller is told of a robot of round numbers; everything else at its default.
+inline ControllerConfig test_robot() {
+  ControllerConfig c;
+  c.walk.kp_nmprad = 50.0;
+  c.walk.kd_nmsprad = 0.5;
+  c.stand.kp_nmprad = 100.0;
+  c.stand.kd_nmsprad = 1.0;
+  c.stand.fold_rad = {0.0, 1.2, -2.4};
+  c.damping.kd_nmsprad = 2.0;
+  for (int j = 0; j < kNumJoints; j += kJointsPerLeg) {
+    const auto set = [&](int joint, double nominal_rad, double lower_rad, double upper_rad) {
+      c.stand.nominal_rad[joint] = nominal_rad;
+      c.gate.joint_lower_rad[joint] = lower_rad;
+      c.gate.joint_upper_rad[joint] = upper_rad;
+    };
+    set(j, 0.0, -1.5, 1.5);
+    set(j + 1, 0.6, -3.0, 3.0);
+    set(j + 2, -1.2, -2.5, 0.0);
+  }
+  c.gate.speed_limit_radps = all_joints(25.0);
+  c.gate.speed_fault_radps = 60.0;
+  c.gate.torque_limit_nm = all_joints(60.0);
+  return c;
+}
+
+}  // namespace sandrunner
