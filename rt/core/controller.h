@@ -77,9 +77,9 @@ struct ControllerConfig {
 /// padding.
 struct ControllerState {
   Mode mode = Mode::kPassive;
-  std::uint64_t entered = 0;          ///< 1 once the first step has entered `mode`
-  std::uint64_t request_id = 0;       ///< latest request that was considered
-  std::uint64_t disable_tick = 0;     ///< Fault: when the drives go off
+  std::uint64_t entered = 0;       ///< 1 once the first step has entered `mode`
+  std::uint64_t request_id = 0;    ///< latest request that was considered
+  std::uint64_t disable_tick = 0;  ///< Fault: when the drives go off
 
   // Motion of StandUp and Stand: from `from_rad` to `to_rad` between two ticks.
   JointArray<double> from_rad{};

@@ -25,13 +25,11 @@ constexpr TickField field(const char* name, std::size_t offset) {
 }
 
 // The compiler finds place, size and kind of a member: a name cannot stand for another's values.
-#define FIELD(name, member) \
-  field<decltype(TickRecord::member)>(name, offsetof(TickRecord, member))
+#define FIELD(name, member) field<decltype(TickRecord::member)>(name, offsetof(TickRecord, member))
 // SafeCommand keeps its members to itself; it is a JointCommand and one word.
-#define COMMAND_FIELD(name, member)             \
-  field<decltype(JointCommand::member)>(name,   \
-                                        offsetof(TickRecord, output.command) + \
-                                            offsetof(JointCommand, member))
+#define COMMAND_FIELD(name, member)      \
+  field<decltype(JointCommand::member)>( \
+      name, offsetof(TickRecord, output.command) + offsetof(JointCommand, member))
 
 // clang-format off
 constexpr std::array kFields = {

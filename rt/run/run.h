@@ -18,14 +18,14 @@ struct RunParts {
   const ControllerConfig& controller;
   Policy* policy = nullptr;  ///< null: the robot only stands up
   const CommandSource& command;
-  RunPlan plan;
+  RunPlan plan = {};
   /// Operator in place of the script that `command` and `plan` make; null: that script.
   OperatorInput* live = nullptr;
-  RunScene scene;
-  bool keep_record = false;                        ///< samples for CSV and pictures
-  std::function<void(const RunSample&)> progress;  ///< every half second of the robot's time
-  TickTap tap;                                     ///< gets every tick: recorders, telemetry
-  const std::atomic<bool>& interrupt;              ///< ends the run in damping
+  RunScene scene = {};
+  bool keep_record = false;                             ///< samples for CSV and pictures
+  std::function<void(const RunSample&)> progress = {};  ///< every half second of the robot's time
+  TickTap tap = {};                                     ///< gets every tick: recorders, telemetry
+  const std::atomic<bool>& interrupt;                   ///< ends the run in damping
 };
 
 /// Runs the robot in one thread, as fast as it goes: from lying to standing, the walk, and standing

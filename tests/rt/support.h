@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "rt/base/errors.h"
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
+#include "rt/run/scene.h"
+#include "sim/simulator.h"
 #include "tests/policy/random_policy.h"
 
 namespace sandrunner {
@@ -33,11 +36,46 @@ inline Policy random_policy(std::uint64_t seed = 1) {
   return {file.spec, Network(file.parameters)};
 }
 
-/// `run_lockstep` under "1,0,0", uninterrupted.
+/// A run of the simulated robot.
+struct SimulatedRun {
+  const ProcessConfig& config;
+  Policy* policy = nullptr;
+  std::string command = "1,0,0";
+  RunPlan plan = {};
+  bool keep_record = false;
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(const RunSample&)> progress = {};
+  TickTap tap = {};
+  OperatorInput* live = nullptr;
+  bool realtime = false;
+  Clock* clock = nullptr;  ///< null: the system's
+};
+
+inline RunResult simulate(const SimulatedRun& run) {
+  sim::Simulator simulator(run.config.robot, run.config.simulator);
+  if (!run.plan.start_walking) simulator.reset_lying();
+  const CommandSource command(run.command);
+  const std::atomic<bool> nobody{false};
+  const RunParts parts{.robot = simulator,
+                       .controller = run.config.controller,
+                       .policy = run.policy,
+                       .command = command,
+                       .plan = run.plan,
+                       .live = run.live,
+                       .scene = scene_of(run.config, run.policy ? run.policy->spec().name : ""),
+                       .keep_record = run.keep_record,
+                       .progress = run.progress,
+                       .tap = run.tap,
+                       .interrupt = run.interrupt ? *run.interrupt : nobody};
+  SystemClock system;
+  return run.realtime ? run_in_realtime(parts, run.config.realtime, run.clock ? *run.clock : system)
+                      : run_in_lockstep(parts);
+}
+
+/// In lockstep under "1,0,0", uninterrupted.
 inline RunResult run_once(const ProcessConfig& config, Policy* policy, const RunPlan& plan,
                           bool keep_record = false) {
-  const std::atomic<bool> interrupt{false};
-  return run_lockstep(config, policy, CommandSource("1,0,0"), plan, keep_record, interrupt, {});
+  return simulate({.config = config, .policy = policy, .plan = plan, .keep_record = keep_record});
 }
 
 /// Checks that `action` is refused in one line that has all of `parts`.

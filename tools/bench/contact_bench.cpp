@@ -48,7 +48,7 @@ Drop random_drop(std::uint64_t index, const sim::FootProfile<double>& foot) {
   };
   Drop drop{};
   drop.mass_kg = draw(2.5, 10.0);
-  drop.impact_speed_mps = std::sqrt(2.0 * sim::kGravity_mps2 * draw(0.02, 0.25));
+  drop.impact_speed_mps = std::sqrt(2.0 * kGravity_mps2 * draw(0.02, 0.25));
   sim::GroundParameters p;
   p.sigma_flat_npm3 = draw(1e6, 10e6);
   p.sigma_cone_npm3 = draw(0.15e6, 0.6e6);
@@ -75,7 +75,7 @@ Depths drop_on_cone(const sim::FootProfile<double>& foot, const Drop& drop) noex
         sim::granular_step(drop.ground, foot, drop.x_m, drop.y_m, z, v, drop.slip_mps.x,
                            drop.slip_mps.y, 1.0 / kDropStep_s, contact)
             .normal;
-    v += kDropStep_s * (sim::kGravity_mps2 - force * inverse_mass);
+    v += kDropStep_s * (kGravity_mps2 - force * inverse_mass);
     z += kDropStep_s * v;
   }
   return {z, before};
@@ -90,7 +90,7 @@ Depths drop_on_drft(const Drft& foot, const Drop& drop) noexcept {
   double z = -kStartHeight_m, v = drop.impact_speed_mps, before = 0.0;
   for (int i = 0; i < kDropSteps; ++i) {
     if (i == kDropSteps - kStepsBefore) before = z;
-    const double free = v + kDropStep_s * sim::kGravity_mps2;
+    const double free = v + kDropStep_s * kGravity_mps2;
     motion.depth_m = z - kFootRadius_m;
     motion.velocity_mps.z = -free;
     const double with_force =

@@ -10,8 +10,10 @@
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
+#include "rt/run/process_config.h"
 #include "rt/run/run.h"
 #include "sim/ground/terrain_description.h"
+#include "sim/simulator.h"
 #include "tools/bench/realtime_bench.h"
 
 namespace sandrunner::bench {
@@ -27,10 +29,14 @@ struct Wakeups {
 
 Wakeups ours(const ProcessConfig& config, Policy& policy) {
   const std::atomic<bool> nobody{false};
-  const RunResult result =
-      run_realtime(config, &policy, CommandSource("1,0,0"),
-                   {.walk_s = kSample_s, .start_walking = true}, false, nobody, {});
-  const LogHistogram& late = result.realtime->control.late;
+  sim::Simulator simulator(config.robot, config.simulator);
+  const CommandSource command("1,0,0");
+  RunScript script(command, {.walk_s = kSample_s, .start_walking = true}, true);
+  SystemClock clock;
+  const RealtimeEnd end = run_realtime(
+      simulator, config.controller, config.realtime, Mode::kWalk, &policy, script, nobody,
+      [](const TickRecord&) {}, clock);
+  const LogHistogram& late = end.report.control.late;
   return {1e-3 * static_cast<double>(late.quantile_ns(0.5)),
           1e-3 * static_cast<double>(late.quantile_ns(0.99))};
 }

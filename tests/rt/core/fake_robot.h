@@ -23,7 +23,7 @@ class FakeRobot : public RobotIo {
     now.joints.position_rad = posture_rad;
   }
 
-  void read(SensorFrame& frame) noexcept override {
+  void read(std::uint64_t, SensorFrame& frame) noexcept override {
     now.joints.tick.fill(now.tick);
     now.imu.tick = now.tick;
     frame = now;
@@ -64,7 +64,7 @@ class FakeLoop {
 
   /// One tick. `spoil` may change what the controller is given.
   void tick() {
-    robot.read(input.sensors);
+    robot.read(robot.now.tick, input.sensors);
     input.policy = policy;
     ControllerInput seen = input;
     if (spoil) spoil(seen);

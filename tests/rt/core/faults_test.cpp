@@ -169,7 +169,7 @@ TEST(FaultsTest, PassiveIgnoresHowTheRobotLies) {
 TEST(FaultsTest, FaultInPassiveDoesNotSwitchDrivesOn) {
   FakeLoop loop;
   loop.run_s(0.01);
-  loop.spoil = [](ControllerInput& seen) { seen.sensors.joints.tick = 0; };
+  loop.spoil = [](ControllerInput& seen) { seen.sensors.joints.tick.fill(0); };
   loop.tick();
   EXPECT_EQ(loop.controller.state().gate.first_fault, Fault::kJointsStale);
   EXPECT_EQ(loop.output.mode, Mode::kFault);

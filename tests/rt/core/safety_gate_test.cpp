@@ -68,7 +68,9 @@ TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
   EXPECT_EQ(passed.joints().kp_nmprad, wanted.kp_nmprad);
   EXPECT_EQ(passed.joints().kd_nmsprad, wanted.kd_nmsprad);
   EXPECT_EQ(passed.joints().feedforward_nm, wanted.feedforward_nm);
-  EXPECT_EQ(state.counters.position_clamped + state.counters.velocity_clamped + state.counters.torque_clamped, 0u);
+  EXPECT_EQ(state.counters.position_clamped + state.counters.velocity_clamped +
+                state.counters.torque_clamped,
+            0u);
 }
 
 TEST_F(SafetyGateTest, ClampsAndCountsCommandedPositions) {
@@ -124,7 +126,7 @@ TEST_F(SafetyGateTest, LimitsAreCountedWithoutAFault) {
   sensors.joints.velocity_radps[4] = -60.0;
   tilt(59.999);
   sensors.tick = 40;
-  sensors.joints.tick = 40 - 8;
+  sensors.joints.tick.fill(40 - 8);
   sensors.imu.tick = 0;
   EXPECT_EQ(judge(Mode::kWalk), 0u);
   EXPECT_EQ(state.counters.joint_past_stop, 1u);
@@ -140,7 +142,7 @@ TEST_F(SafetyGateTest, NothingIsCountedWithinLimits) {
   sensors.joints.velocity_radps[4] = 25.0;
   tilt(44.999);
   sensors.tick = 10;
-  sensors.joints.tick = 8;
+  sensors.joints.tick.fill(8);
   sensors.imu.tick = 2;
   EXPECT_EQ(judge(Mode::kWalk), 0u);
   EXPECT_EQ(state.counters.joint_past_stop + state.counters.joint_too_fast + state.counters.tilted +
@@ -207,9 +209,47 @@ TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
   EXPECT_EQ(state.faults, static_cast<std::uint64_t>(Fault::kJointTorque));
 }
 
+TEST_F(SafetyGateTest, SilentDriveIsToldFromAllTheOthers) {
+  sensors.tick = 100;
+  sensors.joints.tick.fill(100);
+  sensors.imu.tick = 100;
+  sensors.joints.tick[7] = 100 - config.joints_fault_ticks - 1;
+  EXPECT_EQ(judge(Mode::kPassive), static_cast<std::uint64_t>(Fault::kJointsStale));
+  EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 7);
+  EXPECT_EQ(state.counters.joints_late, 1u);
+}
+
+TEST_F(SafetyGateTest, FaultOfADriveIsAFaultInEveryModeAndNamesItsJoint) {
+  for (const Mode mode : {Mode::kPassive, Mode::kDamping, Mode::kStand, Mode::kWalk}) {
+    state = {};
+    sensors.joints.drive_fault = {};
+    EXPECT_EQ(judge(mode), 0u);
+    sensors.joints.drive_fault[2] = 33;
+    sensors.joints.drive_fault[10] = 1;
+    EXPECT_EQ(judge(mode), static_cast<std::uint64_t>(Fault::kDriveFault));
+    EXPECT_EQ(state.first_fault, Fault::kDriveFault);
+    EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 2 | std::uint64_t{1} << 10);
+  }
+}
+
+TEST_F(SafetyGateTest, EveryJointAtFaultIsNamedUntilTheNextLatch) {
+  sensors.joints.velocity_radps[4] = std::numeric_limits<double>::quiet_NaN();
+  judge(Mode::kWalk);
+  sensors.joints.velocity_radps[4] = 0.0;
+  sensors.joints.velocity_radps[9] = 1e3;
+  judge(Mode::kWalk);
+  EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 4 | std::uint64_t{1} << 9);
+  gate.clear(state);
+  EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 4 | std::uint64_t{1} << 9);
+  sensors.joints.velocity_radps[9] = 0.0;
+  sensors.joints.drive_fault[0] = 5;
+  judge(Mode::kWalk);
+  EXPECT_EQ(state.fault_joints, 1u);
+}
+
 TEST_F(SafetyGateTest, SampleFromTheFutureIsStale) {
   sensors.tick = 100;
-  sensors.joints.tick = 101;
+  sensors.joints.tick.fill(101);
   sensors.imu.tick = 101;
   const std::uint64_t found = judge(Mode::kPassive);
   EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kJointsStale) |

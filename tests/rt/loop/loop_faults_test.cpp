@@ -22,8 +22,8 @@ class SpoiltRobot : public RobotIo {
  public:
   explicit SpoiltRobot(sim::Simulator& simulator) : simulator_(simulator) {}
 
-  void read(SensorFrame& frame) noexcept override {
-    simulator_.read(frame);
+  void read(std::uint64_t tick, SensorFrame& frame) noexcept override {
+    simulator_.read(tick, frame);
     if (spoil && frame.tick >= kDisturbed_tick)
       spoil(frame, last_good_);
     else
@@ -145,7 +145,7 @@ TEST_P(LoopFaultTest, DampsWithinTwoMillisecondsAndStaysSo) {
   };
   while (simulator.state().tick < c.crossed_tick) {
     tick();
-    ASSERT_EQ(loop.output().mode, Mode::kWalk)
+    ASSERT_EQ(loop.record().output.mode, Mode::kWalk)
         << "too early: " << fault_name(gate.first_fault) << " in tick " << gate.first_fault_tick;
     ASSERT_GT(robot.last.joints().kp_nmprad[0], 0.0);
   }
@@ -156,7 +156,7 @@ TEST_P(LoopFaultTest, DampsWithinTwoMillisecondsAndStaysSo) {
   } while (!only_damps(robot.last) && ticks < 100);
   EXPECT_LE(ticks, kTicksIn2ms);
   EXPECT_EQ(gate.first_fault, c.fault);
-  EXPECT_EQ(loop.output().mode, Mode::kFault);
+  EXPECT_EQ(loop.record().output.mode, Mode::kFault);
   for (int n = 0; n < 200; ++n) {
     tick();
     ASSERT_TRUE(only_damps(robot.last)) << n;

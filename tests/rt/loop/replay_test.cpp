@@ -13,15 +13,12 @@ namespace {
 std::vector<TickRecord> recorded_run(const ProcessConfig& config, bool realtime) {
   std::vector<TickRecord> ticks;
   Policy policy = load_shipped_policy();
-  const std::atomic<bool> nobody{false};
-  const auto tap = [&](const TickRecord& tick) { ticks.push_back(tick); };
-  const RunPlan plan{.walk_s = 1.0, .start_walking = realtime};
-  if (realtime) {
-    RealtimeHooks hooks;
-    run_realtime(config, &policy, CommandSource("1,0,0.5"), plan, false, nobody, {}, tap, hooks);
-  } else {
-    run_lockstep(config, &policy, CommandSource("1,0,0.5"), plan, false, nobody, {}, tap);
-  }
+  simulate({.config = config,
+            .policy = &policy,
+            .command = "1,0,0.5",
+            .plan = {.walk_s = 1.0, .start_walking = realtime},
+            .tap = [&](const TickRecord& tick) { ticks.push_back(tick); },
+            .realtime = realtime});
   return ticks;
 }
 
@@ -68,7 +65,15 @@ TEST_F(ReplayTest, FlippedInputBitIsFoundByWhatItChanges) {
   // Words whose every bit decides something while the robot walks.
   const std::size_t at = 20000;
   ASSERT_EQ(ticks()[at].output.mode, Mode::kWalk);
-  for (const std::size_t word : {3u, 14u, 56u, 90u, 101u, 165u}) {
+  const auto word_of = [](const std::string& name) {
+    std::size_t word = 0;
+    while (tick_word_name(word) != name) ++word;
+    return word;
+  };
+  for (const char* name :
+       {"joint_position_rad[2]", "joint_velocity_radps[1]", "imu_orientation_wxyz[1]",
+        "policy_target_rad[3]", "operator_vx_mps", "command_kp_nmprad[5]"}) {
+    const std::size_t word = word_of(name);
     std::vector<TickRecord> spoilt(ticks().begin(), ticks().end());
     auto words = std::bit_cast<TickWords>(spoilt[at]);
     words[word] ^= 1;

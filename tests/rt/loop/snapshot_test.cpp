@@ -32,7 +32,7 @@ struct Rig {
       loop.tick(command);
     }
   }
-  std::uint64_t hash() const {
+  std::uint64_t hash() {
     StateHash hash;
     simulator.add_to(hash);
     loop.add_to(hash);
@@ -57,17 +57,17 @@ void expect_same_future(const ProcessConfig& config, Mode start, std::uint64_t s
   Rig fresh(config, start, policy);
   EXPECT_NE(fresh.hash(), hash_then);
   fresh.simulator.restore(simulator_state);
-  fresh.loop.restore(loop_state);
+  fresh.loop.restore(loop_state, snapshot_tick);
   EXPECT_EQ(fresh.hash(), hash_then);
   fresh.run(end_tick);
   EXPECT_EQ(fresh.hash(), rig.hash());
-  EXPECT_EQ(fresh.loop.output().mode, rig.loop.output().mode);
+  EXPECT_EQ(fresh.loop.record().output.mode, rig.loop.record().output.mode);
 
   // One that has already done something else, too.
   Rig used(config, start, policy);
   used.run(333);
   used.simulator.restore(simulator_state);
-  used.loop.restore(loop_state);
+  used.loop.restore(loop_state, snapshot_tick);
   used.run(end_tick);
   EXPECT_EQ(used.hash(), rig.hash());
 }

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <array>
 #include <limits>
 #include <mutex>
 #include <thread>
@@ -19,7 +20,34 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-WatchedDeeds control_deeds, policy_deeds;
+/// A clock that watches the threads that look at it: what they do from one sleep to the next.
+class WatchingClock final : public SystemClock {
+ public:
+  void sleep_until(std::int64_t time_ns) noexcept override {
+    thread_local int thread = -1;
+    if (thread < 0) {
+      thread = threads_.fetch_add(1);
+    } else {
+      add(end_watch(), deeds[static_cast<std::size_t>(thread)]);
+    }
+    begin_watch();
+    SystemClock::sleep_until(time_ns);
+  }
+  int threads() const { return threads_; }
+
+  std::array<WatchedDeeds, 2> deeds;
+
+ private:
+  static void add(const WatchedDeeds& more, WatchedDeeds& sum) noexcept {
+    sum.allocations += more.allocations;
+    sum.frees += more.frees;
+    sum.locks += more.locks;
+    sum.system_calls += more.system_calls;
+    sum.page_faults += more.page_faults;
+    if (more.system_calls > 0) sum.last_system_call = more.last_system_call;
+  }
+  std::atomic<int> threads_{0};
+};
 
 void expect_clean(const WatchedDeeds& deeds) {
   EXPECT_EQ(deeds.allocations, 0) << deeds.text();
@@ -32,42 +60,44 @@ TEST(LoopProofTest, NeitherThreadAllocatesLocksCallsTheKernelOrFaults) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
   DdsOperator op(1200);
-  RealtimeHooks hooks;
-  hooks.op = &op;
-  hooks.control = {.entered = begin_watch, .left = []() noexcept { control_deeds = end_watch(); }};
-  hooks.policy = {.entered = begin_watch, .left = []() noexcept { policy_deeds = end_watch(); }};
   // Commands all the time, a change of mode, a fault, the end.
   std::atomic<bool> interrupt{false};
-  OperatorWish wish;
-  int looks = 0;
+  OperatorRequests asked;
+  int ticks = 0;
   bool walked = false, stood = false, faulted = false;
-  hooks.meanwhile = [&](PolicyThread&) {
-    ++looks;
-    walked = walked || op.mode() == Mode::kWalk;
-    stood = stood || op.mode() == Mode::kStand;
-    faulted = faulted || op.mode() == Mode::kFault;
-    if (looks == 60) {
-      wish.request = ModeRequest::kStand;
-      ++wish.request_number;
+  const auto at_each_tick = [&](const TickRecord& tick) {
+    ++ticks;
+    walked = walked || tick.output.mode == Mode::kWalk;
+    stood = stood || tick.output.mode == Mode::kStand;
+    faulted = faulted || tick.output.mode == Mode::kFault;
+    if (ticks == 1200) {
+      asked.request = ModeRequest::kStand;
+      ++asked.request_number;
     }
-    wish.velocity = {stood ? kNan : 0.5, 0.0, 0.1 * (looks % 3)};
-    ++wish.velocity_number;
-    op.wish(wish);
-    interrupt = faulted || looks > 2000;
+    asked.velocity = {stood ? kNan : 0.5, 0.0, 0.1 * (ticks % 3)};
+    ++asked.velocity_number;
+    op.ask(asked);
+    interrupt = faulted || ticks > 40000;
   };
-  const RunResult result = run_realtime(config, &policy, CommandSource("0,0,0"),
-                                        {.start_walking = true}, false, interrupt, {}, {}, hooks);
+  WatchingClock clock;
+  const RunResult result = simulate({.config = config,
+                                     .policy = &policy,
+                                     .plan = {.start_walking = true},
+                                     .interrupt = &interrupt,
+                                     .tap = at_each_tick,
+                                     .live = &op,
+                                     .realtime = true,
+                                     .clock = &clock});
+  EXPECT_EQ(clock.threads(), 2);
   EXPECT_TRUE(walked);
   EXPECT_TRUE(stood);
   EXPECT_TRUE(faulted);
   EXPECT_EQ(result.fall_reason, "non_finite_command");
   EXPECT_EQ(result.realtime->records_dropped, 0u);
-  expect_clean(control_deeds);
-  expect_clean(policy_deeds);
+  for (const WatchedDeeds& deeds : clock.deeds) expect_clean(deeds);
   ASSERT_FALSE(result.realtime->setup.empty());
   if (result.realtime->setup.front().obtained) {  // without locked memory pages come and go
-    EXPECT_EQ(control_deeds.page_faults, 0);
-    EXPECT_EQ(policy_deeds.page_faults, 0);
+    for (const WatchedDeeds& deeds : clock.deeds) EXPECT_EQ(deeds.page_faults, 0);
   }
 }
 

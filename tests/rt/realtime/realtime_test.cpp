@@ -10,17 +10,16 @@ namespace sandrunner {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const std::atomic<bool> kNobodyInterrupts{false};
 
-RunResult run_live(LiveOperator& op, const std::function<void(PolicyThread&)>& meanwhile,
-                   const std::atomic<bool>& interrupt = kNobodyInterrupts) {
+RunResult run_live(LiveOperator& op, const std::function<void()>& at_each_tick) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  RealtimeHooks hooks;
-  hooks.op = &op;
-  hooks.meanwhile = meanwhile;
-  return run_realtime(config, &policy, CommandSource("0,0,0"), {.start_walking = true}, false,
-                      interrupt, {}, {}, hooks);
+  return simulate({.config = config,
+                   .policy = &policy,
+                   .plan = {.start_walking = true},
+                   .tap = [&](const TickRecord&) { at_each_tick(); },
+                   .live = &op,
+                   .realtime = true});
 }
 
 /// Actions that follow each other, each once its condition holds.
@@ -41,9 +40,10 @@ class Steps {
 TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  const RunResult result =
-      run_realtime(config, &policy, CommandSource("1,0,0"), {.walk_s = 2.0, .start_walking = true},
-                   false, kNobodyInterrupts, {});
+  const RunResult result = simulate({.config = config,
+                                     .policy = &policy,
+                                     .plan = {.walk_s = 2.0, .start_walking = true},
+                                     .realtime = true});
   EXPECT_TRUE(result.survived) << result.fall_reason;
   ASSERT_TRUE(result.realtime);
   const RealtimeReport& r = *result.realtime;
@@ -56,14 +56,14 @@ TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
   EXPECT_EQ(r.policy.steps + r.policy.missed, r.control.releases);
   EXPECT_EQ(r.policy.step.count(), r.policy.steps);
   EXPECT_EQ(r.records_dropped, 0u);
-  EXPECT_NEAR(result.figures.mean_velocity_mps[0], 1.0, 0.2);
+  EXPECT_NEAR(result.figures.motion->mean_velocity_mps[0], 1.0, 0.2);
 }
 
 TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
   LiveOperator op;
   bool stood = false, walked_again = false;
   Steps steps;
-  const RunResult result = run_live(op, [&](PolicyThread&) {
+  const RunResult result = run_live(op, [&] {
     steps.when(0, op.mode() == Mode::kWalk, [&] { op.want(VelocityCommand{0.5, 0.0, 0.0}); });
     steps.when(1, op.time_s() > 0.5, [&] { op.want(ModeRequest::kStand); });
     steps.when(2, op.mode() == Mode::kStand, [&] {
@@ -82,32 +82,10 @@ TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
             result.realtime->control.releases);
 }
 
-TEST(RealtimeTest, StalledPolicyIsHeldThenDamped) {
-  LiveOperator op;
-  double stalled_s = 0.0, damped_s = 0.0;
-  run_live(op, [&](PolicyThread& policy) {
-    if (stalled_s == 0.0 && op.time_s() > 0.3) {
-      policy.stall(true);
-      stalled_s = op.time_s();
-    }
-    if (stalled_s > 0.0 && damped_s == 0.0 && op.mode() == Mode::kFault) {
-      damped_s = op.time_s();
-      op.end();
-    }
-    if (op.time_s() > 5.0) op.end();
-  });
-  ASSERT_GT(damped_s, 0.0);
-  EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kPolicyStale));
-  // gate.policy_fault_ticks = 120 after the input of the last answer; this thread looks every 5 ms.
-  const double held_s = damped_s - stalled_s;
-  EXPECT_GT(held_s, 0.015);
-  EXPECT_LT(held_s, 0.060);
-}
-
 TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
   LiveOperator op;
   bool sent = false;
-  run_live(op, [&](PolicyThread&) {
+  run_live(op, [&] {
     if (!sent && op.time_s() > 0.2) {
       op.want(VelocityCommand{kNan, 0.0, 0.0});
       sent = true;
@@ -120,7 +98,7 @@ TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
 TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedAlsoIfItWasReset) {
   LiveOperator op;
   Steps steps;
-  const RunResult result = run_live(op, [&](PolicyThread&) {
+  const RunResult result = run_live(op, [&] {
     steps.when(0, op.time_s() > 0.2, [&] { op.want(VelocityCommand{kNan, 0.0, 0.0}); });
     steps.when(1, op.mode() == Mode::kFault, [&] { op.want(VelocityCommand{}); });
     steps.when(2, op.time_s() > 2.6, [&] { op.want(ModeRequest::kResetFault); });
@@ -137,15 +115,17 @@ TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
   std::atomic<bool> interrupt{false};
-  RealtimeHooks hooks;
-  int looks = 0;
-  hooks.meanwhile = [&](PolicyThread&) { interrupt = ++looks > 40; };
   const RunResult result =
-      run_realtime(config, &policy, CommandSource("1,0,0"), {.walk_s = 60.0, .start_walking = true},
-                   true, interrupt, {}, {}, hooks);
+      simulate({.config = config,
+                .policy = &policy,
+                .plan = {.walk_s = 60.0, .start_walking = true},
+                .keep_record = true,
+                .interrupt = &interrupt,
+                .tap = [&](const TickRecord& tick) { interrupt = tick.input.sensors.tick > 800; },
+                .realtime = true});
   EXPECT_TRUE(result.interrupted);
   EXPECT_TRUE(result.survived);
-  EXPECT_LT(result.simulated_s, 10.0);
+  EXPECT_LT(result.end.time_s, 10.0);
   EXPECT_EQ(result.record.samples.back().mode, Mode::kDamping);
 }
 
@@ -155,8 +135,10 @@ TEST(RealtimeTest, RequiredProcessorThatIsRefusedIsBadInput) {
   const ProcessConfig config = config_of(
       "dry-sand", {"realtime.affinity=require", "realtime.control_cpu=1023"}, &policy.spec());
   const auto start = [&] {
-    run_realtime(config, &policy, CommandSource("1,0,0"), {.walk_s = 1.0, .start_walking = true},
-                 false, kNobodyInterrupts, {});
+    simulate({.config = config,
+              .policy = &policy,
+              .plan = {.walk_s = 1.0, .start_walking = true},
+              .realtime = true});
   };
   expect_refused(start, {"control thread processor", "1023"});
 }

@@ -285,7 +285,7 @@ TEST(RunPicturesTest, StripShowsTheRobotInEveryViewAndItsFootprints) {
 
 TEST(RunPicturesTest, PicturesOfOddRunsAreDrawn) {
   RunRecord hills = trot(3.0, hilly, 0.0);
-  hills.terrain = "rigid";
+  hills.scene.terrain = "rigid";
   draw_run_strip(hills, temporary("hills_strip.png"));
   draw_run_plot(hills, temporary("hills_plot.png"));
 
@@ -337,7 +337,7 @@ TEST(RunCsvTest, EveryRowHasAValueForEveryColumn) {
   std::ifstream file(path);
   std::string line;
   ASSERT_TRUE(std::getline(file, line));
-  const std::vector<std::string> columns = csv_columns();
+  const std::vector<std::string> columns = csv_columns(record.scene);
   std::string header;
   for (const std::string& column : columns) header += (header.empty() ? "" : ",") + column;
   EXPECT_EQ(line, header);

@@ -55,8 +55,8 @@ TEST(RunTest, StandsUpWithNoisyAndLateSensors) {
                                           "sim.noise.linear_acceleration_mps2=0.2"};
   const RunResult result = run_once(config_of("rigid", noisy), nullptr, {});
   EXPECT_TRUE(result.survived) << result.fall_reason;
-  EXPECT_NE(result.state_hash, run_once(config_of("rigid"), nullptr, {}).state_hash);
-  EXPECT_EQ(result.state_hash, run_once(config_of("rigid", noisy), nullptr, {}).state_hash);
+  EXPECT_NE(result.end.state_hash, run_once(config_of("rigid"), nullptr, {}).end.state_hash);
+  EXPECT_EQ(result.end.state_hash, run_once(config_of("rigid", noisy), nullptr, {}).end.state_hash);
 }
 
 TEST(RunTest, HashIsTheSameTwiceWithAndWithoutRecord) {
@@ -66,11 +66,11 @@ TEST(RunTest, HashIsTheSameTwiceWithAndWithoutRecord) {
     Policy policy = random_policy();
     const RunResult plain = run_once(config, &policy, plan);
     const RunResult recorded = run_once(config, &policy, plan, true);
-    EXPECT_EQ(plain.state_hash, recorded.state_hash);
+    EXPECT_EQ(plain.end.state_hash, recorded.end.state_hash);
     EXPECT_TRUE(plain.record.samples.empty());
     EXPECT_FALSE(recorded.record.samples.empty());
     Policy other = random_policy(2);
-    EXPECT_NE(plain.state_hash, run_once(config, &other, plan).state_hash);
+    EXPECT_NE(plain.end.state_hash, run_once(config, &other, plan).end.state_hash);
   }
 }
 
@@ -79,9 +79,9 @@ TEST(RunTest, SeedsGiveDifferentRuns) {
   Policy policy = random_policy();
   std::uint64_t last = 0;
   for (config.simulator.seed = 0; config.simulator.seed < 4; ++config.simulator.seed) {
-    const std::uint64_t hash = run_once(config, &policy, kShortWalk).state_hash;
+    const std::uint64_t hash = run_once(config, &policy, kShortWalk).end.state_hash;
     EXPECT_NE(hash, last);
-    EXPECT_EQ(hash, run_once(config, &policy, kShortWalk).state_hash);
+    EXPECT_EQ(hash, run_once(config, &policy, kShortWalk).end.state_hash);
     last = hash;
   }
 }
@@ -91,7 +91,7 @@ TEST(RunTest, WalkLastsAsLongAsAsked) {
   const RunResult result =
       run_once(config_of("rigid"), &policy, {.walk_s = 0.25, .start_walking = true}, true);
   EXPECT_EQ(result.walked_s, 0.25);
-  EXPECT_EQ(result.simulated_s, 0.25);
+  EXPECT_EQ(result.end.time_s, 0.25);
   ASSERT_EQ(result.record.samples.size(), 25u);
   for (std::size_t i = 0; i < 25; ++i) {
     const RunSample& sample = result.record.samples[i];
@@ -124,7 +124,7 @@ TEST(RunTest, FallIsReportedWithReasonAndTime) {
     EXPECT_LT(*result.fall_time_s, 1.0);
     EXPECT_FALSE(result.interrupted);
     // It ends in half a second of damping.
-    EXPECT_NEAR(result.simulated_s, *result.fall_time_s + 0.5, 0.001);
+    EXPECT_NEAR(result.end.time_s, *result.fall_time_s + 0.5, 0.001);
     EXPECT_EQ(result.record.samples.back().mode, Mode::kDamping);
   }
 }
@@ -173,12 +173,18 @@ TEST(RunTest, InterruptEndsInDampingAndIsNoFall) {
     Policy policy = random_policy();
     const ProcessConfig config =
         config_of("rigid", {"controller.walk.kp_nmprad=100"}, &policy.spec());
-    const RunResult result = run_lockstep(
-        config, &policy, CommandSource("0,0,0"), {.walk_s = 100.0}, true, interrupt,
-        [&](const RunSample& sample) { interrupt = interrupt || sample.t_s >= when_s; });
+    const RunResult result = simulate({.config = config,
+                                       .policy = &policy,
+                                       .command = "0,0,0",
+                                       .plan = {.walk_s = 100.0},
+                                       .keep_record = true,
+                                       .interrupt = &interrupt,
+                                       .progress = [&](const RunSample& sample) {
+                                         interrupt = interrupt || sample.t_s >= when_s;
+                                       }});
     EXPECT_TRUE(result.interrupted);
     EXPECT_TRUE(result.survived) << "interrupted after " << when_s << " s: " << result.fall_reason;
-    EXPECT_NEAR(result.simulated_s, when_s + 0.5, 0.001);
+    EXPECT_NEAR(result.end.time_s, when_s + 0.5, 0.001);
     EXPECT_EQ(result.record.samples.back().mode, Mode::kDamping);
   }
 }
@@ -196,10 +202,9 @@ class PublishedNetworkTest : public testing::Test {
   }
   RunResult run(const std::string& terrain, const std::string& command, const RunPlan& plan,
                 std::uint64_t seed = 0) {
-    const std::atomic<bool> interrupt{false};
     ProcessConfig config = config_of(terrain, {}, &policy_->spec());
     config.simulator.seed = seed;
-    return run_lockstep(config, &*policy_, CommandSource(command), plan, false, interrupt, {});
+    return simulate({.config = config, .policy = &*policy_, .command = command, .plan = plan});
   }
   std::optional<Policy> policy_;
 };
@@ -208,14 +213,14 @@ class PublishedNetworkTest : public testing::Test {
 TEST_F(PublishedNetworkTest, WalksOnRigidGround) {
   const RunResult result = run("rigid", "1,0,0", {.walk_s = 4.0, .start_walking = true});
   EXPECT_TRUE(result.survived) << result.fall_reason;
-  EXPECT_NEAR(result.figures.mean_velocity_mps[0], 0.974, 0.05 * 0.974);
+  EXPECT_NEAR(result.figures.motion->mean_velocity_mps[0], 0.974, 0.05 * 0.974);
 }
 
 TEST_F(PublishedNetworkTest, RunsOnDrySand) {
   const RunResult result = run("dry-sand", "2,0,0", {.walk_s = 10.0, .start_walking = true});
   EXPECT_TRUE(result.survived) << result.fall_reason;
-  EXPECT_NEAR(result.figures.mean_velocity_mps[0], 1.481, 0.05 * 1.481);
-  EXPECT_NEAR(1e3 * result.figures.sinkage_mean_m, 99.6, 0.1 * 99.6);
+  EXPECT_NEAR(result.figures.motion->mean_velocity_mps[0], 1.481, 0.05 * 1.481);
+  EXPECT_NEAR(1e3 * result.figures.motion->sinkage_mean_m, 99.6, 0.1 * 99.6);
 }
 
 // At zero command this network trots on the spot, so that Stand takes over with two feet in the

@@ -151,7 +151,7 @@ TEST(ConeTest, ConeIsFullWhereItsLowerFlatHasVanished) {
   const ConeFigures f = figures({}, disc, g.full_depth);
   EXPECT_NEAR(f.flat_area, 0.0, 1e-18);
   // The volume of a cone of the radius and the depth.
-  EXPECT_NEAR(f.flat_integral, kPi * 0.0295 * 0.0295 * g.full_depth / 3.0, 1e-12);
+  EXPECT_NEAR(f.flat_integral, pi * 0.0295 * 0.0295 * g.full_depth / 3.0, 1e-12);
 
   const FootProfile<double> tyre =
       fit_foot_profile(FootShape::kTyre, kTyreRadius_m, kTyreWidth_m, 4.0);

@@ -145,8 +145,8 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
                                                .plan = {.walk_s = 5.0, .start_walking = true},
                                                .scene = scene_of(config, policy.spec().name),
                                                .progress = {},
-                         .tap = {},
-                         .interrupt = interrupt});
+                                               .tap = {},
+                                               .interrupt = interrupt});
     ASSERT_TRUE(process.survived);
     const sandrunner::RunFigures& p = process.figures;
     const MotionFigures& motion = p.motion.value();

@@ -148,7 +148,8 @@ inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double
          ++done) {
       const auto before = Steady::now();
       telemetry.add(example_tick(first_tick + done));
-      longest_s = std::max(longest_s, std::chrono::duration<double>(Steady::now() - before).count());
+      longest_s =
+          std::max(longest_s, std::chrono::duration<double>(Steady::now() - before).count());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
