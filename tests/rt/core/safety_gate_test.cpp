@@ -269,7 +269,8 @@ TEST(FaultTest, NamesAreStable) {
   const char* expected[kNumFaults] = {
       "non_finite_joint",  "non_finite_imu", "non_finite_action", "non_finite_command",
       "non_finite_output", "joints_stale",   "imu_stale",         "policy_stale",
-      "joint_position",    "joint_speed",    "joint_torque",      "tilt"};
+      "joint_position",    "joint_speed",    "joint_torque",      "tilt",
+      "drive_fault"};
   for (int i = 0; i < kNumFaults; ++i) {
     EXPECT_STREQ(fault_name(static_cast<Fault>(1u << i)), expected[i]);
   }

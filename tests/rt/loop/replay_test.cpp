@@ -72,7 +72,7 @@ TEST_F(ReplayTest, FlippedInputBitIsFoundByWhatItChanges) {
   };
   for (const char* name :
        {"joint_position_rad[2]", "joint_velocity_radps[1]", "imu_orientation_wxyz[1]",
-        "policy_target_rad[3]", "operator_vx_mps", "command_kp_nmprad[5]"}) {
+        "policy_target_rad[3]", "policy_sequence", "command_kp_nmprad[5]"}) {
     const std::size_t word = word_of(name);
     std::vector<TickRecord> spoilt(ticks().begin(), ticks().end());
     auto words = std::bit_cast<TickWords>(spoilt[at]);

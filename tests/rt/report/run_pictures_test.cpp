@@ -50,6 +50,10 @@ RunRecord trot(double walk_s, double (*ground)(double), double sinkage_m) {
   record.scene.terrain = "dry-sand";
   record.scene.policy = "made-up";
   record.scene.granular_ground = sinkage_m > 0.0;
+  record.scene.base_box_size_m = {0.7, 0.28, 0.12};
+  record.scene.foot_radius_m = 0.03;
+  for (std::size_t j = 0; j < kNumJoints; ++j) record.scene.joint_names[j] = kJointNames[j];
+  for (std::size_t l = 0; l < kNumLegs; ++l) record.scene.leg_names[l] = kLegNames[l];
   record.scene.ground_height_m = [ground](double x, double) { return ground(x); };
   const double end_s = 1.0 + walk_s;
   double x = 0.0;
@@ -57,6 +61,7 @@ RunRecord trot(double walk_s, double (*ground)(double), double sinkage_m) {
   for (int i = 0; i <= std::lround((end_s + 0.5) * kPolicyHz); ++i) {
     RunSample s;
     s.t_s = static_cast<double>(i) / kPolicyHz;
+    s.has_truth = true;
     const bool walks = s.t_s >= 1.0 && s.t_s <= end_s;
     s.mode = s.t_s < 0.6 ? Mode::kStandUp : walks ? Mode::kWalk : Mode::kStand;
     s.command = {walks ? kSpeed_mps : 0.0, 0.0, walks ? 0.2 : 0.0};

@@ -104,9 +104,9 @@ TEST_F(CommandLineTest, SummaryHasEveryKey) {
                                          "joint_limit_steps",
                                          "speed_limit_steps"};
   std::set<std::string> keys = {
-      "survived",  "fall_time_s", "fall_reason",      "command",           "policy",
-      "terrain",   "version",     "interrupted",      "mean_velocity_mps", "sinkage_mm",
-      "estimator", "state_hash",  "cost_of_transport"};
+      "survived",  "fall_time_s", "fall_reason",       "command",           "policy",
+      "terrain",   "version",     "interrupted",       "mean_velocity_mps", "sinkage_mm",
+      "estimator", "state_hash",  "cost_of_transport", "fault_joints",      "gate_ticks"};
   keys.insert(numbers.begin(), numbers.end());
   std::set<std::string> found;
   for (const auto& [key, value] : j.items()) found.insert(key);

@@ -9,6 +9,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "rt/report/run_csv.h"
+#include "rt/report/run_pictures.h"
+#include "rt/report/summary.h"
 #include "tests/rt/support.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
@@ -187,6 +190,57 @@ TEST(RunTest, InterruptEndsInDampingAndIsNoFall) {
     EXPECT_NEAR(result.end.time_s, when_s + 0.5, 0.001);
     EXPECT_EQ(result.record.samples.back().mode, Mode::kDamping);
   }
+}
+
+/// The simulated robot without its truth: what a real one shows.
+class RealRobot final : public RobotIo {
+ public:
+  explicit RealRobot(const ProcessConfig& config) : simulator_(config.robot, config.simulator) {}
+  void read(std::uint64_t tick, SensorFrame& frame) noexcept override {
+    simulator_.read(tick, frame);
+  }
+  void write(const SafeCommand& command) noexcept override { simulator_.write(command); }
+  void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
+    simulator_.skip(ticks, held);
+  }
+  void shut_down() noexcept override {}
+
+ private:
+  sim::Simulator simulator_;
+};
+
+TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
+  Policy policy = load_shipped_policy();
+  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  const CommandSource command("1,0,0");
+  const std::atomic<bool> nobody{false};
+  RealRobot robot(config);
+  const RunResult result = run_in_lockstep({.robot = robot,
+                                            .controller = config.controller,
+                                            .policy = &policy,
+                                            .command = command,
+                                            .plan = {.walk_s = 1.0, .start_walking = true},
+                                            .scene = scene_of(config, "raibo"),
+                                            .keep_record = true,
+                                            .interrupt = nobody});
+  const RunResult known = simulate(
+      {.config = config, .policy = &policy, .plan = {.walk_s = 1.0, .start_walking = true}});
+  EXPECT_TRUE(result.survived);
+  EXPECT_FALSE(result.figures.motion);
+  EXPECT_FALSE(result.figures.estimate);
+  EXPECT_FALSE(result.record.has_truth());
+  EXPECT_TRUE(known.figures.motion);
+  EXPECT_TRUE(known.figures.estimate);
+  // The drives report the torque of the tick before.
+  EXPECT_NEAR(result.figures.torque_squared_nm2, known.figures.torque_squared_nm2,
+              0.01 * known.figures.torque_squared_nm2);
+  const RunInfo info{"1,0,0", "raibo", "dry-sand", 0};
+  EXPECT_EQ(summary_json(result, info).find("sinkage"), std::string::npos);
+  EXPECT_EQ(summary_table(result, info).find("sinkage"), std::string::npos);
+  EXPECT_NE(summary_table(known, info).find("sinkage"), std::string::npos);
+  const TemporaryFolder folder;
+  draw_run_plot(result.record, folder.path("run.png"));
+  write_csv(result.record, folder.path("run.csv"));
 }
 
 class PublishedNetworkTest : public testing::Test {

@@ -4,7 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "policy/policy_file.h"
 #include "sim/robot/embedded.h"
+#include "tests/rt/telemetry/example_tick.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
@@ -30,6 +32,16 @@ inline std::string write_renamed_robot(const TemporaryFolder& folder) {
     write_file(folder.path("example" + type), text);
   }
   return folder.path("example.toml");
+}
+
+/// Writes the shipped policy into `folder` for the robot of that name; returns its path.
+inline std::string write_renamed_policy(const TemporaryFolder& folder) {
+  const std::string path = folder.path("example.safetensors");
+  write_file(path, std::string(shipped_policy_text()));
+  PolicyFile file = read_policy_file(path);
+  file.spec.joint_names = example_robot().joint_names;
+  write_policy_file(path, file);
+  return path;
 }
 
 }  // namespace sandrunner

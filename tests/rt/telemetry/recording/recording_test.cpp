@@ -68,7 +68,7 @@ TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
 
 TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
   const TemporaryFolder robot;
-  record("--set robot=" + write_renamed_robot(robot));
+  record("--set robot=" + write_renamed_robot(robot) + " --policy " + write_renamed_policy(robot));
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
   McapReader reader(path());
   const McapMessage* message = nullptr;
