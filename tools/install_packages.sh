@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/install_packages.sh [sandrunner]: installs the Debian packages that are missing of those that everything needs,
-# or the program sandrunner alone. If none is missing it only asks dpkg: no network, no rights, a fraction of a second.
+# tools/install_packages.sh [sandrunner|checks]: installs the Debian packages that are missing of those that everything
+# needs; the program sandrunner alone; everything and the checks of .ci/run. If none is missing it only asks dpkg: no
+# network, no rights, a fraction of a second.
 set -euo pipefail
 
 packages=(
@@ -15,6 +16,7 @@ packages=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
+[[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev)
 
 fail() {
   echo "install_packages.sh: $1" >&2
