@@ -68,7 +68,9 @@ TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
   EXPECT_EQ(passed.joints().kp_nmprad, wanted.kp_nmprad);
   EXPECT_EQ(passed.joints().kd_nmsprad, wanted.kd_nmsprad);
   EXPECT_EQ(passed.joints().feedforward_nm, wanted.feedforward_nm);
-  EXPECT_EQ(state.counters.position_clamped + state.counters.velocity_clamped + state.counters.torque_clamped, 0u);
+  EXPECT_EQ(state.counters.position_clamped + state.counters.velocity_clamped +
+                state.counters.torque_clamped,
+            0u);
 }
 
 TEST_F(SafetyGateTest, ClampsAndCountsCommandedPositions) {
@@ -236,7 +238,7 @@ TEST(FaultTest, NamesAreStable) {
   EXPECT_STREQ(fault_name(Fault::kNone), "none");
 }
 
-TEST(TicksFromSecondsTest, RoundsAndTakesOddValues) {
+TEST(TicksFromSecondsTest, RoundsAndBoundsInvalidValues) {
   EXPECT_EQ(ticks_from_s(0.005), 20u);
   EXPECT_EQ(ticks_from_s(1.5), 6000u);
   EXPECT_EQ(ticks_from_s(-1.0), 0u);

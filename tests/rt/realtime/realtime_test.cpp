@@ -104,7 +104,7 @@ TEST(RealtimeTest, StalledPolicyIsHeldThenDamped) {
   EXPECT_LT(held_s, 0.060);
 }
 
-TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
+TEST(RealtimeTest, NonFiniteCommandEndsInDamping) {
   LiveOperator op;
   bool sent = false;
   run_live(op, [&](PolicyThread&) {
@@ -117,7 +117,7 @@ TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
   EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kNonFiniteCommand));
 }
 
-TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedAlsoIfItWasReset) {
+TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
   LiveOperator op;
   Steps steps;
   const RunResult result = run_live(op, [&](PolicyThread&) {
