@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
+#include <cstddef>
 
+#include "estimator/heading.h"
 #include "rt/core/messages.h"
 
 namespace sandrunner {
@@ -37,12 +38,9 @@ inline BodyMotion body_motion(const std::array<double, 4>& orientation_wxyz,
                               const Vector3& velocity_mps,
                               const Vector3& angular_velocity_radps) noexcept {
   const std::array<Vector3, 3> axes = body_axes(orientation_wxyz);
-  // A body that stands on its head or tail has no heading: that of the world stands in for it.
-  const double forward = std::hypot(axes[0][0], axes[0][1]);
-  const double c = forward > 1e-6 ? axes[0][0] / forward : 1.0;
-  const double s = forward > 1e-6 ? axes[0][1] / forward : 0.0;
-  return {c * velocity_mps[0] + s * velocity_mps[1], c * velocity_mps[1] - s * velocity_mps[0],
-          to_world(axes, angular_velocity_radps)[2]};
+  const auto [vx_mps, vy_mps] =
+      in_heading_frame<double>({axes[0][0], axes[0][1]}, {velocity_mps[0], velocity_mps[1]});
+  return {vx_mps, vy_mps, to_world(axes, angular_velocity_radps)[2]};
 }
 
 }  // namespace sandrunner

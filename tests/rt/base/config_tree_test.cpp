@@ -149,7 +149,7 @@ TEST(ConfigTreeTest, SetTextTakesAnyText) {
   EXPECT_EQ(error_of([&] { config.set_text("dds.dir", "\xff", "--dir"); }).substr(0, 5), "--dir");
 }
 
-TEST(ConfigTreeTest, SetRefusesWhatIsNoAssignment) {
+TEST(ConfigTreeTest, SetRefusesTextThatIsNotAnAssignment) {
   ConfigTree config;
   for (const char* bad : {"", "a", "=1", "a.=1", ".a=1", "a..b=1", "a b=1", "a[0]=1", "a=",
                           "a=two words", "a=[1", "a='x", "a=1\nb=2", "a=1\rb=2", "a={x=1}}"}) {

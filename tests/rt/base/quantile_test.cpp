@@ -8,7 +8,7 @@
 namespace sandrunner {
 namespace {
 
-TEST(QuantileTest, LiesBetweenValues) {
+TEST(QuantileTest, InterpolatesBetweenValues) {
   EXPECT_EQ(quantile({1.0, 2.0, 4.0}, 0.0), 1.0);
   EXPECT_EQ(quantile({1.0, 2.0, 4.0}, 0.75), 3.0);
   EXPECT_EQ(quantile({1.0, 2.0, 4.0}, 1.0), 4.0);

@@ -191,7 +191,7 @@ TEST(ControllerTest, StopWaitsForTheSlewToReachZero) {
   EXPECT_EQ(loop.output.mode, Mode::kStand);
 }
 
-TEST(ControllerTest, WalkTakesAStopBack) {
+TEST(ControllerTest, WalkRequestCancelsAStop) {
   FakeLoop loop;
   loop.reach(Mode::kWalk);
   const std::uint64_t episode = loop.output.policy_input.episode;

@@ -26,7 +26,7 @@ TEST(JointPdTest, SumsThreeTerms) {
   EXPECT_EQ(joint_torque(0.25, 2.0, 0.5, 1.0, 50.0, 0.5, 3.0), 50.0 * 0.25 - 0.5 * 1.0 + 3.0);
 }
 
-TEST(JointPdTest, RoundsOnceAnOperation) {
+TEST(JointPdTest, RoundsOncePerOperation) {
   const double q = 0.1, qd = -3.3, q_des = 0.7, qd_des = 0.2, kp = 49.7, kd = 0.53, ff = 1.1;
   const double expected = std::fma(kp, q_des - q, std::fma(kd, qd_des - qd, ff));
   EXPECT_EQ(joint_torque(q, qd, q_des, qd_des, kp, kd, ff), expected);

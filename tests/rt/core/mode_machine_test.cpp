@@ -12,7 +12,7 @@ namespace {
 constexpr Mode P = Mode::kPassive, D = Mode::kDamping, U = Mode::kStandUp, S = Mode::kStand,
                W = Mode::kWalk, F = Mode::kFault;
 
-TEST(ModeMachineTest, EveryEventInEveryMode) {
+TEST(ModeMachineTest, EveryEventInEveryModeLeadsWhereTheTableSays) {
   // Columns in the order of Event: passive, damp, stand, walk, reset, stood up, stopped, fault.
   const Mode expected[6][kNumEvents] = {
       /* Passive */ {P, D, U, P, P, P, P, F},

@@ -277,7 +277,7 @@ TEST(FaultTest, NamesAreStable) {
   EXPECT_STREQ(fault_name(Fault::kNone), "none");
 }
 
-TEST(TicksFromSecondsTest, RoundsAndTakesOddValues) {
+TEST(TicksFromSecondsTest, RoundsAndBoundsInvalidValues) {
   EXPECT_EQ(ticks_from_s(0.005), 20u);
   EXPECT_EQ(ticks_from_s(1.5), 6000u);
   EXPECT_EQ(ticks_from_s(-1.0), 0u);

@@ -114,7 +114,7 @@ WatchedDeeds watch(const Deed& deed) {
   return deeds;
 }
 
-TEST(LoopProofTest, NothingIsSeenWhereNothingIsDone) {
+TEST(LoopProofTest, WatchOfAnEmptySectionSeesNothing) {
   volatile int sum = 0;
   expect_clean(watch([&] {
     for (int i = 0; i < 100; ++i) sum = sum + i;

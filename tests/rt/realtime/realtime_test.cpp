@@ -82,7 +82,7 @@ TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
             result.realtime->control.releases);
 }
 
-TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
+TEST(RealtimeTest, NonFiniteCommandEndsInDamping) {
   LiveOperator op;
   bool sent = false;
   run_live(op, [&] {
@@ -95,7 +95,7 @@ TEST(RealtimeTest, CommandThatIsNoNumberEndsInDamping) {
   EXPECT_EQ(op.faults(), static_cast<std::uint64_t>(Fault::kNonFiniteCommand));
 }
 
-TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedAlsoIfItWasReset) {
+TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
   LiveOperator op;
   Steps steps;
   const RunResult result = run_live(op, [&] {

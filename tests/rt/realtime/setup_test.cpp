@@ -52,7 +52,7 @@ void with_control_thread(
   thread.join();
 }
 
-TEST(RealtimeConfigTest, ReadsItsTable) {
+TEST(RealtimeConfigTest, ReadsEveryKeyOfItsTable) {
   const RealtimeConfig none = read_config({});
   for (const Need need : {none.lock_memory, none.priority, none.affinity, none.dma_latency}) {
     EXPECT_EQ(need, Need::kWarn);
@@ -71,7 +71,7 @@ TEST(RealtimeConfigTest, ReadsItsTable) {
   EXPECT_EQ(c.policy_cpu, 0);
 }
 
-TEST(RealtimeConfigTest, RefusesWhatCannotBe) {
+TEST(RealtimeConfigTest, RefusesValuesOutOfRange) {
   expect_refused([] { read_config({"priority=maybe"}); },
                  {"realtime.priority", "maybe", "require"});
   expect_refused([] { read_config({"control_priority=99"}); }, {"realtime.control_priority", "99"});
@@ -80,7 +80,7 @@ TEST(RealtimeConfigTest, RefusesWhatCannotBe) {
   expect_refused([] { read_config({"policy_cpu=1024"}); }, {"realtime.policy_cpu", "1024"});
 }
 
-TEST(RealtimeConfigTest, PolicyHasToBeBelowControl) {
+TEST(RealtimeConfigTest, PolicyPriorityMustBeBelowThatOfControl) {
   for (const char* policy : {"80", "81"}) {
     expect_refused([&] { read_config({std::string("policy_priority=") + policy}); },
                    {"realtime.policy_priority", policy, "below realtime.control_priority", "80"});

@@ -28,7 +28,7 @@ class BadInputTest : public ProgramTest {
   }
 };
 
-TEST_F(BadInputTest, Options) {
+TEST_F(BadInputTest, OptionsAreRefusedBeforeAnyWork) {
   expect_refused("--nosuch", "--nosuch");
   expect_refused("--terain rigid", "--terain");
   expect_refused("walk", "walk");
@@ -44,12 +44,12 @@ TEST_F(BadInputTest, Options) {
   expect_refused("--seed x", "x");
 }
 
-TEST_F(BadInputTest, SeedsThatAreNone) {
+TEST_F(BadInputTest, SeedsOutOfRangeAreRefused) {
   expect_refused("--seed -1", "-1");
   expect_refused("--seed 99999999999999999999", "99999999999999999999");
 }
 
-TEST_F(BadInputTest, Commands) {
+TEST_F(BadInputTest, CommandsAreRefusedWithFileAndLine) {
   expect_refused("--command 1,2", "'1,2' has 2 numbers, expected 3");
   expect_refused("--command nan,0,0", "'nan,0,0'");
   expect_refused("--command fast", "'fast'");
@@ -59,7 +59,7 @@ TEST_F(BadInputTest, Commands) {
   expect_refused("--command command.csv", "command.csv:3: '1,oops,0,0'");
 }
 
-TEST_F(BadInputTest, Terrains) {
+TEST_F(BadInputTest, TerrainsAreRefusedWithFileAndLine) {
   expect_refused("--terrain nosuch", "'nosuch' is neither a preset");
   write("unknown.toml", "[terrain]\nfriction = 0.5\nslipperiness = 3\n");
   expect_refused("--terrain unknown.toml", "unknown.toml:3: unknown key 'terrain.slipperiness'");
@@ -73,7 +73,7 @@ TEST_F(BadInputTest, Terrains) {
   expect_refused("--terrain patch.toml", "preset 'mud'");
 }
 
-TEST_F(BadInputTest, Settings) {
+TEST_F(BadInputTest, SettingsAreRefusedWithTheirKey) {
   expect_refused("--set nonsense", "--set nonsense: expected");
   expect_refused("--set terrain.nosuch=1", "unknown key 'terrain.nosuch'");
   expect_refused("--set terrain.stiffness_npm=-1", "found -1");
@@ -85,7 +85,7 @@ TEST_F(BadInputTest, Settings) {
   expect_refused("--config unknown.toml", "unknown.toml:2: unknown key 'controller.speed'");
 }
 
-TEST_F(BadInputTest, Policies) {
+TEST_F(BadInputTest, DamagedPoliciesAreRefused) {
   const std::string bytes = read_file(folder_.path("good"));
   expect_refused("--policy absent", "'absent': no such file");
   expect_refused("--policy .", "'.': not a regular file");
@@ -117,7 +117,7 @@ TEST_F(BadInputTest, Policies) {
   expect_refused("--policy nan", "'nan': ");
 }
 
-TEST_F(BadInputTest, Robots) {
+TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   expect_refused("--set robot=absent.toml", "absent.toml: cannot be read");
   const std::string map(embedded_robot_file("raibo.toml"));
   const std::string urdf(embedded_robot_file("raibo.urdf"));
@@ -143,7 +143,7 @@ TEST_F(BadInputTest, Robots) {
                  "of robot 'small'");
 }
 
-TEST_F(BadInputTest, OutputFolders) {
+TEST_F(BadInputTest, UnwritableOutputFoldersAreRefused) {
   write("file", "precious");
   const std::set<std::string> before = files_in("");
   for (const char* folder : {"file", "file/results", "/proc/results"}) {

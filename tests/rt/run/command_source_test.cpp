@@ -25,7 +25,7 @@ TEST(CommandSourceTest, ConstantMayHaveBlanks) {
   expect_command(CommandSource(" -1, 2 ,\t3").at(0.0), -1.0, 2.0, 3.0);
 }
 
-TEST(CommandSourceTest, ConstantThatIsNoneIsRefused) {
+TEST(CommandSourceTest, MalformedConstantIsRefused) {
   for (const char* text : {"1,2", "1,2,3,4", "", "nan,0,0", "0,inf,0", "0,0,-infinity", "1;2;3",
                            "1,,3", "1,2,", "1,2,3 4", "0x10,0,0", "1e999,0,0", "1,2,++3", "."}) {
     expect_refused([&] { CommandSource{text}; }, {"--command: '" + std::string(text) + "'"});
@@ -90,7 +90,7 @@ TEST_F(CommandFileTest, RefusalNamesFileAndLine) {
   for (const auto& c : cases) expect_refused([&] { read(c.content); }, {path_ + c.place, c.found});
 }
 
-TEST_F(CommandFileTest, RefusesWhatIsNoFile) {
+TEST_F(CommandFileTest, MissingFileIsRefused) {
   expect_refused([&] { CommandSource(folder_.path("absent.csv")); }, {"absent.csv", "nor a file"});
   expect_refused([&] { CommandSource(folder_.path("")); }, {"nor a file"});
 }

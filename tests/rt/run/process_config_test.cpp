@@ -109,7 +109,7 @@ TEST(ProcessConfigTest, RobotGivesTheLimitsOfTheGate) {
   EXPECT_EQ(config.controller.stand.nominal_rad[10], 0.6);
 }
 
-TEST(ProcessConfigTest, ValueThatIsNoneIsRefused) {
+TEST(ProcessConfigTest, InvalidValueIsRefused) {
   const struct {
     const char* assignment;
     const char* expected;
@@ -196,7 +196,7 @@ TEST(ProcessConfigTest, EffectiveSettingsReadBackToThemselves) {
   }
 }
 
-TEST(ProcessConfigTest, RobotThatIsNoneIsRefused) {
+TEST(ProcessConfigTest, MissingOrBrokenRobotIsRefused) {
   const TemporaryFolder folder;
   const std::string map(embedded_robot_file("raibo.toml"));
   const std::string urdf(embedded_robot_file("raibo.urdf"));

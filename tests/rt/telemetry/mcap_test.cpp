@@ -144,7 +144,7 @@ TEST(McapTest, MutatedFilesEndInAnErrorOrAsCutAndNeverGiveWrongMessages) {
   EXPECT_GT(right, 50'000);
 }
 
-TEST(McapTest, BytesThatAreNoMcapFileAreNamed) {
+TEST(McapTest, BytesThatAreNotAnMcapFileAreRefusedWithTheCause) {
   const std::string start = kMagic + header("by hand");
   const std::string declared = schema(1, "a/msg/B") + channel(1, 1, "/b");
   const std::string attachment =

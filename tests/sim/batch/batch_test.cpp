@@ -238,7 +238,7 @@ const std::vector<BatchWidth>& pack_widths() {
   return widths;
 }
 
-TEST(BatchTest, RobotsGoThroughAllThatTheyShould) {
+TEST(BatchTest, StoriesCoverEveryGroundKneesBaseAndStops) {
   // Otherwise the comparisons below would compare little.
   flush_denormals_to_zero();
   Batch batch(kRobots, foot(), {}, BatchWidth::kOne);

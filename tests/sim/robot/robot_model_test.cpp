@@ -146,7 +146,7 @@ TEST(RobotModelTest, PublishedDescriptionLoadsWithTheSameFigures) {
   }
 }
 
-TEST(RobotModelTest, RefusesWhatIsNoUrdf) {
+TEST(RobotModelTest, RefusesTextThatIsNotUrdf) {
   for (const std::string& text : {std::string(), std::string("hello"), std::string("<html></html>"),
                                   std::string("<robot name='x'>"), std::string("<robot name='x'/>"),
                                   shipped_urdf().substr(0, 3000)}) {

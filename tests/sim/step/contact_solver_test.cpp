@@ -204,7 +204,7 @@ TEST_P(ContactSolverTest, ImpulsesMeetTheContactConditions) {
                                                                      worst.sliding, worst.disc}));
 }
 
-TEST_P(ContactSolverTest, AtItsDefaultToleranceAlsoWithKneesAndBaseOnTheGround) {
+TEST_P(ContactSolverTest, ImpulsesMeetTheConditionsWithKneesAndBaseOnTheGround) {
   int checked = 0, unfinished = 0;
   Violation worst;
   for (const Problem& p : harvest(GetParam(), 1e-5)) {

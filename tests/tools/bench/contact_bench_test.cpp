@@ -47,7 +47,7 @@ TEST(ContactBenchTest, DroppedFootRestsNearTheConeModelsDepthOnMatchingGround) {
   }
 }
 
-TEST(ContactBenchTest, DrftKeepsTheEnergy) {
+TEST(ContactBenchTest, DrftTakesTheEnergyThatTheMassLoses) {
   // What the ground takes is what the mass loses on its way to rest: m (v^2/2 + g z) = int F dz.
   const sim::FootProfile<double> foot = foot_profile();
   const PlanarDrft drft = planar_foot();
@@ -75,7 +75,7 @@ TEST(ContactBenchTest, DrftHoldsAFootAtRest) {
   check(spatial_foot());
 }
 
-TEST(ContactBenchTest, PlanesAndSpaceAgreeOnTheFoot) {
+TEST(ContactBenchTest, PlanarAndSpatialDrftAgreeOnTheFoot) {
   // Two fits to the same kind of ground, on a foot that goes straight down.
   const sim::FootProfile<double> foot = foot_profile();
   for (std::uint64_t i = 0; i < 10; ++i) {

@@ -137,7 +137,7 @@ TEST(CtlProgramTest, CmdWithoutAnEndIsEndedBySignalsWithZero) {
   }
 }
 
-TEST(CtlProgramTest, CmdReachesAStampedRobotWhenToldSo) {
+TEST(CtlProgramTest, CmdSendsTwistStampedWhenTold) {
   DdsConfig config = test_config();
   config.stamped_cmd_vel = true;
   LiveSetup setup(config);

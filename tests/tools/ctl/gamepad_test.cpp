@@ -22,7 +22,7 @@ TEST(GamepadTest, CommandsNothingWhileTheEnableButtonIsNotHeld) {
   EXPECT_FALSE(pad.command(1.0));
 }
 
-TEST(GamepadTest, SticksToVelocities) {
+TEST(GamepadTest, SticksBecomeVelocities) {
   Gamepad pad({kWide, kWide, kWide});
   pad.event(EV_KEY, BTN_TL, 1);
   pad.event(EV_ABS, ABS_Y, -32768);  // up

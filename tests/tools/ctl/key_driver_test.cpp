@@ -82,7 +82,7 @@ TEST(KeyDriverTest, PlusAndMinusScaleBetweenATenthAndTwice) {
   EXPECT_EQ(driver.scale_tenths(), 2);
 }
 
-TEST(KeyDriverTest, AChangeOfScaleRevivesNoKeyThatIsOver) {
+TEST(KeyDriverTest, AChangeOfScaleDoesNotReviveAnExpiredKey) {
   KeyDriver driver;
   driver.press('w', 0);
   driver.press('+', 700 * kMs);
@@ -124,7 +124,7 @@ TEST(CommandPacerTest, SendsTwentyASecondFromTheFirstMomentOn) {
   EXPECT_GE(times.back(), 7950 * kMs);
 }
 
-TEST(CommandPacerTest, AtTheEndZeroAtOnceFiveTimesThenNothing) {
+TEST(CommandPacerTest, SendsZeroFiveTimesAtTheEndThenNothing) {
   CommandPacer pacer;
   sent(pacer, VelocityCommand{.vx_mps = 0.5}, 0, 103 * kMs, kMs);  // the last one at 100 ms
   EXPECT_TRUE(pacer.busy());
@@ -134,7 +134,7 @@ TEST(CommandPacerTest, AtTheEndZeroAtOnceFiveTimesThenNothing) {
   EXPECT_FALSE(pacer.busy());
 }
 
-TEST(CommandPacerTest, AfterAStallOneCommandAndNoBurst) {
+TEST(CommandPacerTest, SendsOneCommandAndNoBurstAfterAStall) {
   CommandPacer pacer;
   const VelocityCommand wanted{.vx_mps = 0.5};
   sent(pacer, wanted, 0, 60 * kMs, kMs);

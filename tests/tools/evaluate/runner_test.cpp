@@ -117,7 +117,7 @@ TEST_F(RunnerTest, ProgressReachesTheEnd) {
   EXPECT_EQ(last, trials.size());
 }
 
-TEST_F(RunnerTest, FactsOfTheRobot) {
+TEST_F(RunnerTest, RobotFactsComeFromRobotAndPolicy) {
   PolicySpec spec;
   spec.torque_limit_nm = 40.0;
   const RobotFacts facts = robot_facts(study_.robot(), spec);

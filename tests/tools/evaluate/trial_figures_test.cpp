@@ -55,7 +55,7 @@ class TrialFiguresTest : public testing::Test {
   int periods_ = 0;
 };
 
-TEST_F(TrialFiguresTest, ConstantRun) {
+TEST_F(TrialFiguresTest, ConstantRunGivesTheFiguresOfItsMotion) {
   for (int i = 0; i < 700; ++i) period(1.0f, 0.2f, -0.1f);
   const TrialFigures f = figures();
   EXPECT_NEAR(f.time_s, 7.0, 1e-9);

@@ -128,7 +128,7 @@ TEST(CommandInboxTest, StopAndDampAreTakenFromOneThatDoesNotHoldTheCommand) {
   EXPECT_EQ(setup.robot.mode(), Mode::kDamping);
 }
 
-TEST(CommandInboxTest, RepliesSayWhyNot) {
+TEST(CommandInboxTest, RepliesSayWhyARequestIsRefused) {
   LiveSetup setup;
   Peer peer(setup.config);
   Asker asker(peer);
@@ -196,7 +196,7 @@ TEST(CommandInboxTest, ADampThatWaitsForTheControllerIsNotReplacedByAWalk) {
   EXPECT_EQ(op.command(1).request, ModeRequest::kDamp);
 }
 
-TEST(CommandInboxTest, TwistStampedIfTheConfigSaysSo) {
+TEST(CommandInboxTest, TwistStampedIsTakenIfTheConfigSaysSo) {
   DdsConfig config = test_config();
   config.stamped_cmd_vel = true;
   LiveSetup setup(config);

@@ -141,7 +141,7 @@ TEST_F(RobotCommandsTest, APublisherThatIsKilledLeavesAStandingRobot) {
   expect_slows_to_a_stand_after(killed_s);
 }
 
-TEST_F(RobotCommandsTest, WhatIsNoSpeedIsCountedAndTheRobotFollowsTheLastOneThatIs) {
+TEST_F(RobotCommandsTest, InvalidSpeedsAreCountedAndTheRobotFollowsTheLastValidOne) {
   Driver driver(peer_);
   int number = 0;
   walk(2.6, [&](double time_s) {

@@ -281,7 +281,7 @@ TEST_F(BlackBoxTest, FolderThatCannotBeWrittenIsReportedAndTheBlackBoxGoesOn) {
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("absent/black-box-20000.mcap")), 0) << output();
 }
 
-TEST_F(BlackBoxTest, StateThatIsNoneIsBadInput) {
+TEST_F(BlackBoxTest, DamagedStateIsBadInput) {
   open(dir());
   walk_to(24000, {20000});
   box_->close();
@@ -362,7 +362,7 @@ TEST_F(BlackBoxOfTheProgram, GoesToTheFolderOfTheOtherFilesElseToTheWorkingFolde
   EXPECT_NE(found(), "") << output();
 }
 
-TEST_F(BlackBoxOfTheProgram, LockstepRunHasNone) {
+TEST_F(BlackBoxOfTheProgram, LockstepRunWritesNoBlackBox) {
   EXPECT_EQ(run(SANDRUNNER_PROGRAM,
                 "--start walk --duration 1 --set controller.gate.tilt_fault_deg=1.5 --record '" +
                     folder_.path("") + "'"),
@@ -370,7 +370,7 @@ TEST_F(BlackBoxOfTheProgram, LockstepRunHasNone) {
   EXPECT_EQ(found(), "");
 }
 
-TEST_F(BlackBoxOfTheProgram, FullDiskIsSaidAndChangesNothingElse) {
+TEST_F(BlackBoxOfTheProgram, FullDiskIsReportedAndChangesNothingElse) {
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(dir());
   EXPECT_EQ(run_on_full_disk(SANDRUNNER_PROGRAM, kRun), 1);

@@ -245,7 +245,7 @@ TEST_F(RecordingTest, TicksInAnotherLayoutAreRefusedInOneLine) {
                 ": found ticks in the layout of build 'another', expected this build's\n");
 }
 
-TEST_F(RecordingTest, FileThatIsNoRecordingIsBadInput) {
+TEST_F(RecordingTest, FileThatIsNotARecordingIsBadInput) {
   write_file(folder_.path("none.mcap"), "not a recording");
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("none.mcap")), 2);
   const std::string line = output();
