@@ -50,6 +50,7 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   std::uint64_t hash = learner::fnv1a(robot.description.name);
   hash = learner::fnv1a(bytes(robot.model), hash);
   hash = learner::fnv1a(bytes(robot.nominal_rad), hash);
+  hash = learner::fnv1a(bytes(robot.torque_speed_line), hash);
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 
@@ -90,7 +91,7 @@ void Training::resume() {
   }
   restore(checkpoint);
   checkpoint.get("run.cpu_seconds", &cpu_before_s_, 1);
-  // Everyone who had a hand in the weights.
+  // All builds and processors that had a part in the weights.
   for (const auto& [section, now] :
        {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
     Names names{};

@@ -26,7 +26,6 @@ namespace {
 
 constexpr int kRobots = 64;
 constexpr int kPeriods = 50;  // of 40 ticks: 2,000 ticks
-constexpr std::uint64_t kTargetStream = 1000;
 
 enum Kind { kSand, kFlatRock, kRoughRock, kSpring, kPatches, kNumKinds };
 

@@ -47,7 +47,7 @@ TEST_F(EvaluateCommandTest, WritesAllFilesTheSameForAnyThreads) {
   EXPECT_GE(survival["high"], survival["value"]);
 }
 
-TEST_F(EvaluateCommandTest, OnlyTheRequestedPartsAreWritten) {
+TEST_F(EvaluateCommandTest, WritesOnlyThePartsAskedFor) {
   ASSERT_EQ(run("--policy p --only turn --runs 1 --grid-runs 1 --out dir"), 0) << error();
   EXPECT_TRUE(std::filesystem::exists(folder_.path("dir/turn.csv")));
   EXPECT_FALSE(std::filesystem::exists(folder_.path("dir/grid.csv")));

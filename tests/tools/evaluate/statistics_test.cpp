@@ -12,7 +12,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Wilson's intervals as tabulated, e.g. by R's prop.test(correct = FALSE).
-TEST(StatisticsTest, RateIntervalIsWilsons) {
+TEST(StatisticsTest, RateIntervalsAreWilsons) {
   const Estimate half = rate_interval(50, 100);
   EXPECT_EQ(half.value, 0.5);
   EXPECT_NEAR(half.low, 0.4038, 1e-4);
@@ -26,7 +26,7 @@ TEST(StatisticsTest, RateIntervalIsWilsons) {
   EXPECT_EQ(rate_interval(0, 0).n, 0);
 }
 
-TEST(StatisticsTest, StudentQuantilesMatchTheTable) {
+TEST(StatisticsTest, StudentQuantilesAreThoseOfTheTables) {
   const std::pair<int, double> table[] = {{1, 12.7062}, {2, 4.3027},  {5, 2.5706},  {6, 2.4469},
                                           {9, 2.2622},  {15, 2.1314}, {30, 2.0423}, {359, 1.9666}};
   for (const auto& [degrees, expected] : table) {

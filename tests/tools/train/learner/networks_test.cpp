@@ -43,7 +43,7 @@ TEST(ParametersTest, TensorsTileTheArray) {
   EXPECT_EQ(layout.size(), next);
 }
 
-TEST(ParametersTest, InitialWeightsHaveTheScalesOfTheRecipe) {
+TEST(ParametersTest, StartWithTheStatedScalesAndForgetBias) {
   const ParameterLayout layout(NetworkSizes{}, 80);
   const std::vector<float> parameters = initial_parameters(layout, 1, 0.6);
   const auto rms = [&](std::ptrdiff_t offset, int count) {
