@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sandrunner-evaluate: what a policy is worth. This file wires and reports progress.
+// sandrunner-evaluate: measures policies. This file wires and reports progress.
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -11,7 +11,7 @@
 
 namespace sandrunner::evaluate {
 
-/// How the runs of a group come together: share of the runs, mean, or root of the mean square.
+/// How the runs of a group are pooled: share of the runs, mean, or root of the mean square.
 enum class Pooling { kRate, kMean, kRms };
 
 struct Metric {

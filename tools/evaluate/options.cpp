@@ -28,13 +28,14 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   long long seed = static_cast<long long>(o.study.seed);
   std::string line = "on";
   CLI::App app{
-      "Measures what a policy is worth, in simulation; two policies side by side from the "
-      "same seeds."};
+      "Measures how well a policy runs, in simulation; compares two policies on the same starts, "
+      "commands and disturbances."};
   app.option_defaults()->always_capture_default();
   app.add_option("--policy", o.policy_path, "policy file")->type_name("FILE")->required();
-  app.add_option("--against", o.against_path, "policy file to compare with")->type_name("FILE");
+  app.add_option("--against", o.against_path, "second policy file, to compare with")
+      ->type_name("FILE");
   app.add_option("--robot", o.robot_path,
-                 "map of the robot (sim/robot/README.md); none: the one that ships")
+                 "map of the robot (sim/robot/README.md); default: the one that ships")
       ->type_name("FILE");
   app.add_option("--out", o.out_dir, "folder for evaluation.json, CSV files and pictures")
       ->type_name("DIR");
@@ -44,7 +45,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("N");
   app.add_option("--grid-runs", o.study.grid_runs, "robots in each cell of the stiffness grid")
       ->type_name("N");
-  app.add_option("--seed", seed, "of starts, noise, pushes and random commands")->type_name("N");
+  app.add_option("--seed", seed, "seed of starts, noise, pushes and random commands")
+      ->type_name("N");
   app.add_option("--only", o.parts, "some of " + fmt::format("{}", fmt::join(all_parts, ",")))
       ->delimiter(',')
       ->type_name("PART,...")

@@ -26,7 +26,7 @@ Part Study::robust() {
   constexpr double kLooseFrom_m = 3.0, kLooseTo_m = 3.6, kHardTo_m = 2.0;
   patch(strip, kLooseFrom_m, softer(4.0));
   patch(strip, kLooseTo_m, sand.patches[0].ground);
-  // Nobody gets so far; one foot is moved there.
+  // Out of reach; one foot is moved there.
   patch(quarter, 1e9, softer(4.0));
   patch(half, 1e9, softer(2.0));
   for (int i = 1; i <= 4; ++i) {

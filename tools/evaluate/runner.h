@@ -27,7 +27,7 @@ std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootPro
                                      const RunnerSettings& settings,
                                      const std::function<void(std::size_t done)>& progress = {});
 
-/// Facts of the robot that figures need. `policy` may limit the torque further.
+/// The robot's facts that the figures need. `policy` may limit the torque further.
 RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy);
 
 }  // namespace sandrunner::evaluate

@@ -12,8 +12,8 @@
 
 namespace sandrunner::evaluate {
 
-/// Zero, then in a straight line to the target: the faster of |v_xy| (m/s^2) and yaw rate (rad/s^2)
-/// changes at `acceleration`.
+/// Zero, then a linear rise to the target: the larger of |v_xy| (m/s) and |yaw rate| (rad/s) rises
+/// by `acceleration` per second.
 struct CommandScript {
   VelocityCommand target;
   double hold_s = 0.5;
@@ -47,7 +47,7 @@ struct Trial {
   /// before this time and not after `longest_s`.
   double duration_s = 10.0;
   double longest_s = 30.0;
-  /// Distances from the start, along the robot's own heading; the same: no track.
+  /// Distances from the start, m, along the robot's own heading; equal: no track.
   double track_begin_m = 0.0, track_end_m = 0.0;
   int latency_ticks = 1;        ///< age of the observation at which joint targets arrive, 1 to 40
   double noise_scale = 0.0;     ///< of the training's observation noise
@@ -56,7 +56,7 @@ struct Trial {
   double ground_changes_at_m = 0.0;  ///< world x of the terrain's second patch; 0: none to be met
   std::uint64_t seed = 0;            ///< of noise and pushes
 
-  /// Whether there is a place where the robot is disturbed, which it may never come to.
+  /// Whether there is a place where the robot is disturbed, which it may never reach.
   bool has_place() const noexcept { return loose_step.from_m > 0.0 || ground_changes_at_m > 0.0; }
   bool has_track() const noexcept { return track_end_m > track_begin_m; }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one run of one robot comes to. Definitions as in rt/report/run_statistics.h where both have
-// a figure, but for the cost of transport: of |v_xy| here, of |vx| there. "Steady" is the second
-// half of the run.
+// The figures of one run of one robot. Where rt/report/run_statistics.h has the same figure, the
+// definition is the same, except for the cost of transport: of |v_xy| here, of |vx| there. "Steady"
+// is the second half of the run.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ namespace sandrunner::evaluate {
 
 inline constexpr double kNotDefined = std::numeric_limits<double>::quiet_NaN();
 
-/// Speeds in the heading frame. Steady figures are nan for a run that fell; all are nan where they
-/// make no sense.
+/// Speeds in the heading frame. Steady figures are nan for a run that fell; every figure is nan
+/// where it is not defined.
 struct TrialFigures {
   double time_s = 0.0;  ///< until the end or the fall
   bool fell = false;    ///< base or thigh touched the ground, or the simulation diverged
-  /// 1 or 0: the robot came to the ground that changes, or to its loose step; nan: there is none.
+  /// 1 or 0: the robot reached the ground that changes, or its loose step; nan: there is none.
   double disturbance_met = kNotDefined;
 
   // Track.

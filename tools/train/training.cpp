@@ -90,7 +90,7 @@ void Training::resume() {
   }
   restore(checkpoint);
   checkpoint.get("run.cpu_seconds", &cpu_before_s_, 1);
-  // Everyone who had a hand in the weights.
+  // All builds and processors that had a part in the weights.
   for (const auto& [section, now] :
        {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
     Names names{};

@@ -57,7 +57,7 @@ TEST_F(RunnerTest, SameBitsForAnyThreadsAndWidth) {
   }
 }
 
-TEST_F(RunnerTest, NeighboursDoNotMatter) {
+TEST_F(RunnerTest, FiguresDoNotDependOnTheOtherRobotsOfThePack) {
   const std::vector<Trial> trials = mixed_trials(study_);
   const Policy policy = standing_policy();
   const auto all = run(trials, policy, 1, sim::BatchWidth::kEight);
@@ -106,7 +106,7 @@ TEST_F(RunnerTest, LooseStepSinksIn) {
   EXPECT_GT(f[1].tilt_rms_rad, f[0].tilt_rms_rad + 0.02);
 }
 
-TEST_F(RunnerTest, ProgressReachesTheEnd) {
+TEST_F(RunnerTest, ProgressRisesToTheNumberOfTrials) {
   const std::vector<Trial> trials = mixed_trials(study_);
   std::size_t last = 0;
   run_trials(study_.robot(), study_.foot(), standing_policy(), trials, {.threads = 2},

@@ -137,7 +137,7 @@ TEST_F(TrialFiguresTest, SlowRunDoesNotReachTheEnd) {
   EXPECT_FALSE(figures().track_done);
 }
 
-TEST(CommandScriptTest, HoldsThenRises) {
+TEST(CommandScriptTest, StaysZeroThenRisesToTheTarget) {
   const CommandScript ramp{{3.0, 0.0, 0.5}, 0.5, 2.0};
   EXPECT_EQ(ramp.at(0.49).vx_mps, 0.0);
   EXPECT_NEAR(ramp.at(1.25).vx_mps, 1.5, 1e-12);

@@ -266,20 +266,15 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   for (const LossSums& sum : sums) total.add(sum);
   const double norm = reduce_gradients(count);
 
-  const double estimate_loss =
-      std::accumulate(total.estimate_square.begin(), total.estimate_square.end(), 0.0) /
-      kEstimateSize;
-  if (!std::isfinite(norm + total.policy + total.value + estimate_loss + total.kl)) return false;
+  const double estimate_squares =
+      std::accumulate(total.estimate_square.begin(), total.estimate_square.end(), 0.0);
+  if (!std::isfinite(norm + total.policy + total.value + estimate_squares + total.kl)) return false;
   const double kl = total.kl / total.samples;
-  stats.policy_loss += total.policy / total.samples;
-  stats.value_loss += total.value / total.samples;
-  stats.estimate_loss += estimate_loss / total.samples;
   for (std::size_t k = 0; k < kEstimateSize; ++k) {
     stats.estimate_rms[k] += total.estimate_square[k] / total.samples;
   }
   stats.kl += kl;
   stats.clip_fraction += total.clipped / total.samples;
-  stats.gradient_norm += norm;
   if (symmetry_) stats.asymmetry += 2.0 * total.asymmetry / total.samples / kActionSize;
 
   counters_.learning_rate = adapted_learning_rate(counters_.learning_rate, kl, config_);
@@ -325,13 +320,9 @@ UpdateStats Learner::update() {
     adam_ = adam_before;
     counters_.learning_rate = learning_rate_before;
   }
-  stats.policy_loss /= done;
-  stats.value_loss /= done;
-  stats.estimate_loss /= done;
   for (double& square : stats.estimate_rms) square = std::sqrt(square / done);
   stats.kl /= done;
   stats.clip_fraction /= done;
-  stats.gradient_norm /= done;
   stats.asymmetry = std::sqrt(stats.asymmetry / done);
   stats.learning_rate = counters_.learning_rate;
 

@@ -47,13 +47,9 @@ double adapted_learning_rate(double learning_rate, double kl, const LearnerConfi
 /// Means over all minibatches of an update, unless said.
 struct UpdateStats {
   bool finite = true;  ///< false: a loss or gradient was not finite and nothing was learned
-  double policy_loss = 0.0;
-  double value_loss = 0.0;
-  double estimate_loss = 0.0;
   std::array<double, kEstimateSize> estimate_rms{};  ///< error, units of estimate_target
   double kl = 0.0;
   double clip_fraction = 0.0;
-  double gradient_norm = 0.0;       ///< before it was limited
   double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
   double learning_rate = 0.0;       ///< after the update
   double action_std = 0.0;          ///< geometric mean, after the update
@@ -108,11 +104,11 @@ class Learner {
   }
   const ParameterLayout& layout() const { return layout_; }
   const std::vector<float>& parameters() const { return parameters_; }
-  /// Running mean of the parameters over the last updates: what a policy is worth that does not
-  /// swing with the latest minibatches (Polyak, Juditsky 1992).
+  /// Running mean of the parameters over the last updates: a policy that does not swing with the
+  /// latest minibatches (Polyak, Juditsky 1992).
   const std::vector<float>& averaged() const { return averaged_; }
 
-  /// For who goes back to a checkpoint, so that the next updates differ from those that failed.
+  /// After a return to a checkpoint: makes the next updates differ from those that failed.
   void halve_learning_rate();
   /// KL target of the updates to come.
   void set_kl_target(double kl_target) { config_.kl_target = kl_target; }

@@ -144,7 +144,7 @@ inline double velocity_paid(const StepOutcome& s, const RewardSettings& r, const
   return r.velocity_weight * velocity_kernel(s, r.velocity_width, r.velocity_width_per_speed2);
 }
 
-/// What standing cannot collect.
+/// What a robot that stands still does not get.
 inline double progress_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
   const double speed2 = command_speed2(s);
   if (!(speed2 > 0.01)) return 0.0;
@@ -163,8 +163,8 @@ inline double yaw_progress_paid(const StepOutcome& s, const RewardSettings& r, c
          std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
 }
 
-/// Pointed kernels of the velocities without the gait's own swing: every bit of drift costs. None
-/// for standing while asked to go.
+/// Pointed kernels of the velocities without the gait's own swing: every bit of drift costs.
+/// Nothing for standing still when told to go.
 inline double precise_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
   const double ex = std::fabs(s.command[0] - s.drift[0]), ey = std::fabs(s.command[1] - s.drift[1]),
                ew = std::fabs(s.command[2] - s.drift[2]);
@@ -177,7 +177,7 @@ inline double precise_paid(const StepOutcome& s, const RewardSettings& r, const 
 
 /// Swings and stances up to a length; told to stand, stances only.
 inline double air_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
-  // `pose_charged` takes other commands for one to stand: what is between the two is rarely drawn.
+  // `pose_charged` has another limit for a command to stand; commands between the two are rare.
   const bool still = command_speed2(s) < 1e-4 && std::fabs(s.command[2]) < 1e-2f;
   double air = 0.0;
   for (int l = 0; l < kNumLegs; ++l) {
@@ -195,13 +195,13 @@ inline double air_paid(const StepOutcome& s, const RewardSettings& r, const Cost
 
 // What is charged.
 
-/// Energy for the way, not for the time: cost of transport counts at every speed. A way sideways,
-/// backwards or round is dear by nature: were it charged like one ahead, standing would be cheaper.
+/// Energy per distance, not per time: cost of transport counts at every speed. Going sideways or
+/// backwards and turning take more energy: charged like going ahead, standing would be cheaper.
 inline double energy_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   const double ahead = s.command[0] > 0.0f ? s.command[0] : -2.0 * s.command[0];
-  const double way = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
+  const double distance = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
-  return energy * ramp.energy * r.energy_speed_mps / (r.energy_offset_mps + way);
+  return energy * ramp.energy * r.energy_speed_mps / (r.energy_offset_mps + distance);
 }
 
 inline double joint_speed_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {

@@ -15,7 +15,8 @@
 
 namespace sandrunner::train {
 
-/// What opens as the policy gets better. Speed: commands; ground: how soft and uneven, 0 to 1.
+/// What grows as the policy gets better. Speed: top speed of the commands; ground: how soft and
+/// uneven it may be, 0 to 1.
 struct Curriculum {
   double speed_mps = 0.0;
   double ground = 0.0;
@@ -36,20 +37,21 @@ class Task {
 
   static constexpr int privileged_size() { return kPrivileged; }
   const InputScales& scales() const { return scales_; }
-  /// Left for right: the robot and its task are the same in the mirror.
+  /// Left and right exchanged: the robot and its task are the same in the mirror.
   static learner::Symmetry symmetry();
 
   /// Writes observation(t), privileged(t) and estimate_target(t) of a block.
   void observe(int block, int t, learner::Rollout& rollout);
-  /// Takes action(t) of a block, moves its robots 10 ms on, writes reward(t), end(t), resets whom
-  /// it must, and writes what observe(t + 1) would.
+  /// Takes action(t) of a block and advances its robots by 10 ms. Writes reward(t), end(t) and, at
+  /// a timeout, final_privileged(t); resets robots whose episode is over; writes reset(t + 1) and
+  /// what observe(t + 1) would.
   void step(int block, int t, learner::Rollout& rollout);
 
-  /// Means of the window just done; clears them and moves the curricula. `transitions`: total, for
-  /// the ramp of the costs.
+  /// Means over the window just done; clears its sums and advances the curricula and the ramp of
+  /// the costs. `transitions`: since the start of the training.
   WindowStats end_window(double transitions);
   const Curriculum& curriculum() const { return curriculum_; }
-  /// Share, 0 to 1, of what comes late in the training: rises while the costs go to their end.
+  /// 0 to 1: how far the costs have risen to their values at the end of the training.
   double late() const { return cost_ramp_.late; }
 
   void save(learner::Checkpoint& checkpoint) const;

@@ -45,20 +45,20 @@ double energy_cost(StepOutcome s) {
   return energy_charged(s, shipped_settings(), {});
 }
 
-TEST(RewardTest, WhoStandsWhenAskedToGoEarnsLessThanHalfOfWhoGoes) {
+TEST(RewardTest, StandingWhenToldToGoEarnsLessThanHalfOfGoing) {
   const RewardSettings r = shipped_settings();
   StepOutcome standing = obedient(0.0f, 0.0f, 0.0f);
   standing.command = {1.0f, 0.0f, 0.0f};
   EXPECT_LT(paid(standing, r), 0.5 * paid(obedient(1.0f, 0.0f, 0.0f), r));
 }
 
-TEST(RewardTest, EnergyIsChargedByTheWayAndNotByTheTime) {
+TEST(RewardTest, EnergyIsChargedPerDistanceAndNotPerTime) {
   const RewardSettings r = shipped_settings();
   EXPECT_NEAR(energy_cost(obedient(1.0f, 0.0f, 0.0f)) / energy_cost(obedient(3.0f, 0.0f, 0.0f)),
               (r.energy_offset_mps + 3.0) / (r.energy_offset_mps + 1.0), 1e-9);
 }
 
-TEST(RewardTest, AWaySidewaysOrBackwardsCountsDoubleAndATurnCounts) {
+TEST(RewardTest, EnergyIsSharedByDoubleTheWaySidewaysOrBackwardsAndByTurns) {
   const double ahead = energy_cost(obedient(1.0f, 0.0f, 0.0f));
   EXPECT_NEAR(energy_cost(obedient(-0.5f, 0.0f, 0.0f)), ahead, 1e-9);
   EXPECT_NEAR(energy_cost(obedient(0.0f, 0.5f, 0.0f)), ahead, 1e-9);
