@@ -62,7 +62,7 @@ struct TrialFigures {
 /// What does not change between runs.
 struct RobotFacts {
   double mass_kg = 0.0;
-  double motor_constant = 3.0;   ///< k_m, N m/sqrt(W) at the joint
+  double motor_constant = 0.0;   ///< k_m, N m/sqrt(W) at the joint
   double foot_diagonal_m = 0.0;  ///< l_c: LF to RH in the nominal pose
   JointArray<double> torque_limit_nm{};
 };

@@ -50,6 +50,7 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   std::uint64_t hash = learner::fnv1a(robot.description.name);
   hash = learner::fnv1a(bytes(robot.model), hash);
   hash = learner::fnv1a(bytes(robot.nominal_rad), hash);
+  hash = learner::fnv1a(bytes(robot.torque_speed_line), hash);
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 
