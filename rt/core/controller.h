@@ -16,8 +16,9 @@
 
 namespace sandrunner {
 
-// What a robot or a policy gives is 0 here: without them nothing moves. Everything else has its
-// default; settings of these names override both (rt/README.md).
+// What a robot or a policy gives is 0 here: without them nothing moves. The other values are
+// choices of this project, tried in simulation. Settings of the same names override both
+// (rt/README.md).
 
 /// Walk: joint targets of the policy with the policy's gains.
 struct WalkConfig {
@@ -26,10 +27,10 @@ struct WalkConfig {
   /// A policy output takes effect this many ticks after its input was sampled, 1 to 39; one that
   /// comes later takes effect at once and counts as late.
   std::uint64_t latency_ticks = 1;
-  // On request of Stand the command slows down to zero, the policy comes to rest, then Stand takes
-  // over.
-  double stop_deceleration_mps2 = 1.0;
-  double stop_yaw_deceleration_radps2 = 1.0;
+  // When Stand is requested, the command slows down to zero, the policy comes to rest, and then
+  // Stand takes over.
+  double stop_deceleration_mps2 = 1.0;        ///< of vx and of vy
+  double stop_yaw_deceleration_radps2 = 1.0;  ///< of the yaw rate
   double stop_speed_radps = 1.0;  ///< at rest: no joint and no body axis turns faster ...
   double stop_calm_s = 0.25;      ///< ... for this long
   double stop_time_s = 3.0;       ///< at zero command: longest wait for that rest
@@ -43,11 +44,12 @@ struct StandConfig {
   JointArray<double> nominal_rad{};
   /// Posture of each leg before it extends. From the robot's file.
   std::array<double, kJointsPerLeg> fold_rad{};
-  double fold_s = 1.0;
-  double extend_s = 1.5;
-  double skip_fold_rad = 0.3;    ///< no folding if all joints are nearer than this to nominal
-  double blend_s = 0.5;          ///< from the posture in Walk to that of Stand
-  double max_speed_radps = 4.0;  ///< of the targets: a longer way takes longer than the times above
+  double fold_s = 1.0;         ///< time to fold the legs
+  double extend_s = 1.5;       ///< time to extend them to the nominal posture
+  double skip_fold_rad = 0.3;  ///< no folding if all joints are nearer than this to nominal
+  double blend_s = 0.5;        ///< time from the posture in Walk to that of Stand
+  /// Of the targets; where they would be faster, the times above become longer.
+  double max_speed_radps = 4.0;
 };
 
 /// Damping and the damping after a fault.

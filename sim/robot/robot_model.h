@@ -23,15 +23,17 @@ struct Body {
   Sym3<S> inertia;
 };
 
-/// One leg. Joint axes are x (HAA) and y (HFE, KFE); at zero all link frames are parallel to the
-/// base.
+/// One leg: three joints in a row, hip abduction (HAA, about x), hip flexion (HFE, about y), knee
+/// flexion (KFE, about y). With all joints at zero the link frames are parallel to the base's.
 template <typename S>
 struct LegModel {
-  Vec3<S> haa;                ///< HAA origin in the base frame, m
-  Vec3<S> hfe;                ///< HFE origin in the hip frame, m
-  Vec3<S> kfe;                ///< KFE origin in the thigh frame, m
-  Vec3<S> foot;               ///< foot centre in the shank frame, m
-  Body<S> hip, thigh, shank;  ///< the shank includes the foot
+  Vec3<S> haa;    ///< HAA origin in the base frame, m
+  Vec3<S> hfe;    ///< HFE origin in the hip frame, m
+  Vec3<S> kfe;    ///< KFE origin in the thigh frame, m
+  Vec3<S> foot;   ///< foot centre in the shank frame, m
+  Body<S> hip;    ///< between HAA and HFE
+  Body<S> thigh;  ///< between HFE and KFE
+  Body<S> shank;  ///< below KFE, with the foot
 };
 
 template <typename S>
@@ -41,8 +43,8 @@ struct RobotModel {
   std::array<S, kNumJoints> rotor_inertia{};           ///< reflected to the joint, kg m^2
   std::array<S, kNumJoints> lower_rad{}, upper_rad{};  ///< stops
   std::array<S, kNumJoints> torque_limit_nm{}, speed_limit_radps{};
-  S foot_radius_m{};                           ///< tyre or sphere
-  S foot_width_m{};                            ///< of the tyre, along y
+  S foot_radius_m{};                           ///< of the tyre or ball
+  S foot_width_m{};                            ///< of the tyre, along y; 0: a ball
   S knee_radius_m{};                           ///< of the thigh's lower end
   S shank_radius_m{};                          ///< half the thickness of the shank
   Vec3<S> base_box_centre_m, base_box_half_m;  ///< collision box, base frame

@@ -62,6 +62,7 @@ int run(int argc, char** argv) {
       options->robot_path.empty() ? sim::load_raibo() : sim::load_robot(options->robot_path);
   std::vector<Policy> policies = {load_policy(options->policy_path)};
   if (!options->against_path.empty()) policies.push_back(load_policy(options->against_path));
+  for (const Policy& policy : policies) require_joints(policy.spec(), robot.description);
   const std::string dir = options->out_dir + "/";
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");

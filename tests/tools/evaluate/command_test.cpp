@@ -6,6 +6,7 @@
 
 #include "tests/policy/random_policy.h"
 #include "tests/support/program_test.h"
+#include "tests/support/small_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -56,12 +57,14 @@ TEST_F(EvaluateCommandTest, WritesOnlyThePartsAskedFor) {
 
 TEST_F(EvaluateCommandTest, RefusesBadInputInOneLine) {
   write_file(folder_.path("broken"), "no policy");
+  write_small_robot(folder_);
   const std::pair<const char*, const char*> cases[] = {
       {"", "--policy"},
       {"--policy absent", "absent"},
       {"--policy broken", "broken"},
       {"--policy p --against absent", "absent"},
       {"--policy p --robot absent", "absent"},
+      {"--policy p --robot small.toml", "policy 'random' is for another robot"},
       {"--policy p --runs 0", "--runs: 0"},
       {"--policy p --grid-runs -3", "--grid-runs: -3"},
       {"--policy p --threads 0", "--threads: 0"},
