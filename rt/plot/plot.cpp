@@ -14,13 +14,6 @@
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 
-#ifdef __SANITIZE_ADDRESS__
-// Fontconfig keeps its configuration until the process ends, behind pointers that the leak check
-// does not follow.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }  // NOLINT
-#endif
-
 namespace sandrunner::plot {
 namespace {
 

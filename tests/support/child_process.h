@@ -66,12 +66,8 @@ class ChildProcess {
     sigfillset(&every);
     posix_spawnattr_setsigdefault(&attributes, &every);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-    // The sanitizers' leak check otherwise lists on standard error what it was told to pass over.
-    std::vector<std::string> environment = {"LSAN_OPTIONS=print_suppressions=0"};
-    for (char** entry = environ; *entry != nullptr; ++entry) environment.emplace_back(*entry);
-
     const int error = posix_spawnp(&pid_, words.at(0).c_str(), &actions, &attributes,
-                                   pointers(words).data(), pointers(environment).data());
+                                   pointers(words).data(), environ);
     if (error != 0) {
       ADD_FAILURE() << words[0] << ": " << std::strerror(error);
       pid_ = -1;
