@@ -21,8 +21,8 @@ inline RobotDescription example_robot() {
 
 inline constexpr std::int64_t kExampleStart_ns = 1'700'000'000'900'000'000;
 
-/// A tick of a robot that walks along its x axis at 0.8 m/s, turned 90 degrees to the left; every
-/// value another one. The joints' positions grow by 1e-6 rad a tick.
+/// A tick of a robot that walks along its x axis at 0.8 m/s, turned 90 degrees to the left; all
+/// values differ. The joint positions grow by 1e-6 rad per tick.
 inline TickRecord example_tick(std::uint64_t tick) {
   TickRecord r{};
   SensorFrame& s = r.input.sensors;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MCAP files byte by byte, by the specification and without the writer: https://mcap.dev/spec
+// MCAP files byte by byte, from the specification and without the writer: https://mcap.dev/spec
 #pragma once
 
 #include <zlib.h>
@@ -52,7 +52,7 @@ inline std::string message(int channel_id, std::uint64_t time_ns, std::string_vi
                           .append(data));
 }
 
-/// `stored`: the records as they lie in the file. CRC 0: not to be checked.
+/// `stored`: the records as they are in the file. CRC 0: not to be checked.
 inline std::string chunk(std::uint64_t uncompressed_size, std::uint32_t uncompressed_crc,
                          std::string_view compression, std::string_view stored) {
   return record(0x06, (number(0, 16) + number(uncompressed_size, 8) + number(uncompressed_crc, 4) +

@@ -22,7 +22,7 @@ struct OwnedMessage {
   std::string data;
 };
 
-/// Everything that a reader gives before its end or its error.
+/// Everything that a reader returns before its end or its error.
 struct Content {
   std::vector<OwnedMessage> messages;
   std::vector<McapAttachment> attachments;
@@ -79,7 +79,7 @@ inline bool is_of_sample(const OwnedMessage& message, int i) {
          message.data == sample_data(i);
 }
 
-/// The messages are those of the sample from its beginning.
+/// Expects the first messages of the sample.
 inline bool is_start_of_sample(const Content& content) {
   int i = 0;
   for (const OwnedMessage& message : content.messages) {

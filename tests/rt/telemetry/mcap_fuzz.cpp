@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libFuzzer on the reader: any bytes end in a message, an end, or an InputError. How to run it:
-// rt/telemetry/README.md.
+// libFuzzer on the reader: any bytes lead to messages and an end, or to an InputError. How to run
+// it: rt/telemetry/README.md.
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
@@ -26,8 +26,7 @@ void read_all(const std::string& bytes) {
   }
 }
 
-/// The bytes as a file, behind a header, and inside chunks, where a CRC cannot turn the fuzzer
-/// away.
+/// The bytes as a file, after a header, and inside chunks without a CRC that would stop the fuzzer.
 void read_everywhere(const std::string& bytes) {
   read_all(bytes);
   read_all(kMagic + header("fuzz") + bytes);

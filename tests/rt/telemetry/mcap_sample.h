@@ -49,7 +49,7 @@ inline void write_sample_start(McapWriter& writer) {
   writer.write_metadata({.name = "build", .values = {{"compiler", "g++"}, {"version", "1"}}});
 }
 
-/// `flush_every`: messages a chunk, 0 to leave it to the writer.
+/// `flush_every`: messages per chunk; 0: as the writer decides.
 inline void write_sample(McapWriter& writer, int messages, int flush_every) {
   write_sample_start(writer);
   for (int i = 0; i < messages; ++i) {

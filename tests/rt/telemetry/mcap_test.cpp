@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the writer writes the reader reads, whole, cut or damaged.
+// The reader reads what the writer writes, whole, truncated or damaged.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -80,7 +80,7 @@ TEST(McapTest, FlippedBitInsideAChunkIsFound) {
   const TemporaryFolder folder;
   const std::string bytes = sample_bytes(folder, 200, 50);
   const auto chunks = records_of_type(bytes, 0x06);
-  constexpr std::size_t kFieldsBytes = 9 + 28 + 8 + 8;  // in front of the compressed records
+  constexpr std::size_t kFieldsBytes = 9 + 28 + 8 + 8;  // before the compressed records
   std::mt19937 random(2);
   int by_chunk = 0;
   for (int i = 0; i < 500; ++i) {
@@ -90,7 +90,7 @@ TEST(McapTest, FlippedBitInsideAChunkIsFound) {
         static_cast<char>(1U << (random() % 8));
     const Content content = read_bytes(damaged);
     EXPECT_TRUE(is_start_of_sample(content));
-    // A bit that zstd does not use changes no message: then the CRC of the whole data finds it.
+    // A bit that zstd does not use changes no message; the CRC of the whole data still finds it.
     const bool in_chunk =
         content.error.find("some.mcap: record at byte " + std::to_string(at) + ": found") == 0;
     EXPECT_TRUE(in_chunk || content.error.find("of the data section") != std::string::npos)
@@ -105,7 +105,7 @@ TEST(McapTest, MutatedFilesEndInAnErrorOrAsCutAndNeverGiveWrongMessages) {
   const std::string sample = sample_bytes(folder, 60, 12);
   std::string records = schema(1, "a/msg/B") + channel(1, 1, "/b");
   for (unsigned i = 0; i < 5; ++i) records += message(1, 10 + i, "data");
-  const std::string open = file_with_chunk(records);  // nothing stops it but the parser
+  const std::string open = file_with_chunk(records);  // only the parser can stop it
   std::mt19937 random(3);
   int errors = 0, cut = 0, right = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -186,7 +186,8 @@ TEST(McapTest, BytesThatAreNotAnMcapFileAreRefusedWithTheCause) {
   }
   const TemporaryFolder folder;
   std::string damaged_summary = sample_bytes(folder, 10, 0);
-  damaged_summary[damaged_summary.size() - 45] ^= 1;  // behind it: a footer of 29 bytes, 8 of magic
+  damaged_summary[damaged_summary.size() - 45] ^=
+      1;  // after it come a footer of 29 bytes and 8 of magic
   EXPECT_NE(read_bytes(damaged_summary).error.find("of the summary, expected"), std::string::npos);
   EXPECT_EQ(read_bytes("").error, "");  // killed before its first byte
   const Content good = read_bytes(file_with_chunk(crc_records));

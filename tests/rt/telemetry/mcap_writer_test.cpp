@@ -89,7 +89,7 @@ TEST(McapWriterTest, WritesTheSpecifiedBytesOfAChunkAndItsIndex) {
       record(0x07, number(1, 2) + number(32, 4) + number(30, 8) + number(declared.size(), 8) +
                        number(20, 8) + number(declared.size() + message(1, 30, data).size(), 8)));
 
-  // The next chunk starts anew.
+  // The next chunk starts afresh.
   write(50);
   writer.flush();
   const std::string longer = read_file(path);

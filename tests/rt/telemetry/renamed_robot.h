@@ -11,7 +11,7 @@
 
 namespace sandrunner {
 
-/// Writes the shipped robot into `folder` under the names of example_robot() (example_tick.h);
+/// Writes the shipped robot into `folder`, with the names of example_robot() (example_tick.h), and
 /// returns the path of its file, for the setting `robot`.
 inline std::string write_renamed_robot(const TemporaryFolder& folder) {
   for (const std::string type : {".urdf", ".toml"}) {

@@ -29,7 +29,7 @@ class DriveProgramTest : public testing::Test {
            now.c_iflag == before_.c_iflag && now.c_oflag == before_.c_oflag &&
            std::equal(std::begin(now.c_cc), std::end(now.c_cc), std::begin(before_.c_cc));
   }
-  // Until this has been shown.
+  // Waits until this has been shown.
   bool wait_for(const std::string& part) {
     return wait_until([&] {
       shown_ += pty_.shown();
@@ -56,7 +56,7 @@ TEST_F(DriveProgramTest, KeysMoveTheRobotAndItStopsWhenTheyEnd) {
   EXPECT_TRUE(wait_for("stand: accepted")) << shown_;
   pty_.type("f");
   ASSERT_TRUE(robot_.wait_for(Mode::kWalk));
-  EXPECT_TRUE(log.entries().empty());  // nothing has moved before the first key that steers
+  EXPECT_TRUE(log.entries().empty());  // nothing is sent before the first key that steers
 
   std::int64_t last_key_ns = 0;
   ASSERT_TRUE(wait_until([&] {  // a key that is held
@@ -70,8 +70,8 @@ TEST_F(DriveProgramTest, KeysMoveTheRobotAndItStopsWhenTheyEnd) {
   ASSERT_TRUE(wait_until([&] { return robot_.robot().speed_mps() == 0.0; }));
   pty_.type("q");
   ASSERT_TRUE(wait_until([&] { return log.entries().back().wz_radps == 0.5; }));
-  // Between the two keys 5 zeros, the first one 0.6 s after the end of the first key, and nothing
-  // more; when exactly all of them are sent, CommandPacerTest and KeyDriverTest say.
+  // Between the two keys there are 5 zeros, the first no sooner than 0.6 s after the last repeat of
+  // the first key. CommandPacerTest and KeyDriverTest have the exact times.
   const auto entries = log.entries();
   const auto zero =
       std::find_if(entries.begin(), entries.end(), [](auto& e) { return e.is_zero(); });

@@ -11,8 +11,8 @@
 
 namespace sandrunner::ctl {
 
-/// A robot on DDS: it follows velocities and mode requests, and publishes all topics at the rate of
-/// a real one (example_tick.h, with its mode).
+/// A robot on DDS: it follows velocities and mode requests, and publishes all topics at the rates
+/// of a real robot (with the values of example_tick.h, and its own mode).
 class FakeRobot {
  public:
   explicit FakeRobot(const DdsConfig& config)
@@ -51,7 +51,7 @@ class FakeRobot {
   std::thread thread_;
 };
 
-/// Everything that comes on rt/cmd_vel, with the time at which it was sent.
+/// Everything that arrives on rt/cmd_vel, with the time at which it was sent.
 class CommandLog {
  public:
   struct Entry {

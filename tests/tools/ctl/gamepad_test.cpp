@@ -28,7 +28,7 @@ TEST(GamepadTest, SticksBecomeVelocities) {
   pad.event(EV_ABS, ABS_Y, -32768);  // up
   pad.event(EV_ABS, ABS_X, -32768);  // left
   pad.event(EV_ABS, ABS_RX, 32767);  // right
-  pad.event(EV_ABS, ABS_RY, 32767);  // means nothing
+  pad.event(EV_ABS, ABS_RY, 32767);  // has no meaning
   const auto command = pad.command(0.8);
   ASSERT_TRUE(command);
   EXPECT_DOUBLE_EQ(command->vx_mps, 0.8);
@@ -70,7 +70,7 @@ TEST(GamepadTest, AfterAStopOrLostEventsTheButtonMustBePressedAnew) {
       pad.stop();
     }
     EXPECT_FALSE(pad.command(1.0));
-    pad.event(EV_KEY, BTN_TL, 2);  // the repetition of a held button
+    pad.event(EV_KEY, BTN_TL, 2);  // a held button repeats
     EXPECT_FALSE(pad.command(1.0));
     pad.event(EV_KEY, BTN_TL, 0);
     pad.event(EV_KEY, BTN_TL, 1);

@@ -97,7 +97,7 @@ TEST(KeysFromTest, LeavesSpecialKeysOutAndLowersLetters) {
   EXPECT_EQ(keys_from("\x1b\x1b[A"), (std::vector<char>{kKeyEscape}));
 }
 
-// Looks every `step_ns` from `from_ns` to before `to_ns`; returns the times at which it sent.
+// Asks every `step_ns` from `from_ns` until before `to_ns`; returns the times at which it sent.
 std::vector<std::int64_t> sent(CommandPacer& pacer, const std::optional<VelocityCommand>& wanted,
                                std::int64_t from_ns, std::int64_t to_ns, std::int64_t step_ns) {
   std::vector<std::int64_t> times;
@@ -119,7 +119,7 @@ TEST(CommandPacerTest, SendsNothingBeforeSomebodySteers) {
 TEST(CommandPacerTest, SendsTwentyASecondFromTheFirstMomentOn) {
   CommandPacer pacer;
   const auto times = sent(pacer, VelocityCommand{.vx_mps = 0.5}, 7000 * kMs, 8000 * kMs, 7 * kMs);
-  ASSERT_EQ(times.size(), 20u);  // on the grid although it looks every 7 ms
+  ASSERT_EQ(times.size(), 20u);  // on the grid, although it is asked every 7 ms
   EXPECT_EQ(times.front(), 7000 * kMs);
   EXPECT_GE(times.back(), 7950 * kMs);
 }

@@ -97,7 +97,7 @@ TEST(RobotViewTest, RatesAreOfTheLastThreeSeconds) {
   EXPECT_TRUE(has(view.screen(kSecond), "ticks 4000.0")) << view.screen(kSecond);
 }
 
-// A robot that publishes no ticks, or does no more, is shown by its diagnostics.
+// A robot that publishes no ticks, or none any more, is shown by its diagnostics.
 TEST(RobotViewTest, WithoutFreshTicksTheDiagnosticsSayIt) {
   char name[] = "sandrunner", mode[] = "mode", stand[] = "stand\x1b[31m", late[] = "tick_late_us",
        times[] = "p50 3.0, p99 4.0";
@@ -123,7 +123,7 @@ TEST(RobotViewTest, WithoutFreshTicksTheDiagnosticsSayIt) {
   char other[] = "battery";
   status.name = other;
   view.add(array, 10 * kSecond);
-  EXPECT_FALSE(view.alive(10 * kSecond));  // another's diagnostics are no sign of life
+  EXPECT_FALSE(view.alive(10 * kSecond));  // diagnostics of something else are no sign of life
 }
 
 TEST(RobotViewTest, ShowsTheEstimatedSpeed) {

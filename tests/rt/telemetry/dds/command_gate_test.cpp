@@ -49,7 +49,7 @@ TEST(CommandGateTest, ARefusedCommandHoldsNothing) {
   CommandGate gate(kStale);
   EXPECT_EQ(gate.judge({.linear_mps = {1e9, 0.0, 0.0}}, 1, 0), CommandVerdict::kAbsurd);
   EXPECT_EQ(gate.judge(kForward, 2, 1 * kMs), CommandVerdict::kAccepted);
-  // Nor does the holder's: it does not keep him in.
+  // Nor does one from the holder: it does not prolong the hold.
   EXPECT_EQ(gate.judge({.linear_mps = {NAN, 0.0, 0.0}}, 2, 200 * kMs), CommandVerdict::kNotFinite);
   EXPECT_EQ(gate.judge(kForward, 1, 302 * kMs), CommandVerdict::kAccepted);
 }

@@ -19,7 +19,7 @@ struct Walking : LiveSetup {
     EXPECT_EQ(robot.mode(), Mode::kWalk);
     twist = first.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
   }
-  // Sends velocities until the robot is asked for this one; returns how many.
+  // Sends this velocity until the robot has reached it; returns how many were sent.
   std::uint64_t drive_until(double vx_mps) {
     std::uint64_t sent = 0;
     EXPECT_TRUE(wait_until([&] {
@@ -51,7 +51,7 @@ TEST(CommandInboxTest, ATwistDrivesAndWhenItStopsTheRobotSlowsDown) {
   drive(setup.twist, 0.8);
   ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == sent + 1; }));
   EXPECT_EQ(setup.robot.speed_mps(), 0.8);
-  // 0.3 s after the last one it slows down at 1 m/s^2; when exactly, DdsOperatorTest says.
+  // 0.3 s after the last one it slows down at 1 m/s^2; DdsOperatorTest has the exact tick.
   const auto since_last_s = [&] {
     return static_cast<double>(setup.robot.ticks() - before_last) * kControlPeriod_s;
   };
@@ -118,7 +118,7 @@ TEST(CommandInboxTest, StopAndDampAreTakenFromOneThatDoesNotHoldTheCommand) {
   setup.drive_until(0.5);
   EXPECT_TRUE(bystander.ask("stop").accepted);
   EXPECT_TRUE(wait_until([&] {
-    drive(setup.twist, 0.5);  // goes on as if nothing had happened
+    drive(setup.twist, 0.5);  // the holder goes on as before
     return setup.robot.mode() == Mode::kStand;
   }));
   EXPECT_TRUE(setup.asker.ask("walk").accepted);
@@ -178,7 +178,7 @@ TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLat
     Peer peer(config);
     EXPECT_STREQ(Asker(peer).ask(request).reason, "the controller does not answer");
     op.command(0);
-    EXPECT_EQ(op.command(1).request, later) << request;  // what calms the robot still holds
+    EXPECT_EQ(op.command(1).request, later) << request;  // a damp still holds
   }
 }
 
@@ -205,7 +205,7 @@ TEST(CommandInboxTest, TwistStampedIsTakenIfTheConfigSaysSo) {
   geometry_msgs_msg_dds__TwistStamped_ twist{};
   char frame[] = "base";
   twist.header.frame_id = frame;
-  twist.header.stamp.sec = 1;  // long ago: what counts is when it arrives
+  twist.header.stamp.sec = 1;  // long ago, which is ignored
   twist.twist.linear.x = 0.5;
   dds_write(writer, &twist);
   EXPECT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == 1; }));

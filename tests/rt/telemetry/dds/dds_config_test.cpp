@@ -58,7 +58,7 @@ TEST(DdsConfigTest, AnInterfaceThatDoesNotExistIsNamedInOneLine) {
                 testing::HasSubstr("domain 230 on interface nosuch0 (nosuch0: does not "));
     EXPECT_THAT(e.what(), testing::Not(testing::HasSubstr("\n")));
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // nothing of the library's own beside it
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // and the library prints nothing
 }
 
 }  // namespace

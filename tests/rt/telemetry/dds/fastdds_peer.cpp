@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An independent peer, on eProsima's Fast DDS as ROS 2's rmw_fastrtps uses it:
 //   fastdds_peer DOMAIN VX_MPS SECONDS
-// Sends Twists at 50 Hz and receives every ROS topic with the QoS that a ROS 2 node has by default;
-// prints for each one how many messages came and what the last one said.
+// Sends Twists at 50 Hz and receives every ROS topic with a ROS 2 node's default QoS; prints for
+// each topic how many messages came and what was in the last one.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
@@ -27,7 +27,7 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-// On the loopback interface only, and looking for others there.
+// On the loopback interface only, and looking for peers only there.
 dds::DomainParticipantQos loopback_qos() {
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -167,5 +167,5 @@ int main(int argc, char** argv) {
   if (argc != 4) return 2;
   run(std::atoi(argv[1]), std::atof(argv[2]), std::atof(argv[3]));
   std::fflush(stdout);
-  std::_Exit(0);  // dies without a word to its peers
+  std::_Exit(0);  // without telling its peers
 }

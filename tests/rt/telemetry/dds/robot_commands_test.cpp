@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated robot walks on sand in real time, and somebody on DDS says where to.
+// The simulated robot walks on sand in real time, commanded over DDS.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Sends Twists at 50 Hz; asked more often it waits.
+/// Sends Twists at 50 Hz, however often it is asked to.
 class Driver {
  public:
   Driver(Peer& peer) : writer_(peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {}
@@ -50,7 +50,7 @@ class RobotCommandsTest : public testing::Test {
         telemetry_(participant_, config_.dds, config_.robot.description, &inbox_),
         peer_(config_.dds) {}
 
-  /// In Walk from the first tick on, for this long; `at` is called for each tick, soon after it.
+  /// Walks from the first tick on, for this long; `at` is called for each tick, soon after it.
   void walk(double duration_s, const std::function<void(double time_s)>& at) {
     std::atomic<bool> interrupt{false};
     const auto tap = [&](const TickRecord& tick) {
@@ -87,7 +87,7 @@ class RobotCommandsTest : public testing::Test {
     EXPECT_GT(count, 0.0);
     return sum / count;
   }
-  /// How fast the robot really went.
+  /// The robot's true mean speed.
   double speed_mps(double from_s, double to_s) const {
     return mean(from_s, to_s,
                 [](const TickRecord& tick) { return tick.truth.state.velocity_mps[0]; });
@@ -99,7 +99,7 @@ class RobotCommandsTest : public testing::Test {
     }
     return kNan;
   }
-  /// Nobody speaks since `silent_s`.
+  /// The last command came at `silent_s`.
   void expect_slows_to_a_stand_after(double silent_s) const {
     EXPECT_GT(speed_mps(silent_s - 0.5, silent_s), 0.3);
     EXPECT_NEAR(first_s(silent_s, 0.0) - silent_s, 0.3, 0.1);

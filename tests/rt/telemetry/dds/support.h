@@ -27,7 +27,7 @@
 
 namespace sandrunner {
 
-/// A domain of its own: 100 to 200, drawn by lot, and held by the name of a socket until this
+/// A domain of its own, drawn from 100 to 200 and reserved by the name of a socket until this
 /// process ends, so that tests that run at the same time never meet.
 inline DdsConfig test_config() {
   DdsConfig config;
@@ -45,7 +45,7 @@ inline DdsConfig test_config() {
   return config;
 }
 
-/// Waits until `holds`, at most 5 s.
+/// Waits until `holds()`, for 5 s at most; returns whether it held.
 inline bool wait_until(const std::function<bool()>& holds) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (!holds()) {
@@ -66,7 +66,7 @@ inline double number_after(const std::string& printed, const std::string& word) 
   return at == std::string::npos ? -1.0 : std::stod(text.substr(at + word.size()));
 }
 
-/// Another participant of the same process and domain, with a mind of its own about QoS.
+/// Another participant in the same process and domain, with its own QoS.
 class Peer {
  public:
   explicit Peer(const DdsConfig& config)
@@ -79,7 +79,7 @@ class Peer {
   dds_entity_t reader(const char* topic, const dds_topic_descriptor_t& type, bool latched = false) {
     return dds_create_reader(participant_, make_topic(topic, type), qos(latched).get(), nullptr);
   }
-  /// Returns once `readers` readers have found it.
+  /// Returns once it has found `readers` readers.
   dds_entity_t writer(const char* topic, const dds_topic_descriptor_t& type,
                       std::uint32_t readers = 1) {
     const dds_entity_t writer =
@@ -111,7 +111,7 @@ class Peer {
   dds_entity_t participant_;
 };
 
-/// Takes all that is there; `use` sees each value.
+/// Takes all messages that have arrived; `use` is given each.
 template <typename Message>
 int take(dds_entity_t reader, const std::function<void(const Message&)>& use) {
   int count = 0;
@@ -135,8 +135,8 @@ inline void drive(dds_entity_t writer, double vx_mps) {
   dds_write(writer, &twist);
 }
 
-/// Publishes examples at the control loop's rate, from this tick on; returns the longest time that
-/// one add() took, in s.
+/// Publishes example ticks at the control loop's rate, from `first_tick` on; returns the longest
+/// time that one add() took, s.
 inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double duration_s) {
   using Steady = std::chrono::steady_clock;
   const auto start = Steady::now();
@@ -156,12 +156,12 @@ inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double
   return longest_s;
 }
 
-/// A robot on 4 kHz of real time that does what a DdsOperator wants, in a thread of its own.
+/// A robot that follows a DdsOperator at 4 kHz in real time, in a thread of its own.
 class LiveRobot {
  public:
   LiveRobot(DdsOperator& op, const DdsConfig& config) : operator_(op) {
     controller_.shaping.operator_hold_ticks = config.stale_ticks();
-    controller_.stand.fold_s = controller_.stand.extend_s = 0.05;  // stands up in no time
+    controller_.stand.fold_s = controller_.stand.extend_s = 0.05;  // stands up quickly
     controller_.stand.max_speed_radps = 20.0;
     loop_ = std::make_unique<FakeLoop>(Mode::kPassive, controller_);
     thread_ = std::thread([this] { run(); });
@@ -173,7 +173,7 @@ class LiveRobot {
 
   std::uint64_t ticks() const { return ticks_; }  ///< done
   Mode mode() const { return mode_; }
-  double speed_mps() const { return speed_mps_; }  ///< that the policy is asked for
+  double speed_mps() const { return speed_mps_; }  ///< the policy is asked for
   /// Waits for two more ticks: what was set before has then had its effect.
   bool go_on() const {
     const std::uint64_t end = ticks_ + 2;
@@ -213,7 +213,7 @@ class LiveRobot {
   std::thread thread_;
 };
 
-/// Robot's side of the commands, complete.
+/// The robot's whole side of the commands.
 struct LiveSetup {
   explicit LiveSetup(const DdsConfig& config_in = test_config(), bool can_walk = true)
       : config(config_in),
@@ -229,14 +229,14 @@ struct LiveSetup {
   LiveRobot robot;
 };
 
-/// An operator in the same process who asks for modes and waits for the answers.
+/// An operator in the same process that sends mode requests and waits for the replies.
 class Asker {
  public:
   explicit Asker(Peer& peer)
       : replies_(peer.reader("sandrunner/mode_reply", sandrunner_ModeReply_desc)),
         requests_(peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc)) {}
 
-  /// The reply; "no reply" as its reason if none came.
+  /// Returns the reply; if none came, one with the reason "no reply".
   sandrunner_ModeReply ask(const std::string& request) {
     sandrunner_ModeRequest message{};
     message.id = ++id_;

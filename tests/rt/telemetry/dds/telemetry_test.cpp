@@ -11,7 +11,7 @@
 namespace sandrunner {
 namespace {
 
-// Telemetry with a peer that was there before it.
+// Telemetry with a peer that is there first.
 struct Published {
   Published() : config(test_config()), participant(config), peer(config) {}
   void publish(std::uint64_t ticks) {
@@ -177,7 +177,7 @@ TEST(TelemetryTest, EveryTickIsInTheBatchesOnceAndInOrder) {
   take<sandrunner_TickBatch>(reader, [&](const sandrunner_TickBatch& m) {
     EXPECT_EQ(m.sequence_number, ++batches);
     EXPECT_EQ(m.stamp_ns, kExampleStart_ns + static_cast<std::int64_t>(ticks) * 250'000);
-    EXPECT_EQ(m.ticks._length, batches <= 100 ? 40u : 10u);  // the rest at the end
+    EXPECT_EQ(m.ticks._length, batches <= 100 ? 40u : 10u);  // the last ones at the end
     for (std::uint32_t i = 0; i < m.ticks._length; ++i) {
       EXPECT_EQ(m.ticks._buffer[i].tick, ticks++);
     }

@@ -23,11 +23,11 @@ namespace {
 
 constexpr double kWindow_s = 2.0;
 
-/// Walks in lockstep in front of a black box with a short window.
+/// Walks in lockstep, with a black box that has a short window.
 class BlackBoxTest : public RecordingProgramTest {
  protected:
   BlackBoxTest() {
-    flush_denormals_to_zero();  // as the programs
+    flush_denormals_to_zero();  // as in the programs
     info_.build = build_name();
     info_.start_mode = "walk";
     info_.clock = "lockstep";
@@ -43,7 +43,7 @@ class BlackBoxTest : public RecordingProgramTest {
     box_.emplace(folder, info_, config_.controller, &policy_, kWindow_s, true);
   }
 
-  /// Goes on until that tick. In the ticks `faults` the command is not a number: a fault.
+  /// Walks on to tick `end`. In the ticks `faults` the command is not a number, which is a fault.
   void walk_to(std::uint64_t end, const std::set<std::uint64_t>& faults = {}) {
     for (std::uint64_t tick = loop_.next_tick(); tick < end; ++tick) {
       OperatorCommand command = command_;
@@ -62,7 +62,7 @@ class BlackBoxTest : public RecordingProgramTest {
   std::string path(std::uint64_t fault_tick) const {
     return folder_.path("black-box-" + std::to_string(fault_tick) + ".mcap");
   }
-  /// The numbers of the ticks in a file follow each other.
+  /// Expects consecutive ticks in a file.
   RecordingContents read(const std::string& file, std::uint64_t& last_tick) const {
     std::uint64_t next = 0;
     bool first = true;
@@ -92,7 +92,7 @@ class BlackBoxTest : public RecordingProgramTest {
       &policy_.spec());
   RecordingInfo info_;
   OperatorCommand command_;
-  std::pair<std::uint64_t, std::uint64_t> lost_{};  ///< ticks that the black box is not given
+  std::pair<std::uint64_t, std::uint64_t> lost_{};  ///< from, to: the black box does not get these
   std::optional<BlackBox> box_;
 
  private:
@@ -253,7 +253,7 @@ TEST_F(BlackBoxTest, TicksLostBeforeTheWindowLeaveAFileThatCannotBeReplayed) {
   EXPECT_EQ(last, 23999u);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 2);
   expect_one_line("it cannot be replayed");
-  // Its pictures can be drawn all the same.
+  // Its pictures can still be drawn.
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --plot '" + folder_.path("plots") + "'"), 2);
   EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
 }
@@ -300,7 +300,7 @@ TEST_F(BlackBoxTest, DamagedStateIsBadInput) {
   refused([](std::string& state) { state[16] = 77; }, "mode 77");
 }
 
-// Two threads: the answers come late, some inputs of the policy are under way at any tick.
+// With two threads, answers come late, so that at any tick the policy may still be at work.
 TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   box_.emplace(dir(), info_, config_.controller, &policy_, 0.3);
   LiveOperator op;
@@ -329,7 +329,7 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
 
 class BlackBoxOfTheProgram : public BlackBoxTest {
  protected:
-  // The body of a walking robot tilts by more than that soon.
+  // The body of a walking robot soon tilts by more than that.
   static constexpr const char* kRun =
       "--clock realtime --start walk --duration 3 --set controller.gate.tilt_fault_deg=1.5 ";
 

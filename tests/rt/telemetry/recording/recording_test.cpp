@@ -147,7 +147,7 @@ TEST_F(RecordingTest, FullDiskEndsTheRecordingAndNotTheRun) {
             0);
   EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
   EXPECT_NE(output().find("STOPPED"), std::string::npos) << output();
-  // What is there can be read.
+  // What was written can be read.
   EXPECT_FALSE(read_recording(path(), {}, [](const TickRecord&) { return true; }).complete);
 }
 
@@ -194,7 +194,7 @@ TEST_F(RecordingTest, EventsAreModesRequestsAndFaults) {
             "request stand; mode stand; ");
 }
 
-// Every topic and field of the layout, e.g. "/odom.twist.twist.linear.x", is in a recording.
+// Every topic and field of the layout, e.g. "/odom.twist.twist.linear.x", exists in a recording.
 TEST_F(RecordingTest, FoxgloveLayoutShowsWhatExists) {
   record();
   McapReader reader(path());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ROS 2's topics of a recording, of a robot with names of its own.
+// ROS 2's topics in the recording of a robot with names of its own.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -15,7 +15,7 @@ namespace {
 
 class RosMessagesTest : public testing::Test {
  protected:
-  /// The last message of each topic of a recording of half a second.
+  /// Keeps the last message of each topic of a recording of half a second.
   void SetUp() override {
     const std::string path = folder_.path("run.mcap");
     RecordingInfo info;
@@ -31,8 +31,8 @@ class RosMessagesTest : public testing::Test {
     }
   }
 
-  /// Behind the header of a message, which must be this one.
-  CdrReader behind_header(CdrReader cdr, const std::string& frame) {
+  /// What follows the header of a message, which is expected to have this frame.
+  CdrReader after_header(CdrReader cdr, const std::string& frame) {
     EXPECT_EQ(cdr.number<std::int32_t>(), 1'700'000'001);  // 0.5 s after the start
     EXPECT_EQ(cdr.number<std::uint32_t>(), 400'000'000u);
     EXPECT_EQ(text(cdr), frame);
@@ -60,7 +60,7 @@ class RosMessagesTest : public testing::Test {
 };
 
 TEST_F(RosMessagesTest, JointStatesHaveTheRobotsNamesAndWhatWasMeasured) {
-  CdrReader cdr = behind_header(CdrReader(messages_["/joint_states"]), "trunk");
+  CdrReader cdr = after_header(CdrReader(messages_["/joint_states"]), "trunk");
   EXPECT_EQ(cdr.number<std::uint32_t>(), 12u);
   for (const std::string& name : robot_.joint_names) EXPECT_EQ(text(cdr), name);
   const JointState joints = example_tick(2000).input.sensors.joints;
@@ -72,7 +72,7 @@ TEST_F(RosMessagesTest, JointStatesHaveTheRobotsNamesAndWhatWasMeasured) {
 }
 
 TEST_F(RosMessagesTest, ImuIsWhatTheSensorSaidInTheRobotsBaseLink) {
-  CdrReader cdr = behind_header(CdrReader(messages_["/imu/data"]), "trunk");
+  CdrReader cdr = after_header(CdrReader(messages_["/imu/data"]), "trunk");
   expect(cdr, {0.0, 0.0, 0.70710678118654752, 0.70710678118654752});  // x, y, z, w
   expect_zeros(cdr, 9);
   expect(cdr, {0.1, 0.2, 0.3});
@@ -87,7 +87,7 @@ TEST_F(RosMessagesTest, OdometryAndTransformLeadToTheRobotsBaseLink) {
   EXPECT_EQ(tf.number<std::uint32_t>(), 1u);
   CdrReader odometry(messages_["/odom"]);
   for (CdrReader* cdr : {&tf, &odometry}) {
-    *cdr = behind_header(*cdr, "odom");
+    *cdr = after_header(*cdr, "odom");
     EXPECT_EQ(text(*cdr), "trunk");
     EXPECT_NEAR(cdr->number<double>(), 0.0, 1e-9);
     EXPECT_NEAR(cdr->number<double>(), 0.4, 1e-9);  // 0.8 m/s to its front, which is the left
