@@ -126,11 +126,10 @@ void watch_topic(const Options& options, Interrupt& interrupt) {
   long long printed = 0;
   bool open = true;
   const auto look = [&] {
-    take(
+    printed += take(
         reader,
-        [&](const void* message) {
+        [&](const void* message, const dds_sample_info_t&) {
           open = open && print(topic.text(message) + "\n");
-          ++printed;
         },
         wanted - printed);
     return printed == wanted || !open;

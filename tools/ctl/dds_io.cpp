@@ -77,8 +77,8 @@ void ModeClient::ask(std::string_view request) {
 
 std::optional<sandrunner_ModeReply> ModeClient::reply() {
   std::optional<sandrunner_ModeReply> found;
-  take(replies_, [&](const void* sample) {
-    const auto& reply = *static_cast<const sandrunner_ModeReply*>(sample);
+  take(replies_, [&](const void* message, const dds_sample_info_t&) {
+    const auto& reply = *static_cast<const sandrunner_ModeReply*>(message);
     if (reply.id == id_) found = reply;
   });
   return found;

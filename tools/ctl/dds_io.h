@@ -13,21 +13,6 @@
 
 namespace sandrunner::ctl {
 
-/// Takes at most `limit` of the messages that have arrived; `use` is given each as const void*.
-template <typename Use>
-void take(dds_entity_t reader, const Use& use, long long limit = INT64_MAX) {
-  void* sample = nullptr;
-  dds_sample_info_t info;
-  while (limit > 0 && dds_take(reader, &sample, &info, 1, 1) == 1) {
-    if (info.valid_data) {
-      use(static_cast<const void*>(sample));
-      --limit;
-    }
-    dds_return_loan(reader, &sample, 1);
-    sample = nullptr;
-  }
-}
-
 /// How many readers a writer has found, and how many writers a reader has found.
 std::uint32_t readers_of(dds_entity_t writer);
 std::uint32_t writers_of(dds_entity_t reader);

@@ -133,6 +133,7 @@ std::string RobotView::screen(std::int64_t now_ns) const {
   };
   row("mode", mode(now_ns));
   row("faults", faults(now_ns));
+  row("of joints", value("fault_joints"));
   row("command", command(now_ns));
   row("speed", has_odometry_
                    ? fmt::format("{:.2f} {:.2f} m/s {:.2f} rad/s, height {:.2f} m (estimated)",

@@ -2,7 +2,6 @@
 #include "tools/ctl/view_reader.h"
 
 #include "rt/telemetry/dds/tick_batches.h"
-#include "tools/ctl/dds_io.h"
 #include "tools/ctl/interrupt.h"
 
 namespace sandrunner::ctl {
@@ -28,16 +27,18 @@ ViewReader::ViewReader(const DdsParticipant& participant)
 void ViewReader::take_into(RobotView& view) {
   const std::int64_t now_ns = steady_ns();
   for (const auto topic : {RobotView::kJointStates, RobotView::kImu, RobotView::kTf}) {
-    take(readers_[topic], [&](const void*) { view.count(topic, now_ns); });
+    take(readers_[topic],
+         [&](const void*, const dds_sample_info_t&) { view.count(topic, now_ns); });
   }
-  take(readers_[RobotView::kOdometry], [&](const void* m) {
+  take(readers_[RobotView::kOdometry], [&](const void* m, const dds_sample_info_t&) {
     view.add(*static_cast<const nav_msgs_msg_dds__Odometry_*>(m), now_ns);
   });
-  take(readers_[RobotView::kDiagnostics], [&](const void* m) {
+  take(readers_[RobotView::kDiagnostics], [&](const void* m, const dds_sample_info_t&) {
     view.add(*static_cast<const diagnostic_msgs_msg_dds__DiagnosticArray_*>(m), now_ns);
   });
-  take(readers_[RobotView::kTicks],
-       [&](const void* m) { view.add(*static_cast<const sandrunner_TickBatch*>(m), now_ns); });
+  take(readers_[RobotView::kTicks], [&](const void* m, const dds_sample_info_t&) {
+    view.add(*static_cast<const sandrunner_TickBatch*>(m), now_ns);
+  });
 }
 
 }  // namespace sandrunner::ctl

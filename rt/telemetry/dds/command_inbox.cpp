@@ -100,37 +100,25 @@ void CommandInbox::run() {
 }
 
 void CommandInbox::take_velocity() {
-  void* sample = nullptr;
-  dds_sample_info_t info;
-  while (dds_take(cmd_vel_, &sample, &info, 1, 1) == 1) {
-    if (info.valid_data) {
-      const Twist twist =
-          twist_from(stamped_ ? static_cast<geometry_msgs_msg_dds__TwistStamped_*>(sample)->twist
-                              : *static_cast<geometry_msgs_msg_dds__Twist_*>(sample));
-      const CommandVerdict verdict = gate_.judge(twist, info.publication_handle, steady_ns());
-      if (verdict == CommandVerdict::kAccepted) {
-        asked_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
-        ++asked_.velocity_number;
-        operator_.ask(asked_);
-      }
-      ++velocities_[static_cast<std::size_t>(verdict)];
+  take(cmd_vel_, [this](const void* message, const dds_sample_info_t& info) {
+    const Twist twist = twist_from(
+        stamped_ ? static_cast<const geometry_msgs_msg_dds__TwistStamped_*>(message)->twist
+                 : *static_cast<const geometry_msgs_msg_dds__Twist_*>(message));
+    const CommandVerdict verdict = gate_.judge(twist, info.publication_handle, steady_ns());
+    if (verdict == CommandVerdict::kAccepted) {
+      asked_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
+      ++asked_.velocity_number;
+      operator_.ask(asked_);
     }
-    dds_return_loan(cmd_vel_, &sample, 1);
-    sample = nullptr;
-  }
+    ++velocities_[static_cast<std::size_t>(verdict)];
+  });
 }
 
 void CommandInbox::take_requests() {
-  void* sample = nullptr;
-  dds_sample_info_t info;
-  while (dds_take(requests_, &sample, &info, 1, 1) == 1) {
-    if (info.valid_data) {
-      const auto& request = *static_cast<sandrunner_ModeRequest*>(sample);
-      answer(request.id, request.request);
-    }
-    dds_return_loan(requests_, &sample, 1);
-    sample = nullptr;
-  }
+  take(requests_, [this](const void* message, const dds_sample_info_t&) {
+    const auto& request = *static_cast<const sandrunner_ModeRequest*>(message);
+    answer(request.id, request.request);
+  });
 }
 
 void CommandInbox::answer(std::uint64_t id, std::string_view request) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "dds/dds.h"
@@ -35,6 +36,24 @@ class DdsParticipant {
 
   dds_entity_t domain_ = 0, participant_ = 0;
 };
+
+/// Takes the messages that have arrived, `limit` at most; `use` is given each as
+/// (const void* message, const dds_sample_info_t& info). Returns how many there were.
+template <typename Use>
+long long take(dds_entity_t reader, const Use& use, long long limit = INT64_MAX) {
+  long long taken = 0;
+  void* message = nullptr;
+  dds_sample_info_t info;
+  while (taken < limit && dds_take(reader, &message, &info, 1, 1) == 1) {
+    if (info.valid_data) {
+      use(static_cast<const void*>(message), info);
+      ++taken;
+    }
+    dds_return_loan(reader, &message, 1);
+    message = nullptr;
+  }
+  return taken;
+}
 
 /// `result` if it is a handle or a success; otherwise throws an InputError that names `what`.
 dds_entity_t check_dds(dds_entity_t result, const std::string& what);

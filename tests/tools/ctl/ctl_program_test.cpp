@@ -63,7 +63,7 @@ TEST(CtlProgramTest, ARobotThatDoesNotAnswerIsWaitedForTwoSeconds) {
   // An answer to somebody else's request.
   sandrunner_ModeReply reply{};
   ASSERT_TRUE(wait_until([&] {
-    return sandrunner::take<sandrunner_ModeRequest>(
+    return take<sandrunner_ModeRequest>(
                requests, [&](const auto& request) { reply.id = request.id + 1; }) > 0;
   }));
   reply.accepted = true;
@@ -252,7 +252,7 @@ TEST(CtlProgramTest, StatusOnceShowsTheRobot) {
   const Ended ended = run({"status", "--once"}, config);
   EXPECT_EQ(ended.code, 0) << ended.err;
   for (const char* part :
-       {"mode           passive\n", "faults         none\n",
+       {"mode           passive\n", "faults         none\nof joints      none\n",
         "command        0.90 -0.10 m/s 0.20 rad/s\n", "speed          0.00 0.00 m/s",
         "late, us       last 2 s: p50 2.0, p99 2.0  since the start: p50 2.0",
         "control, us    last 2 s: p50 4.0, p99 4.0", "write, us      last 2 s: p50 5.0, p99 5.0",

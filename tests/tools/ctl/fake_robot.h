@@ -64,16 +64,10 @@ class CommandLog {
       : reader_(peer.reader("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {}
 
   const std::vector<Entry>& entries() {
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    while (dds_take(reader_, &sample, &info, 1, 1) == 1) {
-      if (info.valid_data) {
-        const auto& t = *static_cast<const geometry_msgs_msg_dds__Twist_*>(sample);
-        entries_.push_back({info.source_timestamp, t.linear.x, t.linear.y, t.angular.z});
-      }
-      dds_return_loan(reader_, &sample, 1);
-      sample = nullptr;
-    }
+    take(reader_, [&](const void* message, const dds_sample_info_t& info) {
+      const auto& t = *static_cast<const geometry_msgs_msg_dds__Twist_*>(message);
+      entries_.push_back({info.source_timestamp, t.linear.x, t.linear.y, t.angular.z});
+    });
     return entries_;
   }
 

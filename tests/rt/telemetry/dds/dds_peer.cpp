@@ -4,7 +4,8 @@
 //   dds_peer DOMAIN INTERFACE watch SECONDS [SECURITY_DIR IDENTITY]        counts the gaps between
 //       batches of ticks, and the ticks that are neither there nor reported as missed by the robot
 //   dds_peer DOMAIN INTERFACE publish SECONDS                              telemetry of a robot
-// Prints what it did as one line; "matched" is printed as soon as it found the other end.
+// Prints what it did as one line; "matched" as soon as it has found the other end, and "watching"
+// before that, when its reader is there.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +21,7 @@
 namespace sandrunner {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Steady = std::chrono::steady_clock;
 
 void say(const char* line) {
   std::puts(line);
@@ -39,8 +40,6 @@ int drive(const DdsParticipant& participant, double vx_mps, int count) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  // The other end may still be exchanging keys.
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   geometry_msgs_msg_dds__Twist_ twist{};
   twist.linear.x = vx_mps;
   for (int i = 0; i < count; ++i) {
@@ -54,29 +53,23 @@ int drive(const DdsParticipant& participant, double vx_mps, int count) {
 int watch(const DdsParticipant& participant, double duration_s) {
   const dds_entity_t reader =
       participant.reader("sandrunner/ticks", sandrunner_TickBatch_desc, 1000, true);
+  say("watching");
   long batches = 0, gaps = 0, ticks = 0;
   std::uint64_t last = 0, next_tick = 0, lost = 0;
-  const auto end = Clock::now() + std::chrono::duration<double>(duration_s);
-  while (Clock::now() < end) {
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    while (dds_take(reader, &sample, &info, 1, 1) == 1) {
-      if (info.valid_data) {
-        const auto& batch = *static_cast<sandrunner_TickBatch*>(sample);
-        if (batches == 0) say("matched");
-        if (batches != 0 && batch.sequence_number != last + 1) ++gaps;
-        last = batch.sequence_number;
-        for (std::uint32_t i = 0; i < batch.ticks._length; ++i) {
-          const sandrunner_TickState& tick = batch.ticks._buffer[i];
-          if (batches != 0 || i != 0) lost += tick.tick - tick.skipped - next_tick;
-          next_tick = tick.tick + 1;
-        }
-        ++batches;
-        ticks += batch.ticks._length;
+  const auto end = Steady::now() + std::chrono::duration<double>(duration_s);
+  while (Steady::now() < end) {
+    take<sandrunner_TickBatch>(reader, [&](const sandrunner_TickBatch& batch) {
+      if (batches == 0) say("matched");
+      if (batches != 0 && batch.sequence_number != last + 1) ++gaps;
+      last = batch.sequence_number;
+      for (std::uint32_t i = 0; i < batch.ticks._length; ++i) {
+        const sandrunner_TickState& tick = batch.ticks._buffer[i];
+        if (batches != 0 || i != 0) lost += tick.tick - tick.skipped - next_tick;
+        next_tick = tick.tick + 1;
       }
-      dds_return_loan(reader, &sample, 1);
-      sample = nullptr;
-    }
+      ++batches;
+      ticks += batch.ticks._length;
+    });
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   std::printf("batches %ld gaps %ld ticks %ld lost_ticks %lld last %llu\n", batches, gaps, ticks,

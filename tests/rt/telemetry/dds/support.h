@@ -111,21 +111,12 @@ class Peer {
   dds_entity_t participant_;
 };
 
-/// Takes all messages that have arrived; `use` is given each.
+/// Takes all messages that have arrived; `use` is given each. Returns how many there were.
 template <typename Message>
-int take(dds_entity_t reader, const std::function<void(const Message&)>& use) {
-  int count = 0;
-  void* sample = nullptr;
-  dds_sample_info_t info;
-  while (dds_take(reader, &sample, &info, 1, 1) == 1) {
-    if (info.valid_data) {
-      use(*static_cast<const Message*>(sample));
-      ++count;
-    }
-    dds_return_loan(reader, &sample, 1);
-    sample = nullptr;
-  }
-  return count;
+long long take(dds_entity_t reader, const std::function<void(const Message&)>& use) {
+  return take(reader, [&](const void* message, const dds_sample_info_t&) {
+    use(*static_cast<const Message*>(message));
+  });
 }
 
 /// Writes a Twist with this forward velocity.

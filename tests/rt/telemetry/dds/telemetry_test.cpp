@@ -31,7 +31,7 @@ TEST(TelemetryTest, JointStatesHaveTheRobotsNamesValuesStampsAndTheRateThatWasAs
   setup.publish(4001);
   const RobotDescription robot = example_robot();
   int n = 0;
-  const int count = take<sensor_msgs_msg_dds__JointState_>(
+  const auto count = take<sensor_msgs_msg_dds__JointState_>(
       reader, [&](const sensor_msgs_msg_dds__JointState_& m) {
         const std::uint64_t tick = 40 * static_cast<std::uint64_t>(++n);
         const std::int64_t stamp_ns = kExampleStart_ns + static_cast<std::int64_t>(tick) * 250'000;
@@ -56,15 +56,16 @@ TEST(TelemetryTest, ImuIsWhatTheSensorSaid) {
   Published setup;
   const auto reader = setup.peer.reader("rt/imu/data", sensor_msgs_msg_dds__Imu__desc);
   setup.publish(41);
-  const int count = take<sensor_msgs_msg_dds__Imu_>(reader, [](const sensor_msgs_msg_dds__Imu_& m) {
-    EXPECT_STREQ(m.header.frame_id, "trunk");
-    EXPECT_EQ(m.orientation.w, 0.70710678118654752);
-    EXPECT_EQ(m.orientation.x, 0.0);
-    EXPECT_EQ(m.orientation.z, 0.70710678118654752);
-    EXPECT_EQ(m.angular_velocity.y, 0.2);
-    EXPECT_EQ(m.linear_acceleration.z, 9.8);
-    EXPECT_EQ(m.orientation_covariance[0], 0.0);
-  });
+  const auto count =
+      take<sensor_msgs_msg_dds__Imu_>(reader, [](const sensor_msgs_msg_dds__Imu_& m) {
+        EXPECT_STREQ(m.header.frame_id, "trunk");
+        EXPECT_EQ(m.orientation.w, 0.70710678118654752);
+        EXPECT_EQ(m.orientation.x, 0.0);
+        EXPECT_EQ(m.orientation.z, 0.70710678118654752);
+        EXPECT_EQ(m.angular_velocity.y, 0.2);
+        EXPECT_EQ(m.linear_acceleration.z, 9.8);
+        EXPECT_EQ(m.orientation_covariance[0], 0.0);
+      });
   EXPECT_EQ(count, 1);
 }
 
@@ -74,7 +75,7 @@ TEST(TelemetryTest, OdometryAndTfIntegrateTheEstimatedVelocityInTheWorld) {
   const auto tf = setup.peer.reader("rt/tf", tf2_msgs_msg_dds__TFMessage__desc);
   setup.publish(8001);
   double last_variance_m2 = -1.0, y_m = 0.0;
-  const int count =
+  const auto count =
       take<nav_msgs_msg_dds__Odometry_>(odom, [&](const nav_msgs_msg_dds__Odometry_& m) {
         EXPECT_STREQ(m.header.frame_id, "odom");
         EXPECT_STREQ(m.child_frame_id, "trunk");
