@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program itself in real time: operators and subscribers, good and bad, beside it, and a
-// recording that replays bit for bit. Longer by the environment, once before a release:
+// The program itself in real time, beside operators and good and bad subscribers, with recordings
+// that replay bit for bit. Once before a release, longer and on a computer that does nothing else:
 //   SANDRUNNER_RECORDINGS=20 SANDRUNNER_WATCHED_S=60 dds_program_test
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -49,7 +49,7 @@ void expect_replays_bit_for_bit(const std::string& recording) {
   EXPECT_NE(replay.wait().out.find("every bit agrees"), std::string::npos) << replay.wait();
 }
 
-/// Never rests, on the processor that the control thread does not have by default.
+/// Keeps a processor busy, one that the control thread does not use by default.
 class BusyLoop {
  public:
   BusyLoop()
@@ -95,7 +95,7 @@ TEST_F(DdsProgramTest, StateHashIsTheSameWithAndWithoutTelemetryAndRecording) {
   ASSERT_TRUE(watcher.wait_for("matched"));  // somebody listened
 }
 
-// An operator over DDS has it stand up and walk about, then stand, or a fault ends the walk.
+// An operator has the robot stand up, walk and stand again, or a fault ends the walk.
 TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
   const BusyLoop load;
   const int recordings = from_environment("SANDRUNNER_RECORDINGS", 3);
@@ -114,17 +114,21 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
     Asker asker(operators);
     const dds_entity_t twist = operators.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
     for (const char* request : {"stand", "walk"}) {  // the process starts, and the robot stands up
-      ASSERT_TRUE(wait_until([&] {
-        sleep_s(0.05);
-        return asker.ask(request).accepted;
-      }));
+      ASSERT_TRUE(wait_until([&] { return asker.ask(request).accepted; }));
     }
-    for (int step = 0; step < 75; ++step) {
+    for (int step = 0; step < 75; ++step) {  // at 50 Hz
       drive(twist, 0.01 * step);
       sleep_s(0.02);
     }
     asker.ask("stop");
-    sleep_s(0.8);
+    const dds_entity_t ticks = operators.reader("sandrunner/ticks", sandrunner_TickBatch_desc);
+    EXPECT_TRUE(wait_until([&] {
+      auto mode = Mode::kPassive;
+      take<sandrunner_TickBatch>(ticks, [&](const sandrunner_TickBatch& m) {
+        mode = static_cast<Mode>(m.ticks._buffer[m.ticks._length - 1].mode);
+      });
+      return mode == (to_fault ? Mode::kFault : Mode::kStand);
+    }));
     robot.signal(SIGTERM);
     robot.wait();
     EXPECT_NE(robot.wait().out.find(" in " + dir), std::string::npos) << robot.wait();
@@ -165,15 +169,16 @@ TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne
 
   const std::string watch = peer(config_) + "watch " + std::to_string(watched_s + 2);
   ChildProcess live(words_of(watch)), stopped(words_of(watch)), killed(words_of(watch));
-  sleep_s(0.3);
+  for (ChildProcess* watcher : {&live, &stopped, &killed}) {
+    ASSERT_TRUE(watcher->wait_for("watching"));
+  }
   ChildProcess robot(walk(program(config_) + "--record " + folder_.path(""), "watched"));
-  ASSERT_TRUE(live.wait_for("matched"));
-  ASSERT_TRUE(stopped.wait_for("matched"));
-  ASSERT_TRUE(killed.wait_for("matched"));
-  sleep_s(0.5);
+  for (ChildProcess* watcher : {&live, &stopped, &killed}) {
+    ASSERT_TRUE(watcher->wait_for("matched"));
+  }
   stopped.signal(SIGSTOP);
   killed.signal(SIGKILL);
-  sleep_s(stop_s);
+  sleep_s(stop_s);  // for as long it does not listen
   stopped.signal(SIGCONT);
   EXPECT_EQ(robot.wait().code, 0) << robot.wait();
   EXPECT_EQ(robot.wait().out.find("LOST"), std::string::npos) << robot.wait();
@@ -187,14 +192,15 @@ TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne
   const nlohmann::json before = summary("alone").at("realtime");
   const nlohmann::json now = summary("watched").at("realtime");
   EXPECT_EQ(now.at("records_dropped"), 0);
-  // What a busy machine does to both.
   const auto us = [](const nlohmann::json& j, const char* name, const char* quantile) {
     return j.at(name).at(quantile).get<double>();
   };
   const auto skipped = [](const nlohmann::json& j) { return j.at("ticks_skipped").get<double>(); };
-  EXPECT_LE(skipped(now), skipped(before) + 0.02 * kControlHz * watched_s);
-  EXPECT_LE(us(now, "late_us", "p50"), 2.0 * us(before, "late_us", "p50") + 20.0);
-  EXPECT_LE(us(now, "control_us", "p50"), 2.0 * us(before, "control_us", "p50") + 5.0);
+  if (watched_s >= 20) {  // before a release; else other processes decide
+    EXPECT_LE(skipped(now), skipped(before) + 0.02 * kControlHz * watched_s);
+    EXPECT_LE(us(now, "late_us", "p50"), 2.0 * us(before, "late_us", "p50") + 20.0);
+    EXPECT_LE(us(now, "control_us", "p50"), 2.0 * us(before, "control_us", "p50") + 5.0);
+  }
   expect_replays_bit_for_bit(folder_.path("run.mcap"));
   for (const auto& [name, j] : {std::pair("alone", before), {"watched", now}}) {
     std::printf("%s: %s skipped, late p50 %.1f p99 %.1f, control step p50 %.2f p99 %.2f us\n", name,
@@ -205,22 +211,23 @@ TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne
 }
 
 TEST_F(DdsProgramTest, ANetworkInterfaceThatGoesAwayIsNoticedByNeitherControlNorRecording) {
-  // Without a map of users it has the rights that real time needs.
+  // Without a map of users, the robot keeps the rights that real time needs.
   const std::string unshare = geteuid() == 0 ? "unshare --net" : "unshare --map-root-user --net";
   const std::string interface =
       "ip link set lo up && ip link add v0 type veth peer name v1 && "
       "ip addr add 10.9.8.7/24 dev v0 && ip link set v0 up && ip link set v1 up";
   if (run_shell(unshare + " sh -c '" + interface + "'").code != 0) {
-    GTEST_SKIP() << "no network namespace with an interface of its own is to be had here";
+    GTEST_SKIP() << "no network namespace with an interface of its own can be made here";
   }
   const std::string on_v0 = std::to_string(config_.domain) + " v0 ";
   write_file(folder_.path("script"),
-             interface + "\n" + SANDRUNNER_DDS_PEER " " + on_v0 + "watch 60 >&2 & watcher=$!\n" +
-                 program(config_) +
+             interface + "\n" + SANDRUNNER_DDS_PEER " " + on_v0 + "watch 60 >" +
+                 folder_.path("log") + " & watcher=$!\n" + program(config_) +
                  "--set dds.interface=v0 --clock realtime --start walk --command 0.5,0,0 "
                  "--duration 3 --record " +
                  folder_.path("") + " --out " + folder_.path("out") +
-                 " & robot=$!\nsleep 1.5; ip link del v0\nwait $robot; code=$?\n"
+                 " & robot=$!\nwhile kill -0 $robot && ! grep -q matched " + folder_.path("log") +
+                 "; do sleep 0.02; done\nip link del v0\nwait $robot; code=$?\n"
                  "kill -9 $watcher; exit $code\n");
   const auto start = std::chrono::steady_clock::now();
   ChildProcess robot(words_of(unshare + " sh " + folder_.path("script")));

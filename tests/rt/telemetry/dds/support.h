@@ -45,9 +45,9 @@ inline DdsConfig test_config() {
   return config;
 }
 
-/// Waits until `holds()`, for 5 s at most; returns whether it held.
-inline bool wait_until(const std::function<bool()>& holds) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+/// Waits until `holds()`, for this long at most; returns whether it held.
+inline bool wait_until(const std::function<bool()>& holds, int limit_s = 5) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(limit_s);
   while (!holds()) {
     if (std::chrono::steady_clock::now() > deadline) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -235,15 +235,17 @@ class Asker {
     dds_write(requests_, &message);
     sandrunner_ModeReply reply{};
     std::string("no reply").copy(reply.reason, sizeof reply.reason - 1);
-    wait_until([&] {
-      bool came = false;
-      take<sandrunner_ModeReply>(replies_, [&](const sandrunner_ModeReply& r) {
-        if (r.id != id_) return;
-        came = true;
-        reply = r;
-      });
-      return came;
-    });
+    wait_until(
+        [&] {
+          bool came = false;
+          take<sandrunner_ModeReply>(replies_, [&](const sandrunner_ModeReply& r) {
+            if (r.id != id_) return;
+            came = true;
+            reply = r;
+          });
+          return came;
+        },
+        1);
     return reply;
   }
 
