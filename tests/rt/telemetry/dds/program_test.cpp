@@ -232,7 +232,7 @@ TEST_F(DdsProgramTest, ANetworkInterfaceThatGoesAwayIsNoticedByNeitherControlNor
   const auto start = std::chrono::steady_clock::now();
   ChildProcess robot(words_of(unshare + " sh " + folder_.path("script")));
   EXPECT_EQ(robot.wait().code, 0) << robot.wait();
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
   EXPECT_EQ(robot.wait().out.find("LOST"), std::string::npos) << robot.wait();
   EXPECT_EQ(summary("out").at("realtime").at("records_dropped"), 0);
   expect_replays_bit_for_bit(folder_.path("run.mcap"));

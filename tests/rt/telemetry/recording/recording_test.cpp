@@ -11,7 +11,7 @@
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/example_tick.h"
 #include "tests/rt/telemetry/recording/recording_program.h"
-#include "tests/rt/telemetry/renamed_robot.h"
+#include "tests/support/small_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -68,21 +68,26 @@ TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
 
 TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
   const TemporaryFolder robot;
-  record("--set robot=" + write_renamed_robot(robot) + " --policy " + write_renamed_policy(robot));
+  const std::string map = write_small_robot(robot);
+  PolicyFile policy = random_policy_file();
+  policy.spec.joint_names = sim::load_robot(map).description.joint_names;
+  write_policy_file(robot.path("small.safetensors"), policy);
+  run(SANDRUNNER_PROGRAM, "--start walk --duration 0.1 --robot " + map + " --policy " +
+                              robot.path("small.safetensors") + " --record " + folder_.path(""));
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
   McapReader reader(path());
-  const McapMessage* message = nullptr;
   std::map<std::string, std::string> content;  // by topic
-  while ((message = reader.next())) {
+  while (const McapMessage* message = reader.next()) {
     content[reader.channels().at(message->channel_id).topic] = {
         reinterpret_cast<const char*>(message->data.data()), message->data.size()};
   }
-  EXPECT_EQ(reader.attachments().back().data, read_file(robot.path("example.urdf")));
-  const RobotDescription expected = example_robot();
-  for (const std::string& name : expected.joint_names) {
-    EXPECT_NE(content["/joint_states"].find(name + '\0'), std::string::npos) << name;
+  EXPECT_EQ(reader.attachments().back().data, small_robot_urdf());
+  for (const char* leg : {"fl", "fr", "rl", "rr"}) {
+    for (const char* joint : {"_roll", "_pitch", "_knee"}) {
+      EXPECT_NE(content["/joint_states"].find(std::string(leg) + joint), std::string::npos);
+    }
   }
-  EXPECT_NE(content["/tf"].find(expected.base_link), std::string::npos);
+  EXPECT_NE(content["/tf"].find("trunk"), std::string::npos);
 }
 
 TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
