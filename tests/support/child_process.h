@@ -109,6 +109,12 @@ class ChildProcess {
     }
     return true;
   }
+  /// Whether this is in what it has printed on standard output so far; does not wait.
+  bool has_printed(const std::string& text) {
+    while (read_some(0)) {
+    }
+    return ended_.out.find(text) != std::string::npos;
+  }
   /// Waits for its end.
   const Ended& wait() {
     while (read_some()) {
@@ -129,13 +135,14 @@ class ChildProcess {
     return all;
   }
 
-  /// Waits for more output or the end; false at the end. Does not wait for processes that this one
-  /// leaves behind with its pipes.
-  bool read_some() {
+  /// Waits for more output or the end, for this long at most (-1: without limit); false at the end
+  /// and if nothing came. Does not wait for processes that this one leaves behind with its pipes.
+  bool read_some(int timeout_ms = -1) {
     if (pid_ <= 0) return false;
     // Its end first: what it printed before is then seen in the same call.
     pollfd files[] = {{pidfd_, POLLIN, 0}, {out_, POLLIN, 0}, {err_, POLLIN, 0}};
-    if (poll(files, 3, -1) < 0) return errno == EINTR;
+    const int found = poll(files, 3, timeout_ms);
+    if (found <= 0) return found < 0 && errno == EINTR;
     const bool out = read_from(files[1].revents, out_, ended_.out);
     const bool err = read_from(files[2].revents, err_, ended_.err);
     return out || err || files[0].revents == 0;

@@ -7,6 +7,10 @@
 
 #include <cerrno>
 #include <chrono>
+#include <string>
+#include <thread>
+
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {
@@ -18,6 +22,12 @@ bool comes_true(const std::atomic<bool>& flag) {
   return flag;
 }
 
+/// Whether the kernel has put this thread of the process to sleep.
+bool sleeps(pid_t thread) {
+  const std::string status = read_file("/proc/self/task/" + std::to_string(thread) + "/status");
+  return status.find("State:\tS") != std::string::npos;
+}
+
 TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     const auto child = [number] {
@@ -26,8 +36,7 @@ TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
       if (watch.interrupted()) _exit(1);
       kill(getpid(), number);
       if (!comes_true(watch.interrupted())) _exit(2);
-      kill(getpid(), number);  // the second one does not kill either
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      kill(getpid(), number);  // the second one does not kill either: it would before this returns
       _exit(0);
     };
     EXPECT_EXIT(child(), testing::ExitedWithCode(0), "") << number;
@@ -38,19 +47,21 @@ TEST(SignalWatchDeathTest, DoesNotInterruptCallsOfOtherThreads) {
   const auto child = [] {
     signal(SIGINT, SIG_DFL);
     const SignalWatch watch;
-    std::atomic<int> undisturbed{0};
-    std::atomic<bool> asleep{false};
-    std::thread sleeper([&] {
-      const timespec duration{.tv_sec = 0, .tv_nsec = 200'000'000};
-      asleep = true;
-      undisturbed = nanosleep(&duration, nullptr) == 0 ? 1 : -1;
+    int ends[2];
+    if (pipe(ends) != 0) _exit(2);
+    std::atomic<pid_t> reader_id{0};
+    std::atomic<bool> undisturbed{false};
+    std::thread reader([&] {
+      reader_id = gettid();
+      char byte;
+      undisturbed = read(ends[0], &byte, 1) == 1;
     });
-    while (!asleep) std::this_thread::yield();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (reader_id == 0 || !sleeps(reader_id)) std::this_thread::yield();
     kill(getpid(), SIGINT);
     const bool flagged = comes_true(watch.interrupted());
-    sleeper.join();
-    _exit(flagged && undisturbed == 1 ? 0 : 1);
+    if (write(ends[1], "x", 1) != 1) _exit(3);
+    reader.join();
+    _exit(flagged && undisturbed ? 0 : 1);
   };
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
 }
@@ -71,8 +82,10 @@ TEST(SignalWatchDeathTest, WhatWasIgnoredFromTheStartStaysIgnored) {
     signal(SIGHUP, SIG_IGN);  // nohup
     const SignalWatch watch;
     kill(getpid(), SIGHUP);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    _exit(watch.interrupted() ? 1 : 0);
+    // What the watch waits for it blocks.
+    sigset_t blocked;
+    pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
+    _exit(watch.interrupted() || sigismember(&blocked, SIGHUP) != 0 ? 1 : 0);
   };
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
 }

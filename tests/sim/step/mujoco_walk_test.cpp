@@ -16,7 +16,7 @@ namespace sandrunner::sim {
 namespace {
 
 struct Walk {
-  double speed_mps = 0.0;      ///< over ground, of the last 4 of 5 s
+  double speed_mps = 0.0;      ///< over ground, of the last 2 of 3 s
   double height_m = 0.0;       ///< of the base, mean over the same time
   double square_torque = 0.0;  ///< sum over the joints of tau^2, mean, N^2 m^2
 };
@@ -24,7 +24,7 @@ struct Walk {
 /// Under a command of `vx_mps`. `state` and `step` are the engine's; a step is a control period.
 Walk walk(Policy policy, double vx_mps, const std::function<RigidState<double>()>& state,
           const std::function<void(const std::array<double, kNumJoints>&)>& step) {
-  constexpr int kTicks = 5 * kControlHz, kFrom = kControlHz;
+  constexpr int kTicks = 3 * kControlHz, kFrom = kControlHz;
   const PolicySpec& spec = policy.spec();
   JointArray<double> target_rad{}, next_rad{};
   Walk result;
