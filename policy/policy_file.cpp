@@ -72,7 +72,7 @@ class Metadata {
   }
 
   JointArray<std::string> joint_names(const std::string& key) {
-    const JointArray<std::string> names = joint_texts(key);
+    JointArray<std::string> names = joint_texts(key);
     for (auto name = names.begin(); name != names.end(); ++name) {
       if (name->empty() || std::find(names.begin(), name, *name) != name) {
         fail_file(path_, "metadata '{}' has the joint name '{}', expected {} different names", key,

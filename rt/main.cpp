@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -31,9 +33,8 @@
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 
+namespace sandrunner {
 namespace {
-
-using namespace sandrunner;
 
 void show_progress(const RunSample& s) {
   const std::string where =
@@ -160,21 +161,22 @@ int run(int argc, char** argv) {
   const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name, options->terrain,
                      options->seed};
   std::string written;
-  std::optional<InputError> not_written;
+  std::exception_ptr not_written;
   try {
     if (out) written = write_results(result, info, config.effective, options->out_dir);
-  } catch (const InputError& error) {
-    not_written = error;
+  } catch (const InputError&) {
+    not_written = std::current_exception();
   }
   if (listeners.recorder) written += recording_line(recorded, options->record_dir);
   if (listeners.black_box) written += black_box_lines(kept);
   fmt::print("{}{}", summary_table(result, info), written);
-  if (not_written) throw *not_written;
+  if (not_written) std::rethrow_exception(not_written);
   return result.survived ? kExitOk : kExitRobotFailed;
 }
 
 }  // namespace
+}  // namespace sandrunner
 
 int main(int argc, char** argv) {
-  return sandrunner::run_program("sandrunner", [&] { return run(argc, argv); });
+  return sandrunner::run_program("sandrunner", [&] { return sandrunner::run(argc, argv); });
 }

@@ -13,8 +13,8 @@ template <typename T>
 struct Element {
   using Type = T;
 };
-template <typename T, std::size_t n>
-struct Element<std::array<T, n>> : Element<T> {};
+template <typename T, std::size_t kSize>
+struct Element<std::array<T, kSize>> : Element<T> {};
 
 template <typename Member>
 constexpr TickField field(const char* name, std::size_t offset) {

@@ -61,7 +61,7 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
 
 template <typename S>
 BatchKernel make_kernel() noexcept {
-  constexpr std::size_t kWidth = sizeof(S) / sizeof(float);
+  constexpr std::size_t kWidth = sizeof(S) / sizeof(float);  // NOLINT(bugprone-sizeof-expression)
   // Every member is an S, so a pack is an array of robots' floats with the lanes innermost.
   static_assert(sizeof(BatchRobot<S>) == kWidth * sizeof(BatchRobot<float>));
   return {static_cast<int>(kWidth), sizeof(BatchRobot<S>), alignof(BatchRobot<S>),

@@ -40,6 +40,12 @@ inline bool both(bool a, bool b) noexcept { return a && b; }
 inline bool either(bool a, bool b) noexcept { return a || b; }
 inline bool no(bool a) noexcept { return !a; }
 
+/// The mask of all lanes.
+template <typename S>
+inline Mask<S> every_lane() noexcept {
+  return S(0.0) < S(1.0);
+}
+
 /// a b - c d with one rounding less than two products.
 template <typename S>
 inline S diff_of_products(S a, S b, S c, S d) noexcept {

@@ -13,14 +13,14 @@
 
 namespace sandrunner::sim {
 
-template <int N>
+template <int kLanes>
 struct Pack;
-template <int N>
+template <int kLanes>
 struct PackMask;
 
-template <int N>
-struct MaskOf<Pack<N>> {
-  using type = PackMask<N>;
+template <int kLanes>
+struct MaskOf<Pack<kLanes>> {
+  using type = PackMask<kLanes>;
 };
 
 template <>
@@ -34,7 +34,8 @@ struct alignas(32) Pack<8> {
   static constexpr int kWidth = 8;
   __m256 v;
   Pack() = default;
-  Pack(__m256 lanes) noexcept : v(lanes) {}
+  // Implicit: the operators below return what the intrinsics do.
+  Pack(__m256 lanes) noexcept : v(lanes) {}  // NOLINT(google-explicit-constructor)
   explicit Pack(float x) noexcept : v(_mm256_set1_ps(x)) {}
   explicit Pack(double x) noexcept : Pack(static_cast<float>(x)) {}
 };
@@ -90,7 +91,7 @@ struct alignas(64) Pack<16> {
   static constexpr int kWidth = 16;
   __m512 v;
   Pack() = default;
-  Pack(__m512 lanes) noexcept : v(lanes) {}
+  Pack(__m512 lanes) noexcept : v(lanes) {}  // NOLINT(google-explicit-constructor)
   explicit Pack(float x) noexcept : v(_mm512_set1_ps(x)) {}
   explicit Pack(double x) noexcept : Pack(static_cast<float>(x)) {}
 };

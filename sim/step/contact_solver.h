@@ -247,7 +247,7 @@ inline int solve_contacts(std::array<PointContact<S>, kPoints>& points, int num_
     c.impulse = select(c.active, c.impulse, zero);
     add_impulse(c.w, c.j, c.leg, c.impulse, sum);
   }
-  Mask<S> running = zero == zero;
+  Mask<S> running = every_lane<S>();
   S last_change = zero;
   const S enough = S(0.3) * tolerance;  // of the change expected: they do not shrink evenly
   int sweep = 0;

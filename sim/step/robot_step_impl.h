@@ -180,7 +180,7 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
     const Vec3<S> knee_base = hip_to_base(model.legs[l], pose, pose.knee);
     report.knee[l] = x.rigid.position + rotation_ * knee_base;
     add_hard_point(model, terrain, knee_base, pose.knee, l, 2, model.knee_radius_m, false,
-                   zero == zero, kNumLegs + l, x, report.thigh_contact);
+                   every_lane<S>(), kNumLegs + l, x, report.thigh_contact);
     // On level ground knee and foot cover the shank; only uneven rigid ground can touch it.
     const Mask<S> uneven = terrain.highest > zero;
     if (any(uneven)) {

@@ -99,8 +99,8 @@ TEST(NetworkTest, GivesTheSameBitsFromEveryCompiler) {
 TEST(NetworkTest, RestoredStateContinuesToTheSameBits) {
   const Network network(random_policy_file().parameters);
   RandomFloats random(3);
-  std::vector<std::array<float, kObservationSize>> observations;
-  for (int k = 0; k < 40; ++k) observations.push_back(random.observation());
+  std::vector<std::array<float, kObservationSize>> observations(40);
+  for (auto& observation : observations) observation = random.observation();
   NetworkState state;
   NetworkState middle;
   NetworkOutput first;
@@ -110,6 +110,7 @@ TEST(NetworkTest, RestoredStateContinuesToTheSameBits) {
     network.step(observations[k], state, first);
   }
   for (int k = 20; k < 40; ++k) network.step(observations[k], middle, second);
+  // The same bits. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   EXPECT_EQ(std::memcmp(&state, &middle, sizeof(state)), 0);
   EXPECT_EQ(first.action, second.action);
   EXPECT_EQ(first.estimate_raw, second.estimate_raw);

@@ -10,12 +10,10 @@
 #include "tools/ctl/commands.h"
 #include "tools/ctl/errors.h"
 
+namespace sandrunner::ctl {
 namespace {
 
-using namespace sandrunner;
-using namespace sandrunner::ctl;
-
-int run(int argc, char** argv) {
+int run(int argc, char** argv) try {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
   Interrupt interrupt;  // before DDS, which starts threads
@@ -25,17 +23,15 @@ int run(int argc, char** argv) {
   if (options->subcommand == "watch") watch_topic(*options, interrupt);
   if (options->subcommand == "drive") drive_robot(*options, interrupt);
   return kExitOk;
+} catch (const RefusedError& error) {
+  to_standard_error(fmt::format("sandrunner-ctl: {}\n", one_line(error.what())));
+  return kExitRefused;
 }
 
 }  // namespace
+}  // namespace sandrunner::ctl
 
 int main(int argc, char** argv) {
-  return run_program("sandrunner-ctl", [&] {
-    try {
-      return run(argc, argv);
-    } catch (const RefusedError& error) {
-      to_standard_error(fmt::format("sandrunner-ctl: {}\n", one_line(error.what())));
-      return kExitRefused;
-    }
-  });
+  return sandrunner::run_program("sandrunner-ctl",
+                                 [&] { return sandrunner::ctl::run(argc, argv); });
 }

@@ -17,10 +17,8 @@
 #include "tools/evaluate/runner.h"
 #include "tools/evaluate/tables.h"
 
+namespace sandrunner::evaluate {
 namespace {
-
-using namespace sandrunner;
-using namespace sandrunner::evaluate;
 
 Part make_part(Study& study, const std::string& name) {
   if (name == "straight") return study.straight();
@@ -98,7 +96,9 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace sandrunner::evaluate
 
 int main(int argc, char** argv) {
-  return sandrunner::run_program("sandrunner-evaluate", [&] { return run(argc, argv); });
+  return sandrunner::run_program("sandrunner-evaluate",
+                                 [&] { return sandrunner::evaluate::run(argc, argv); });
 }

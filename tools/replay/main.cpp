@@ -27,9 +27,8 @@
 #include "rt/run/scene.h"
 #include "rt/telemetry/recording/recording_file.h"
 
+namespace sandrunner {
 namespace {
-
-using namespace sandrunner;
 
 struct Arguments {
   std::string file, plot_dir;
@@ -142,7 +141,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace sandrunner
 
 int main(int argc, char** argv) {
-  return sandrunner::run_program("sandrunner-replay", [&] { return run(argc, argv); });
+  return sandrunner::run_program("sandrunner-replay", [&] { return sandrunner::run(argc, argv); });
 }

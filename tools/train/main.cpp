@@ -17,10 +17,8 @@
 #include "tools/train/task/embedded.h"
 #include "tools/train/training.h"
 
+namespace sandrunner::train {
 namespace {
-
-using namespace sandrunner;
-using namespace sandrunner::train;
 
 std::atomic<bool> interrupted{false};
 
@@ -73,7 +71,9 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace sandrunner::train
 
 int main(int argc, char** argv) {
-  return sandrunner::run_program("sandrunner-train", [&] { return run(argc, argv); });
+  return sandrunner::run_program("sandrunner-train",
+                                 [&] { return sandrunner::train::run(argc, argv); });
 }
