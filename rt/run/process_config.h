@@ -21,7 +21,7 @@ struct ProcessConfig {
   RecordingLimits recording;
   DdsConfig dds;
   double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
-  std::string effective;        ///< TOML of all settings that counted
+  std::string effective;        ///< TOML of every setting with the value in effect
 };
 
 /// What the controller takes from a robot: posture, gains, limits. Walk's gains are the policy's.

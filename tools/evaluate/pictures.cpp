@@ -108,7 +108,7 @@ void draw_map(const plot::Canvas& canvas, double left, double top, const std::st
   canvas.text(left, top - 10.0, title, 14.0, 0.0, plot::kInk, true);
   for (int flat = 0; flat < kGridSize; ++flat) {
     for (int cone = 0; cone < kGridSize; ++cone) {
-      const double value = values[static_cast<std::size_t>(flat * kGridSize + cone)];
+      const double value = values[static_cast<std::size_t>(flat) * kGridSize + cone];
       const double x = left + flat * kCellWidth_px;
       const double y = top + (kGridSize - 1 - cone) * kCellHeight_px;
       double share = high > low ? (value - low) / (high - low) : 0.0;

@@ -17,7 +17,7 @@ namespace {
 TerrainDescription read(const std::string& toml) {
   ConfigTree config;
   config.add_text(toml, "my.toml");
-  const TerrainDescription t = read_terrain(config);
+  TerrainDescription t = read_terrain(config);
   config.reject_unknown();
   return t;
 }
@@ -40,7 +40,7 @@ TEST(TerrainTest, PresetsHaveTheirFigures) {
   const auto preset = [](const std::string& name) {
     ConfigTree config;
     add_terrain_layer(config, name);
-    const TerrainDescription t = read_terrain(config);
+    TerrainDescription t = read_terrain(config);
     config.reject_unknown();
     EXPECT_EQ(t.name, name);
     return t;

@@ -144,7 +144,7 @@ TEST(RandomTest, UniformFillsItsRangeAndStreamsDiffer) {
     ++count[static_cast<int>(20.0 * u)];
     product += (u - 0.5) * (random_uniform(1, 3, i) - 0.5);
   }
-  for (const int c : count) EXPECT_NEAR(c, n / 20, 5.0 * std::sqrt(n / 20.0));
+  for (const int c : count) EXPECT_NEAR(c, n / 20.0, 5.0 * std::sqrt(n / 20.0));
   EXPECT_NEAR(product / n, 0.0, 5.0 / 12.0 / std::sqrt(n));
 }
 

@@ -275,11 +275,11 @@ inline double height_charged(const StepOutcome& s, const RewardSettings& r, cons
   return r.height * low * low;
 }
 
-template <int leg>
+template <int kLeg>
 double clearance_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
-  if (s.contact[leg]) return 0.0;
-  const double lack = std::max(r.clearance_m - s.foot_clearance[leg], 0.0);
-  return r.clearance * lack * lack * std::sqrt(static_cast<double>(s.foot_speed[leg]));
+  if (s.contact[kLeg]) return 0.0;
+  const double lack = std::max(r.clearance_m - s.foot_clearance[kLeg], 0.0);
+  return r.clearance * lack * lack * std::sqrt(static_cast<double>(s.foot_speed[kLeg]));
 }
 
 inline constexpr RewardTerm kPaid[] = {
@@ -314,11 +314,11 @@ constexpr const char* reward_term_name(std::size_t i) {
 }
 
 /// Sum of the terms; writes each of them to `values`.
-template <std::size_t count>
-double sum_of(const RewardTerm (&terms)[count], const StepOutcome& s, const RewardSettings& r,
+template <std::size_t kCount>
+double sum_of(const RewardTerm (&terms)[kCount], const StepOutcome& s, const RewardSettings& r,
               const CostRamp& ramp, double* values) {
   double sum = 0.0, group = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < kCount; ++i) {
     if (i > 0 && terms[i].group != terms[i - 1].group) {
       sum += group;
       group = 0.0;

@@ -30,9 +30,9 @@ inline void require_key(const ConfigTree& config, const std::string& key) {
 
 /// Reads all rows of `numbers` from the table `table`. Throws InputError for a number that is
 /// missing or out of its range.
-template <typename Settings, std::size_t rows>
+template <typename Settings, std::size_t kRows>
 void read_numbers(ConfigTree& config, const std::string& table,
-                  const NumberSetting<Settings> (&numbers)[rows], Settings& settings) {
+                  const NumberSetting<Settings> (&numbers)[kRows], Settings& settings) {
   for (const NumberSetting<Settings>& number : numbers) {
     const std::string key = table + "." + number.key;
     require_key(config, key);

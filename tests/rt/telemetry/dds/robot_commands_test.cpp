@@ -22,7 +22,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Sends Twists at 50 Hz, however often it is asked to.
 class Driver {
  public:
-  Driver(Peer& peer) : writer_(peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {}
+  explicit Driver(Peer& peer)
+      : writer_(peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {}
   void send(double time_s, double vx_mps) {
     if (time_s < next_s_) return;
     next_s_ = time_s + 0.02;

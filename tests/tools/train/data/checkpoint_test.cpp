@@ -53,7 +53,7 @@ class CheckpointTest : public testing::Test {
     try {
       load_checkpoint(path_);
     } catch (const InputError& error) {
-      const std::string message = error.what();
+      std::string message = error.what();
       EXPECT_EQ(message.find('\n'), std::string::npos);
       EXPECT_NE(message.find(path_), std::string::npos);
       return message;

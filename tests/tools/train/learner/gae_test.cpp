@@ -31,7 +31,7 @@ TEST(GaeTest, MatchesTheDefinitionAcrossTerminationsAndTimeouts) {
   Rollout rollout(shape, 1);
   for (int env = 0; env < shape.envs; ++env) {
     for (int t = 0; t <= shape.steps; ++t) {
-      const auto counter = static_cast<std::uint64_t>(100 * env + t);
+      const auto counter = std::uint64_t{100} * env + t;
       const auto [a, b] = random_normal_pair(1, Stream::kAction, counter, 0);
       rollout.value(t, env) = a;
       if (t == shape.steps) break;

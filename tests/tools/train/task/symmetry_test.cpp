@@ -15,10 +15,10 @@ namespace {
 
 using learner::Reflection;
 
-template <std::size_t n, typename T>
-std::array<T, n> reflected(const Reflection& reflection, const std::array<T, n>& original) {
-  std::array<T, n> image{};
-  for (std::size_t i = 0; i < n; ++i) {
+template <std::size_t kSize, typename T>
+std::array<T, kSize> reflected(const Reflection& reflection, const std::array<T, kSize>& original) {
+  std::array<T, kSize> image{};
+  for (std::size_t i = 0; i < kSize; ++i) {
     image[i] = static_cast<T>(reflection.sign[i]) * original[reflection.index[i]];
   }
   return image;
