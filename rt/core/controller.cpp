@@ -23,6 +23,10 @@ std::optional<Event> event_of(ModeRequest request) noexcept {
       return Event::kRequestWalk;
     case ModeRequest::kResetFault:
       return Event::kRequestReset;
+    case ModeRequest::kArm:
+      return Event::kRequestArm;
+    case ModeRequest::kStop:
+      return Event::kRequestStop;
   }
   return std::nullopt;
 }
@@ -34,11 +38,6 @@ double distance(const JointArray<double>& a, const JointArray<double>& b) noexce
   return largest_rad;
 }
 
-/// Step of a slew in one tick; 0 means no limit.
-double step_of(double rate_per_s) noexcept {
-  return rate_per_s > 0.0 ? rate_per_s * kControlPeriod_s : std::numeric_limits<double>::infinity();
-}
-
 bool is_zero(const VelocityCommand& command) noexcept {
   return command.vx_mps == 0.0 && command.vy_mps == 0.0 && command.wz_radps == 0.0;
 }
@@ -48,11 +47,12 @@ bool is_zero(const VelocityCommand& command) noexcept {
 Controller::Controller(const ControllerConfig& config, Mode start)
     : config_(config),
       gate_(config.gate, config.damping.kd_nmsprad),
-      max_step_mps_(step_of(config.shaping.acceleration_limit_mps2)),
-      max_step_radps_(step_of(config.shaping.yaw_acceleration_limit_radps2)),
-      stop_step_mps_(std::min(max_step_mps_, step_of(config.walk.stop_deceleration_mps2))),
+      max_step_mps_(config.shaping.envelope.acceleration_mps2 * kControlPeriod_s),
+      max_step_radps_(config.shaping.envelope.yaw_acceleration_radps2 * kControlPeriod_s),
+      stop_step_mps_(
+          std::min(max_step_mps_, config.walk.stop_deceleration_mps2 * kControlPeriod_s)),
       stop_step_radps_(
-          std::min(max_step_radps_, step_of(config.walk.stop_yaw_deceleration_radps2))) {
+          std::min(max_step_radps_, config.walk.stop_yaw_deceleration_radps2 * kControlPeriod_s)) {
   for (int j = 0; j < kNumJoints; ++j) fold_rad_[j] = config.stand.fold_rad[j % kJointsPerLeg];
   state_.mode = start;
 }
@@ -61,18 +61,24 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
   const SensorFrame& sensors = input.sensors;
   const std::uint64_t tick = sensors.tick;
   const bool starting = state_.entered == 0;
+  pause_motion(tick);
   if (state_.mode == Mode::kStandUp && !starting) continue_stand_up(tick);
 
   // What was asked for or has come to its end; then the gate has its say, before anything is done.
-  Mode next = starting ? state_.mode : after_time(after_request(input.command, tick), tick);
+  Mode next = starting ? state_.mode : after_time(after_request(input.command, tick), input);
   const bool walking = !starting && state_.mode == Mode::kWalk && next == Mode::kWalk;
   if (walking) take_policy(input.policy, tick);
   const bool counts =
       walking && input.policy.sequence != 0 && input.policy.episode == state_.episode;
+  const bool too_late_to_stand =
+      !starting && next == Mode::kStandUp && state_.mode == Mode::kStandUp && state_.folding == 0 &&
+      motion_done(tick) &&
+      tick - state_.motion_start_tick - state_.motion_ticks > ticks_from_s(config_.stand.reach_s);
   const GateInput judged{.sensors = sensors,
                          .command = input.command.velocity,
-                         .action_rad = counts ? &input.policy.target_rad : nullptr,
-                         .policy_age_ticks = walking ? tick - state_.policy_input_tick : 0};
+                         .policy = counts ? &input.policy : nullptr,
+                         .policy_input_tick = walking ? state_.policy_input_tick : tick,
+                         .not_standing = too_late_to_stand};
   // A reset is judged as strictly as where the robot will stand up from: whoever lies on its back
   // is to be put right first.
   const bool resetting = state_.mode == Mode::kFault && next != Mode::kFault;
@@ -104,10 +110,12 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
       wanted = walk_command();
       break;
     case Mode::kFault:
-      enabled = tick < state_.disable_tick;  // the gate turns what passes into damping
+      enabled = drives_on(tick);  // the gate turns what passes into damping
+      if (!enabled) state_.fault_steps = ticks_from_s(config_.damping.fault_s);  // for good
+      ++state_.fault_steps;
       break;
   }
-  output.command = gate_.pass(wanted, enabled, state_.gate);
+  output.command = gate_.pass(wanted, enabled, sensors.joints, state_.gate);
   if (state_.gate.faults != 0 && state_.mode != Mode::kFault) enter(Mode::kFault, sensors);
 
   const bool release =
@@ -123,6 +131,20 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
   output.faults = state_.gate.faults;
   output.first_fault = state_.gate.first_fault;
   output.fault_joints = state_.gate.fault_joints;
+  output.command_share = state_.mode == Mode::kWalk ? state_.command_share : 1.0;
+}
+
+/// A stall of the loop is no time of the motion: it goes on where it was.
+void Controller::pause_motion(std::uint64_t tick) noexcept {
+  const std::uint64_t before = state_.gate.tick;
+  if (state_.gate.judged == 0 || tick <= before + 1 || motion_done(before)) return;
+  if (state_.mode == Mode::kStandUp || state_.mode == Mode::kStand) {
+    state_.motion_start_tick += tick - before - 1;
+  }
+}
+
+bool Controller::drives_on(std::uint64_t tick) const noexcept {
+  return tick < state_.disable_tick && state_.fault_steps < ticks_from_s(config_.damping.fault_s);
 }
 
 Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tick) noexcept {
@@ -131,14 +153,12 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   state_.request_id = command.request_id;
   const std::optional<Event> event = event_of(command.request);
   if (!event) return mode;
-  if (mode == Mode::kFault && tick < state_.disable_tick) return mode;  // drives still on
+  if (mode == Mode::kFault && drives_on(tick)) return mode;
   if (mode == Mode::kWalk) {
     // The latest wish counts: asking for Walk during the stop takes the stop back. Asking again
     // for the stop that is on its way does not begin it anew.
-    if (event == Event::kRequestStand && state_.stopping == 0) {
-      state_.stopping = 1;
-      state_.zero_since_tick = tick;
-      state_.restless_tick = tick;
+    if ((event == Event::kRequestStand || event == Event::kRequestStop) && state_.stopping == 0) {
+      begin_stop(tick);
     } else if (event == Event::kRequestWalk) {
       state_.stopping = 0;
     }
@@ -146,10 +166,26 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   return next_mode(mode, *event);
 }
 
-Mode Controller::after_time(Mode mode, std::uint64_t tick) const noexcept {
+void Controller::begin_stop(std::uint64_t tick) noexcept {
+  state_.stopping = 1;
+  state_.zero_since_tick = tick;
+  state_.restless_tick = tick;
+}
+
+Mode Controller::after_time(Mode mode, const ControllerInput& input) noexcept {
+  const std::uint64_t tick = input.sensors.tick;
   if (mode != state_.mode) return mode;
-  if (mode == Mode::kStandUp && state_.folding == 0 && motion_done(tick)) {
+  const std::uint64_t lost = lost_ticks(input.command, tick);
+  if (mode == Mode::kStandUp && state_.folding == 0 && motion_done(tick) &&
+      standing(input.sensors)) {
     return next_mode(mode, Event::kStoodUp);
+  }
+  if (mode == Mode::kStand && lost > ticks_from_s(config_.shaping.operator_down_s)) {
+    return next_mode(mode, Event::kRequestDamp);
+  }
+  if (mode == Mode::kWalk && state_.stopping == 0 &&
+      lost > ticks_from_s(config_.shaping.operator_stand_s)) {
+    begin_stop(tick);
   }
   if (mode == Mode::kWalk && state_.stopping != 0) {
     const WalkConfig& walk = config_.walk;
@@ -160,6 +196,19 @@ Mode Controller::after_time(Mode mode, std::uint64_t tick) const noexcept {
     }
   }
   return mode;
+}
+
+bool Controller::standing(const SensorFrame& sensors) const noexcept {
+  return distance(sensors.joints.position_rad, config_.stand.nominal_rad) <=
+         config_.stand.reached_rad;
+}
+
+/// How long the operator has given no sign of life; 0 if that is no reason to do anything.
+std::uint64_t Controller::lost_ticks(const OperatorCommand& command,
+                                     std::uint64_t tick) const noexcept {
+  const std::uint64_t hold = config_.shaping.operator_hold_ticks;
+  const bool lost = hold != 0 && command.tick <= tick && tick - command.tick > hold;
+  return lost ? tick - command.tick : 0;
 }
 
 void Controller::enter(Mode mode, const SensorFrame& sensors) noexcept {
@@ -209,6 +258,7 @@ void Controller::enter(Mode mode, const SensorFrame& sensors) noexcept {
       // Drives that are off stay off.
       state_.disable_tick =
           from == Mode::kPassive ? tick : tick + ticks_from_s(config_.damping.fault_s);
+      state_.fault_steps = 0;
       break;
   }
 }
@@ -241,10 +291,12 @@ void Controller::take_policy(const PolicyOutput& policy, std::uint64_t tick) noe
 
 VelocityCommand Controller::shape(const OperatorCommand& command, std::uint64_t tick) noexcept {
   const ShapingConfig& shaping = config_.shaping;
-  const bool lost = shaping.operator_hold_ticks != 0 && command.tick <= tick &&
-                    tick - command.tick > shaping.operator_hold_ticks;
-  const bool stop = state_.stopping != 0 || lost;
-  const VelocityCommand wanted = stop ? VelocityCommand{} : command.velocity;
+  const bool stop = state_.stopping != 0 || lost_ticks(command, tick) != 0;
+  const EnvelopedCommand inside =
+      bring_inside(stop ? VelocityCommand{} : command.velocity, shaping.envelope);
+  state_.command_share = inside.share;
+  if (inside.share < 1.0) ++state_.gate.counters.command_clamped;
+  const VelocityCommand& wanted = inside.command;
   VelocityCommand& now = state_.command;
   const double step_mps = stop ? stop_step_mps_ : max_step_mps_;
   now.vx_mps = slew(now.vx_mps, wanted.vx_mps, step_mps);

@@ -50,6 +50,10 @@ struct StandConfig {
   double blend_s = 0.5;        ///< time from the posture in Walk to that of Stand
   /// Of the targets; where they would be faster, the times above become longer.
   double max_speed_radps = 4.0;
+  // Stand is reached when no joint is farther than this from its target; a fault if that is not so
+  // after this time.
+  double reached_rad = 0.25;
+  double reach_s = 1.0;
 };
 
 /// Damping and the damping after a fault.
@@ -58,13 +62,15 @@ struct DampingConfig {
   double fault_s = 2.0;     ///< after a fault: damping for this long, then drives off
 };
 
-/// Shaping of the velocity command.
+/// Shaping of the velocity command, and what becomes of a robot whose operator is lost.
 struct ShapingConfig {
+  CommandEnvelope envelope;  ///< from the policy's file
   double centripetal_limit_mps2 = kCentripetalLimit_mps2;
-  double acceleration_limit_mps2 = 0.0;        ///< slew of vx and of vy; 0: off
-  double yaw_acceleration_limit_radps2 = 0.0;  ///< slew of the yaw rate; 0: off
-  /// A command older than this is taken as zero: the robot stops when its operator is lost. 0: off.
+  /// After so long without a sign of life of the operator, the command is zero; ... 0: such an
+  /// operator cannot be lost, and neither of the others acts.
   std::uint64_t operator_hold_ticks = 0;
+  double operator_stand_s = 10.0;  ///< ... a walking robot stops and stands; ...
+  double operator_down_s = 120.0;  ///< ... a standing robot is let down in Damping.
 };
 
 struct ControllerConfig {
@@ -82,6 +88,7 @@ struct ControllerState {
   std::uint64_t entered = 0;       ///< 1 once the first step has entered `mode`
   std::uint64_t request_id = 0;    ///< latest request that was considered
   std::uint64_t disable_tick = 0;  ///< Fault: when the drives go off
+  std::uint64_t fault_steps = 0;   ///< Fault: steps in it, as time may stand still
 
   // Motion of StandUp and Stand: from `from_rad` to `to_rad` between two ticks.
   JointArray<double> from_rad{};
@@ -91,7 +98,8 @@ struct ControllerState {
   std::uint64_t folding = 0;  ///< 1 in the first phase of StandUp
 
   // Walk.
-  VelocityCommand command;            ///< after the slew, before the yaw clip
+  VelocityCommand command;            ///< inside the envelope, after the slew, before the yaw clip
+  double command_share = 1.0;         ///< of what was asked that the envelope leaves
   std::uint64_t stopping = 0;         ///< 1 after a request of Stand
   std::uint64_t zero_since_tick = 0;  ///< while stopping: since when the command has been zero
   std::uint64_t restless_tick = 0;    ///< while stopping: when something last moved
@@ -106,7 +114,7 @@ struct ControllerState {
   GateState gate;
 };
 static_assert(std::is_trivially_copyable_v<ControllerState>);
-static_assert(sizeof(ControllerState) == 8 * (18 + 3 * kNumJoints) + sizeof(GateState),
+static_assert(sizeof(ControllerState) == 8 * (20 + 3 * kNumJoints) + sizeof(GateState),
               "no padding");
 
 struct ControllerInput {
@@ -125,6 +133,9 @@ struct ControllerOutput {
   std::uint64_t faults = 0;          ///< latched bits of Fault
   Fault first_fault = Fault::kNone;  ///< that began the latest latch
   std::uint64_t fault_joints = 0;    ///< that it is about, bit j for joint j
+  /// Walk: how much of the operator's command the policy's envelope leaves (EnvelopedCommand); else
+  /// 1.
+  double command_share = 1.0;
 };
 static_assert(std::is_trivially_copyable_v<ControllerInput>);
 static_assert(std::is_trivially_copyable_v<ControllerOutput>);
@@ -144,7 +155,12 @@ class Controller {
 
  private:
   Mode after_request(const OperatorCommand& command, std::uint64_t tick) noexcept;
-  Mode after_time(Mode mode, std::uint64_t tick) const noexcept;
+  Mode after_time(Mode mode, const ControllerInput& input) noexcept;
+  void begin_stop(std::uint64_t tick) noexcept;
+  void pause_motion(std::uint64_t tick) noexcept;
+  bool drives_on(std::uint64_t tick) const noexcept;
+  bool standing(const SensorFrame& sensors) const noexcept;
+  std::uint64_t lost_ticks(const OperatorCommand& command, std::uint64_t tick) const noexcept;
   void enter(Mode mode, const SensorFrame& sensors) noexcept;
   void start_motion(const JointArray<double>& from_rad, const JointArray<double>& to_rad,
                     double duration_s, std::uint64_t tick) noexcept;

@@ -7,7 +7,9 @@
 // joints of a leg HAA, HFE, KFE; joint i of leg l has index 3 l + i. Units are SI.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
@@ -24,6 +26,13 @@ inline constexpr int kPolicyHz = 100;
 /// The policy is released on every 40th control tick.
 inline constexpr int kTicksPerPolicyStep = kControlHz / kPolicyHz;
 inline constexpr double kControlPeriod_s = 1.0 / kControlHz;
+
+/// Whole control ticks in `duration_s`, rounded; negative and NaN give 0.
+inline std::uint64_t ticks_from_s(double duration_s) noexcept {
+  const double ticks = std::floor(duration_s * kControlHz + 0.5);
+  if (!(ticks > 0.0)) return 0;
+  return static_cast<std::uint64_t>(std::min(ticks, 0x1p62));
+}
 
 inline constexpr double kGravity_mps2 = 9.81;
 
@@ -67,6 +76,8 @@ struct SensorFrame {
   std::uint64_t tick = 0;
   JointState joints;
   ImuSample imu;
+  std::uint64_t emergency_stop = 0;  ///< 1: somebody presses it
+  std::uint64_t drives_cut = 0;      ///< 1: RobotIo::cut_drives was called
 };
 
 /// What both families of drives take. A drive evaluates it with `joint_torque` (joint_pd.h).
@@ -89,14 +100,23 @@ struct VelocityCommand {
 enum class Mode : std::uint64_t { kPassive, kDamping, kStandUp, kStand, kWalk, kFault };
 
 /// What an operator may ask for.
-enum class ModeRequest : std::uint64_t { kNone, kPassive, kDamp, kStand, kWalk, kResetFault };
+enum class ModeRequest : std::uint64_t {
+  kNone,
+  kPassive,
+  kDamp,
+  kStand,
+  kWalk,
+  kResetFault,
+  kArm,
+  kStop
+};
 
 /// Latest wish of the operator. A request counts once for each new `request_id`.
 struct OperatorCommand {
   VelocityCommand velocity;
   ModeRequest request = ModeRequest::kNone;
   std::uint64_t request_id = 0;
-  std::uint64_t tick = 0;
+  std::uint64_t tick = 0;  ///< of the operator's latest sign of life
 };
 
 /// What the policy is given: the sensors and the shaped command of one tick.

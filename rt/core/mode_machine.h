@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The modes of the controller and every way from one to another.
 //
-//            | damp     passive   stand     walk   reset    | stood up  stopped | fault
-//   ---------+----------------------------------------------+-------------------+------
-//   Passive  | Damping  .         StandUp   .      .        | .         .       | Fault
-//   Damping  | .        Passive   StandUp   .      .        | .         .       | Fault
-//   StandUp  | Damping  .         .         .      .        | Stand     .       | Fault
-//   Stand    | Damping  .         .         Walk   .        | .         .       | Fault
-//   Walk     | Damping  .         (1)       .      .        | .         Stand   | Fault
-//   Fault    | .        .         .         .      Passive(2)| .        .       | .
+//            | arm      damp     stop     passive   stand     walk   reset     | stood up  stopped
+//            | fault
+//   ---------+-------------------------------------------------------------------+-------------------+------
+//   Passive  | Damping  .        .        .         .         .      .         | .         . |
+//   Fault Damping  | .        .        .        Passive   StandUp   .      .         | .         .
+//   | Fault StandUp  | .        Damping  Damping  .         .         .      .         | Stand . |
+//   Fault Stand    | .        Damping  .        .         .         Walk   .         | .         .
+//   | Fault Walk     | .        Damping  (1)      .         (1)       .      .         | . Stand |
+//   Fault Fault    | .        .        .        .         .         .      Passive(2)| .         .
+//   | .
 //
-// "." stays. A robot that carries itself goes to Passive only through Damping: it is let down, not
-// dropped.
+// "." stays. Two steps from rest to motion: arm switches the drives on, which only brake, stand
+// lets them move. A robot that carries itself goes to Passive only through Damping: it is let down,
+// not dropped.
 //
 // (1) Starts a stop: the command goes to zero, the policy walks on until the robot has stopped.
 //
@@ -33,11 +36,13 @@ enum class Event : std::uint64_t {
   kRequestStand,
   kRequestWalk,
   kRequestReset,
+  kRequestArm,
+  kRequestStop,
   kStoodUp,
   kStopped,
   kFault,
 };
-inline constexpr int kNumEvents = 8;
+inline constexpr int kNumEvents = 10;
 
 struct Transition {
   Mode from;
@@ -46,13 +51,13 @@ struct Transition {
 };
 
 inline constexpr std::array<Transition, 16> kTransitions = {{
-    {Mode::kPassive, Event::kRequestDamp, Mode::kDamping},
-    {Mode::kPassive, Event::kRequestStand, Mode::kStandUp},
+    {Mode::kPassive, Event::kRequestArm, Mode::kDamping},
     {Mode::kPassive, Event::kFault, Mode::kFault},
     {Mode::kDamping, Event::kRequestPassive, Mode::kPassive},
     {Mode::kDamping, Event::kRequestStand, Mode::kStandUp},
     {Mode::kDamping, Event::kFault, Mode::kFault},
     {Mode::kStandUp, Event::kRequestDamp, Mode::kDamping},
+    {Mode::kStandUp, Event::kRequestStop, Mode::kDamping},
     {Mode::kStandUp, Event::kStoodUp, Mode::kStand},
     {Mode::kStandUp, Event::kFault, Mode::kFault},
     {Mode::kStand, Event::kRequestDamp, Mode::kDamping},

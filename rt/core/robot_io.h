@@ -48,6 +48,10 @@ class RobotIo {
   /// The loop missed `ticks` ticks, through which `held`, the last command, has been in force.
   virtual void skip(std::uint64_t ticks, const SafeCommand& held) noexcept = 0;
 
+  /// The last line: drives off now and for good, `drives_cut` in every frame from now on. From any
+  /// thread, also while another call hangs, and from a signal handler: async-signal-safe.
+  virtual void cut_drives() noexcept = 0;
+
   /// The loop ends: drives off. Called once, after the last write().
   virtual void shut_down() noexcept = 0;
 

@@ -47,8 +47,19 @@ bool usable(const ImuSample& imu) noexcept {
          all_finite(imu.linear_acceleration_mps2);
 }
 
-/// Age of a sample. One from the future is an error of its source: it gets an age without bound.
-std::uint64_t age(std::uint64_t now, std::uint64_t sampled) noexcept { return now - sampled; }
+/// Age of a sample in ticks that the loop ran: the latest stall makes nothing older. A sample from
+/// the future is an error of its source: it gets an age without bound.
+std::uint64_t age(std::uint64_t sampled, const GateState& state) noexcept {
+  if (sampled > state.tick) return ~std::uint64_t{0};
+  const std::uint64_t stalled = sampled < state.stall_end_tick
+                                    ? std::min(state.stall_ticks, state.stall_end_tick - sampled)
+                                    : 0;
+  return state.tick - sampled - stalled;
+}
+
+bool same_bits(double a, double b) noexcept {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 
 /// Cosine for thresholds, from arithmetic alone so that it has the same bits everywhere: series at
 /// an eighth of the angle, then cos 2x = 2 cos^2 x - 1 three times. To 1e-13 in [0, 180] degrees.
@@ -65,9 +76,7 @@ double cos_of_degrees(double angle_deg) noexcept {
   return cosine;
 }
 
-bool carries_itself(Mode mode) noexcept {
-  return mode == Mode::kStandUp || mode == Mode::kStand || mode == Mode::kWalk;
-}
+bool judged_in(Mode mode, ModeSet modes) noexcept { return (modes & mode_set(mode)) != 0; }
 
 /// Adds `found` and the joints it is about to the latch, and remembers what began it.
 void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept {
@@ -81,74 +90,21 @@ void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept
   state.fault_joints |= joints;
 }
 
-/// Clamps all values; whether one had to be.
-bool clamp_all(JointArray<double>& values, const JointArray<double>& lower,
-               const JointArray<double>& upper) noexcept {
-  bool clamped = false;
-  for (int j = 0; j < kNumJoints; ++j) {
-    const double allowed = clamp_to(values[j], lower[j], upper[j]);
-    clamped = clamped || allowed != values[j];
-    values[j] = allowed;
-  }
-  return clamped;
-}
-
 }  // namespace
 
-const char* fault_name(Fault fault) noexcept {
-  switch (fault) {
-    case Fault::kNone:
-      return "none";
-    case Fault::kNonFiniteJoint:
-      return "non_finite_joint";
-    case Fault::kNonFiniteImu:
-      return "non_finite_imu";
-    case Fault::kNonFiniteAction:
-      return "non_finite_action";
-    case Fault::kNonFiniteCommand:
-      return "non_finite_command";
-    case Fault::kNonFiniteOutput:
-      return "non_finite_output";
-    case Fault::kJointsStale:
-      return "joints_stale";
-    case Fault::kImuStale:
-      return "imu_stale";
-    case Fault::kPolicyStale:
-      return "policy_stale";
-    case Fault::kJointPosition:
-      return "joint_position";
-    case Fault::kJointSpeed:
-      return "joint_speed";
-    case Fault::kJointTorque:
-      return "joint_torque";
-    case Fault::kTilt:
-      return "tilt";
-    case Fault::kDriveFault:
-      return "drive_fault";
-  }
-  return "unknown";
-}
-
-std::uint64_t ticks_from_s(double duration_s) noexcept {
-  const double ticks = std::floor(duration_s * kControlHz + 0.5);
-  if (!(ticks > 0.0)) return 0;
-  return static_cast<std::uint64_t>(std::min(ticks, 0x1p62));
-}
-
 SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
-    : config_(config),
-      torque_fault_ticks_(std::max<std::uint64_t>(1, ticks_from_s(config.torque_fault_s))),
-      tilt_limit_cos_(cos_of_degrees(config.tilt_limit_deg)),
-      tilt_fault_cos_(cos_of_degrees(config.tilt_fault_deg)) {
+    : config_(below_ceilings(config)),
+      bounds_(config_),
+      torque_fault_ticks_(std::max<std::uint64_t>(1, ticks_from_s(config_.torque_fault_s))),
+      tilt_fault_ticks_(ticks_from_s(config_.tilt_fault_s)),
+      free_fall_ticks_(std::max<std::uint64_t>(1, ticks_from_s(config_.free_fall_s))),
+      heat_per_tick_(kControlPeriod_s / std::max(config_.thermal_time_s, kControlPeriod_s)),
+      heat_fault_n2m2_(config_.continuous_torque_nm * config_.continuous_torque_nm),
+      tilt_limit_cos_(cos_of_degrees(config_.tilt_limit_deg)),
+      tilt_fault_cos_(cos_of_degrees(config_.tilt_fault_deg)) {
   damping_.kd_nmsprad.fill(damping_kd_nmsprad);
   for (int j = 0; j < kNumJoints; ++j) {
-    lower_.position_rad[j] = config.joint_lower_rad[j] - config.target_margin_rad;
-    upper_.position_rad[j] = config.joint_upper_rad[j] + config.target_margin_rad;
-    upper_.velocity_radps[j] = config.speed_limit_radps[j];
-    lower_.velocity_radps[j] = -config.speed_limit_radps[j];
-    upper_.feedforward_nm[j] = config.torque_limit_nm[j];
-    lower_.feedforward_nm[j] = -config.torque_limit_nm[j];
-    torque_fault_nm_[j] = config.torque_fault_ratio * config.torque_limit_nm[j];
+    torque_fault_nm_[j] = config_.torque_fault_ratio * config_.torque_limit_nm[j];
   }
 }
 
@@ -156,26 +112,71 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
                                 GateState& state) const noexcept {
   const SensorFrame& sensors = input.sensors;
   const VelocityCommand& command = input.command;
-  state.tick = sensors.tick;
-  std::uint64_t found = 0;
+  const std::uint64_t elapsed =
+      state.judged != 0 && sensors.tick > state.tick ? sensors.tick - state.tick : 1;
+  std::uint64_t found = judge_time(sensors.tick, mode, state);
 
   std::uint64_t at_fault = non_finite(sensors.joints);
   const bool joints_usable = at_fault == 0;
   if (!joints_usable) found |= bit(Fault::kNonFiniteJoint);
   const bool imu_usable = usable(sensors.imu);
   if (!imu_usable) found |= bit(Fault::kNonFiniteImu);
-  if (input.action_rad != nullptr && !all_finite(*input.action_rad)) {
+  if (input.policy != nullptr && !all_finite(input.policy->target_rad)) {
     found |= bit(Fault::kNonFiniteAction);
   }
   if (!std::isfinite(command.vx_mps) || !std::isfinite(command.vy_mps) ||
       !std::isfinite(command.wz_radps)) {
     found |= bit(Fault::kNonFiniteCommand);
   }
+  if (sensors.emergency_stop != 0) found |= bit(Fault::kEmergencyStop);
+  if (sensors.drives_cut != 0) found |= bit(Fault::kDrivesCut);
+  if (input.not_standing) found |= bit(Fault::kNotStanding);
+  found |= judge_ages(input, mode, state, at_fault);
+  if (input.policy != nullptr) found |= judge_policy(*input.policy, state);
 
+  if (joints_usable) {
+    // Drives that are off may lie as they like, but they cool and they move.
+    std::uint64_t at_rest = 0;
+    std::uint64_t& joints_at_fault = judged_in(mode, kMoving) ? at_fault : at_rest;
+    const std::uint64_t hot = judge_heat(sensors.joints, elapsed, state, joints_at_fault);
+    if (judged_in(mode, kMoving)) found |= hot | judge_joints(sensors.joints, state, at_fault);
+    found |= judge_encoders(sensors.joints, elapsed, mode, state, at_fault);
+  }
+  if (mode == Mode::kPassive) state.torque_over_ticks.fill(0);
+  if (judged_in(mode, kCarrying) && imu_usable) {
+    found |= judge_body(sensors.imu, elapsed, state);
+  } else {
+    state.tilted_ticks = state.falling_ticks = 0;
+  }
+
+  ++state.judged;
+  latch(found, at_fault, state);
+  return found;
+}
+
+std::uint64_t SafetyGate::judge_time(std::uint64_t tick, Mode mode,
+                                     GateState& state) const noexcept {
+  const std::uint64_t before = state.tick;
+  state.tick = tick;
+  if (state.judged == 0) return 0;
+  if (tick <= before) return bit(Fault::kTime);
+  const std::uint64_t skipped = tick - before - 1;
+  if (skipped == 0) return 0;
+  ++state.counters.stalled;
+  state.stall_end_tick = tick;
+  state.stall_ticks = skipped;
+  const bool too_long = skipped > config_.stall_fault_ticks;
+  return too_long && judged_in(mode, kCarrying) ? bit(Fault::kLoopStalled) : 0;
+}
+
+std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateState& state,
+                                     std::uint64_t& at_fault) const noexcept {
+  std::uint64_t found = 0;
+  const SensorFrame& sensors = input.sensors;
   bool late = false;
   for (int j = 0; j < kNumJoints; ++j) {
     const std::uint64_t joint = std::uint64_t{1} << j;
-    const std::uint64_t joint_age = age(sensors.tick, sensors.joints.tick[j]);
+    const std::uint64_t joint_age = age(sensors.joints.tick[j], state);
     late = late || joint_age > config_.joints_limit_ticks;
     if (joint_age > config_.joints_fault_ticks) {
       found |= bit(Fault::kJointsStale);
@@ -187,27 +188,20 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
     }
   }
   if (late) ++state.counters.joints_late;
-  const std::uint64_t imu_age = age(sensors.tick, sensors.imu.tick);
+  const std::uint64_t imu_age = age(sensors.imu.tick, state);
   if (imu_age > config_.imu_limit_ticks) ++state.counters.imu_late;
   if (imu_age > config_.imu_fault_ticks) found |= bit(Fault::kImuStale);
-  if (input.policy_age_ticks > config_.policy_fault_ticks) found |= bit(Fault::kPolicyStale);
-
-  if (mode == Mode::kPassive) {
-    state.torque_over_ticks.fill(0);
-  } else if (joints_usable) {
-    found |= judge_joints(sensors.joints, state, at_fault);
+  if (judged_in(mode, kWalkOnly) &&
+      age(input.policy_input_tick, state) > config_.policy_fault_ticks) {
+    found |= bit(Fault::kPolicyStale);
   }
-  if (carries_itself(mode) && imu_usable) found |= judge_tilt(sensors.imu, state);
-
-  latch(found, at_fault, state);
   return found;
 }
 
 std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& state,
                                        std::uint64_t& at_fault) const noexcept {
   std::uint64_t found = 0;
-  bool past_stop = false;
-  bool too_fast = false;
+  bool past_stop = false, too_fast = false;
   for (int j = 0; j < kNumJoints; ++j) {
     std::uint64_t faults = 0;
     const double excess_rad = std::max(joints.position_rad[j] - config_.joint_upper_rad[j],
@@ -230,29 +224,105 @@ std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& stat
   return found;
 }
 
-std::uint64_t SafetyGate::judge_tilt(const ImuSample& imu, GateState& state) const noexcept {
+std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t elapsed,
+                                     GateState& state, std::uint64_t& at_fault) const noexcept {
+  std::uint64_t found = 0;
+  bool hot = false;
+  const double share = std::min(heat_per_tick_ * static_cast<double>(elapsed), 1.0);
+  for (int j = 0; j < kNumJoints; ++j) {
+    const double torque_nm = joints.torque_nm[j];
+    double& heat = state.heat_n2m2[j];
+    heat += share * (torque_nm * torque_nm - heat);
+    hot = hot || heat > 0.64 * heat_fault_n2m2_;
+    if (heat > heat_fault_n2m2_) {
+      found |= bit(Fault::kOverload);
+      at_fault |= std::uint64_t{1} << j;
+    }
+  }
+  if (hot) ++state.counters.hot;
+  return found;
+}
+
+std::uint64_t SafetyGate::judge_encoders(const JointState& joints, std::uint64_t elapsed, Mode mode,
+                                         GateState& state, std::uint64_t& at_fault) const noexcept {
+  std::uint64_t found = 0;
+  const double reach_rad = config_.encoder_jump_rad + config_.speed_fault_radps * kControlPeriod_s *
+                                                          static_cast<double>(elapsed);
+  for (int j = 0; j < kNumJoints; ++j) {
+    std::uint64_t faults = 0;
+    const double way_rad = joints.position_rad[j] - state.position_rad[j];
+    if (state.judged != 0 && judged_in(mode, kMoving) && std::fabs(way_rad) > reach_rad) {
+      faults |= bit(Fault::kEncoderJump);
+    }
+    const bool same = same_bits(joints.position_rad[j], state.position_rad[j]) &&
+                      same_bits(joints.velocity_radps[j], state.velocity_radps[j]);
+    if (!same || state.sent == 0) {
+      state.same_ticks[j] = 0;
+      state.told_rad[j] = state.sent_rad[j];
+    } else if (++state.same_ticks[j] >= config_.frozen_ticks && judged_in(mode, kCarrying) &&
+               std::fabs(state.sent_rad[j] - state.told_rad[j]) > config_.frozen_move_rad) {
+      faults |= bit(Fault::kEncoderFrozen);
+    }
+    if (faults != 0) at_fault |= std::uint64_t{1} << j;
+    found |= faults;
+  }
+  state.position_rad = joints.position_rad;
+  state.velocity_radps = joints.velocity_radps;
+  return found;
+}
+
+std::uint64_t SafetyGate::judge_body(const ImuSample& imu, std::uint64_t elapsed,
+                                     GateState& state) const noexcept {
+  std::uint64_t found = 0;
   // Cosine of the tilt: z component of the body's z axis, for a quaternion of any norm.
   const auto& [w, x, y, z] = imu.orientation_wxyz;
   const double cosine = (w * w - x * x - y * y + z * z) / squared_norm(imu.orientation_wxyz);
-  if (cosine < tilt_limit_cos_) ++state.counters.tilted;
-  return cosine < tilt_fault_cos_ ? bit(Fault::kTilt) : 0;
+  const bool tilted = cosine < tilt_limit_cos_;
+  state.tilted_ticks = tilted ? state.tilted_ticks + elapsed : 0;
+  if (tilted) ++state.counters.tilted;
+  if (cosine < tilt_fault_cos_ || state.tilted_ticks > tilt_fault_ticks_) {
+    found |= bit(Fault::kTilt);
+  }
+  double felt2 = 0.0;
+  for (const double a : imu.linear_acceleration_mps2) felt2 += a * a;
+  const bool falls = felt2 < config_.free_fall_mps2 * config_.free_fall_mps2;
+  state.falling_ticks = falls ? state.falling_ticks + elapsed : 0;
+  if (state.falling_ticks >= free_fall_ticks_) found |= bit(Fault::kFreeFall);
+  return found;
 }
 
-SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled,
+std::uint64_t SafetyGate::judge_policy(const PolicyOutput& policy,
+                                       GateState& state) const noexcept {
+  if (policy.episode != state.action_episode) {
+    state.action_episode = policy.episode;
+    state.action_sequence = state.same_actions = 0;
+  }
+  if (policy.sequence == state.action_sequence) return 0;
+  const bool same =
+      state.action_sequence != 0 && std::equal(policy.target_rad.begin(), policy.target_rad.end(),
+                                               state.action_rad.begin(), same_bits);
+  state.same_actions = same ? state.same_actions + 1 : 0;
+  state.action_sequence = policy.sequence;
+  state.action_rad = policy.target_rad;
+  return state.same_actions >= config_.policy_frozen_steps ? bit(Fault::kPolicyFrozen) : 0;
+}
+
+SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const JointState& joints,
                              GateState& state) const noexcept {
+  const bool stiff_before = state.sent != 0;
+  state.sent = 0;
   if (!enabled) return SafeCommand{};
   if (!all_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), 0, state);
   if (state.faults != 0) return SafeCommand{damping_, true};
 
   JointCommand allowed = wanted;
-  if (clamp_all(allowed.position_rad, lower_.position_rad, upper_.position_rad)) {
-    ++state.counters.position_clamped;
-  }
-  if (clamp_all(allowed.velocity_radps, lower_.velocity_radps, upper_.velocity_radps)) {
-    ++state.counters.velocity_clamped;
-  }
-  if (clamp_all(allowed.feedforward_nm, lower_.feedforward_nm, upper_.feedforward_nm)) {
-    ++state.counters.torque_clamped;
+  const JointArray<double> asked_rad =
+      bounds_.apply(joints, stiff_before ? &state.sent_rad : nullptr, allowed, state.counters);
+  const bool stiff = std::any_of(allowed.kp_nmprad.begin(), allowed.kp_nmprad.end(),
+                                 [](double kp) { return kp > 0.0; });
+  if (stiff) {
+    state.sent = 1;
+    state.sent_rad = asked_rad;
   }
   return SafeCommand{allowed, true};
 }
