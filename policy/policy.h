@@ -6,6 +6,7 @@
 #include <string>
 
 #include "policy/network.h"
+#include "rt/core/command_shaping.h"
 #include "rt/core/robot_description.h"
 
 namespace sandrunner {
@@ -25,6 +26,9 @@ struct PolicySpec {
   double torque_limit_nm = 0.0;
   /// The yaw command is limited to this centripetal acceleration over the commanded speed.
   double yaw_command_clip_mps2 = 0.0;
+  /// What it was trained for; kNarrowEnvelope if its file does not say.
+  CommandEnvelope envelope = kNarrowEnvelope;
+  bool has_envelope = false;  ///< the file says
   /// Estimate in physical units = raw * sqrt(variance) + mean: body height (m), velocity (m/s),
   /// foot heights (m).
   std::array<float, kEstimateSize> estimate_mean{};

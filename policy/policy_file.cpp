@@ -20,6 +20,19 @@ constexpr const char* kFormatVersion = "1";
 constexpr double kLargestObservationClip = 1e6;
 constexpr std::string_view kProvenancePrefix = "provenance.";
 
+/// Keys of the envelope in the metadata.
+struct EnvelopeKey {
+  const char* name;
+  double CommandEnvelope::*value;
+};
+constexpr EnvelopeKey kEnvelopeKeys[] = {
+    {"sandrunner.envelope.forward_mps", &CommandEnvelope::forward_mps},
+    {"sandrunner.envelope.backward_mps", &CommandEnvelope::backward_mps},
+    {"sandrunner.envelope.lateral_mps", &CommandEnvelope::lateral_mps},
+    {"sandrunner.envelope.yaw_radps", &CommandEnvelope::yaw_radps},
+    {"sandrunner.envelope.acceleration_mps2", &CommandEnvelope::acceleration_mps2},
+    {"sandrunner.envelope.yaw_acceleration_radps2", &CommandEnvelope::yaw_acceleration_radps2}};
+
 /// Takes the keys out of the metadata one by one; what is left at the end is unknown.
 class Metadata {
  public:
@@ -148,6 +161,14 @@ PolicySpec read_spec(const std::string& path, const std::map<std::string, std::s
               kLargestObservationClip);
   }
   observation_clip = static_cast<float>(clip);
+  spec.has_envelope =
+      std::any_of(std::begin(kEnvelopeKeys), std::end(kEnvelopeKeys),
+                  [&](const EnvelopeKey& key) { return values.contains(key.name); });
+  if (spec.has_envelope) {
+    for (const EnvelopeKey& key : kEnvelopeKeys) {
+      spec.envelope.*key.value = values.not_negative(key.name);
+    }
+  }
   spec.provenance = values.provenance();
   values.expect_empty();
   return spec;
@@ -170,6 +191,11 @@ std::map<std::string, std::string> write_spec(const PolicySpec& spec, float obse
       {"sandrunner.torque_limit_nm", text(spec.torque_limit_nm)},
       {"sandrunner.yaw_command_clip_mps2", text(spec.yaw_command_clip_mps2)},
       {"sandrunner.observation_clip", text(observation_clip)}};
+  if (spec.has_envelope) {
+    for (const EnvelopeKey& key : kEnvelopeKeys) {
+      metadata[key.name] = text(spec.envelope.*key.value);
+    }
+  }
   for (const auto& [key, value] : spec.provenance) {
     metadata[std::string(kProvenancePrefix).append(key)] = value;
   }

@@ -126,13 +126,14 @@ int run(int argc, char** argv) {
   if (out) prepare_folder(options->out_dir, "--out");
 
   flush_denormals_to_zero();
-  const SignalWatch signals;
+  SignalWatch signals;
   Listeners listeners;
   if (config.dds.enabled) listeners.dds.emplace(config, options->live);
   listeners.recorder = make_recorder(*options, config, policy_text);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
   sim::Simulator simulator(config.robot, config.simulator);
   if (!options->start_walking) simulator.reset_lying();
+  signals.cut_in_a_crash(simulator);
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunParts parts{

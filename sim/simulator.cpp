@@ -98,6 +98,7 @@ void Simulator::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   // its values when they arrive.
   frame.tick = frame.imu.tick = tick;
   frame.joints.tick.fill(tick);
+  frame.drives_cut = cut_.load(std::memory_order_relaxed) ? 1 : 0;
 }
 
 void Simulator::write(const SafeCommand& command) noexcept {
@@ -108,6 +109,7 @@ void Simulator::write(const SafeCommand& command) noexcept {
     acting = state_.tick < delay ? SafeCommand{}
                                  : state_.commands[(state_.tick - delay) % kMaxDelayTicks];
   }
+  if (cut_.load(std::memory_order_relaxed)) acting = SafeCommand{};
   const JointCommand& c = acting.joints();
   RigidState<double>& x = state_.robot.rigid;
   const TorqueSpeedLine& line = config_.torque_speed_line;
@@ -132,7 +134,7 @@ void Simulator::skip(std::uint64_t ticks, const SafeCommand& held) noexcept {
     if (config_.sensor_delay_ticks > 0) {
       state_.sensors[state_.tick % kMaxDelayTicks] = sample();
     }
-    write(held);
+    write(i < kDriveTimeout_ticks ? held : SafeCommand{});
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <type_traits>
 
@@ -24,6 +25,9 @@ struct SensorNoise {
 };
 
 inline constexpr int kMaxDelayTicks = 64;
+
+/// A drive that gets no command for 100 ms goes off until the next one, as real ones do.
+inline constexpr std::uint64_t kDriveTimeout_ticks = kControlHz / 10;
 
 struct SimulatorConfig {
   TerrainDescription terrain;
@@ -64,6 +68,7 @@ class Simulator final : public RobotIo {
   void write(const SafeCommand& command) noexcept override;
   /// Simulates the missed ticks, so that simulated time stays on the grid.
   void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override;
+  void cut_drives() noexcept override { cut_.store(true, std::memory_order_relaxed); }
   void shut_down() noexcept override {}
   bool truth(RobotTruth& truth) const noexcept override;
 
@@ -90,6 +95,8 @@ class Simulator final : public RobotIo {
   RobotStepper<double> stepper_;
   SimulatorState state_;
   StepReport<double> report_;
+  std::atomic<bool> cut_{false};
+  static_assert(std::atomic<bool>::is_always_lock_free);
 };
 
 /// Reads the table [sim] of `config` and its terrain; figures of the drives are `robot`'s unless

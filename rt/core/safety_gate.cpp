@@ -251,21 +251,27 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, std::uint64_t
   for (int j = 0; j < kNumJoints; ++j) {
     std::uint64_t faults = 0;
     const double way_rad = joints.position_rad[j] - state.position_rad[j];
-    if (state.judged != 0 && judged_in(mode, kMoving) && std::fabs(way_rad) > reach_rad) {
+    if (state.seen != 0 && judged_in(mode, kMoving) && std::fabs(way_rad) > reach_rad) {
       faults |= bit(Fault::kEncoderJump);
     }
     const bool same = same_bits(joints.position_rad[j], state.position_rad[j]) &&
                       same_bits(joints.velocity_radps[j], state.velocity_radps[j]);
+    std::uint64_t& same_ticks = state.same_ticks[j];
     if (!same || state.sent == 0) {
-      state.same_ticks[j] = 0;
-      state.told_rad[j] = state.sent_rad[j];
-    } else if (++state.same_ticks[j] >= config_.frozen_ticks && judged_in(mode, kCarrying) &&
-               std::fabs(state.sent_rad[j] - state.told_rad[j]) > config_.frozen_move_rad) {
-      faults |= bit(Fault::kEncoderFrozen);
+      same_ticks = 0;
+    } else {
+      if (same_ticks == 0) state.told_rad[j] = state.sent_rad[j];
+      ++same_ticks;
+      const double told_to_move_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
+      if (same_ticks >= config_.frozen_ticks && told_to_move_rad > config_.frozen_move_rad &&
+          judged_in(mode, kStandUpOnly | kWalkOnly)) {
+        faults |= bit(Fault::kEncoderFrozen);
+      }
     }
     if (faults != 0) at_fault |= std::uint64_t{1} << j;
     found |= faults;
   }
+  state.seen = 1;
   state.position_rad = joints.position_rad;
   state.velocity_radps = joints.velocity_radps;
   return found;

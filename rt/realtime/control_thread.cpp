@@ -24,6 +24,7 @@ bool ControlThread::tick(const SlotGrid::Slot& slot) noexcept {
 
   ControlDeadlines& d = deadlines_;
   ++d.ticks;
+  ticks_.store(d.ticks, std::memory_order_relaxed);
   d.skipped += slot.skipped;
   d.longest_miss = std::max(d.longest_miss, slot.skipped);
   d.releases += record.output.release_policy;

@@ -42,6 +42,8 @@ class ControlThread {
   void run(std::int64_t start_ns) noexcept;
 
   const ControlDeadlines& deadlines() const noexcept { return deadlines_; }
+  /// Slots that ran, for the watchdog.
+  const std::atomic<std::uint64_t>& ticks() const noexcept { return ticks_; }
 
  private:
   bool tick(const SlotGrid::Slot& slot) noexcept;
@@ -54,6 +56,7 @@ class ControlThread {
   const std::atomic<bool>& interrupt_;
   TickRecord spare_;  // where a tick is recorded that finds the ring full
   ControlDeadlines deadlines_;
+  std::atomic<std::uint64_t> ticks_{0};
 };
 
 }  // namespace sandrunner

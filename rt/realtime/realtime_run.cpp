@@ -1,28 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/realtime/realtime_run.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <thread>
+
+#include "rt/base/errors.h"
+#include "rt/base/standard_error.h"
+#include "rt/realtime/watchdog.h"
 
 namespace sandrunner {
 namespace {
 
 constexpr std::int64_t kLeadTime_ns = 20'000'000;  // from the last set-up to slot 0
+constexpr std::int64_t kGiveUp_ns = 2'000'000'000;
 constexpr auto kDrainEvery = std::chrono::milliseconds(5);
 
-// Both real-time threads, held until they are set up, and joined in whatever way the run ends: the
+// The real-time threads, held until they are set up, and joined in whatever way the run ends: the
 // robot is let down first.
 class Threads {
  public:
-  Threads(ControlThread& control, PolicyThread* policy, Clock& clock, std::atomic<bool>& end)
-      : policy_loop_(policy), clock_(clock), end_(end) {
+  Threads(ControlThread& control, PolicyThread* policy, Watchdog& watchdog, Clock& clock,
+          std::atomic<bool>& end)
+      : policy_loop_(policy), watchdog_loop_(watchdog), clock_(clock), end_(end) {
     control_ = std::thread([this, &control] {
       prepare_this_thread();
       start_.wait(0);
       if (start_ > 0) control.run(start_);
       done_ = true;
+    });
+    watchdog_ = std::thread([this] {
+      prepare_this_thread();
+      start_.wait(0);
+      if (start_ > 0) watchdog_loop_.run(start_);
     });
     if (!policy) return;
     policy_ = std::thread([this, policy] {
@@ -36,6 +50,8 @@ class Threads {
     std::int64_t unset = 0;
     if (start_.compare_exchange_strong(unset, -1)) start_.notify_all();
     control_.join();
+    watchdog_loop_.stop();
+    watchdog_.join();
     if (policy_loop_) policy_loop_->stop();
     if (policy_.joinable()) policy_.join();
   }
@@ -45,6 +61,7 @@ class Threads {
   void set_up(RealtimeSetup& setup) {
     setup.adopt_control_thread(control_.native_handle());
     if (policy_.joinable()) setup.adopt_policy_thread(policy_.native_handle());
+    setup.adopt_watchdog_thread(watchdog_.native_handle());
   }
   void start() {
     start_ = clock_.now_ns() + kLeadTime_ns;
@@ -54,12 +71,24 @@ class Threads {
 
  private:
   PolicyThread* policy_loop_;
+  Watchdog& watchdog_loop_;
   Clock& clock_;
   std::atomic<bool>& end_;
   std::atomic<std::int64_t> start_{0};  // time of slot 0; -1: do not start
   std::atomic<bool> done_{false};
-  std::thread control_, policy_;
+  std::thread control_, policy_, watchdog_;
 };
+
+// A control thread that hangs cannot be joined. Its drives are off; what is left is to say so.
+void end_if_it_hangs(const Watchdog& watchdog, const std::atomic<std::uint64_t>& ticks,
+                     std::uint64_t& ticks_seen, std::int64_t& alive_ns, std::int64_t now_ns) {
+  const std::uint64_t now_ticks = ticks.load(std::memory_order_relaxed);
+  if (!watchdog.has_cut() || now_ticks != ticks_seen) alive_ns = now_ns;
+  ticks_seen = now_ticks;
+  if (now_ns - alive_ns < kGiveUp_ns) return;
+  to_standard_error("sandrunner: the control thread hangs; its drives are cut; the process ends\n");
+  std::_Exit(kExitRobotFailed);
+}
 
 }  // namespace
 
@@ -73,6 +102,7 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   std::atomic<bool> stop{false};
   ControlLoop loop(robot, config, start, *exchange, clock);
   ControlThread control(robot, loop, op, *ring, clock, stop);
+  Watchdog watchdog(robot, control.ticks(), clock);
   std::optional<PolicyThread> policy_thread;
   if (policy) policy_thread.emplace(*policy, *exchange, clock);
 
@@ -84,13 +114,18 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
     }
   };
   {
-    Threads threads(control, policy_thread ? &*policy_thread : nullptr, clock, stop);
+    Threads threads(control, policy_thread ? &*policy_thread : nullptr, watchdog, clock, stop);
     threads.set_up(setup);
+    const std::string missing = missing_rights(setup.items());
+    if (!missing.empty()) to_standard_error(fmt::format("sandrunner: {}\n", missing));
     threads.start();
+    std::uint64_t ticks_seen = 0;
+    std::int64_t alive_ns = clock.now_ns();
     while (!threads.done()) {
       std::this_thread::sleep_for(kDrainEvery);
       if (interrupt.load(std::memory_order_relaxed)) stop = true;
       drain();
+      end_if_it_hangs(watchdog, control.ticks(), ticks_seen, alive_ns, clock.now_ns());
     }
   }
   drain();

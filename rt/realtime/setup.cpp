@@ -3,14 +3,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <malloc.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 #include "rt/base/errors.h"
 #include "rt/core/floating_point.h"
@@ -60,6 +64,20 @@ std::vector<int> allowed_cpus() {
   return cpus;
 }
 
+namespace {
+
+constexpr int kHighestPriority = 99;
+
+/// The command that lets this very program lock memory and set priorities.
+std::string grant_capabilities() {
+  std::error_code unknown;
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe", unknown).string();
+  return fmt::format("sudo setcap cap_sys_nice,cap_ipc_lock=ep {}",
+                     unknown ? "sandrunner" : program);
+}
+
+}  // namespace
+
 RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
   // The last processor that the other thread does not have; with one only, that one.
   const std::vector<int> cpus = allowed_cpus();
@@ -77,15 +95,14 @@ RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
     mallopt(M_MMAP_MAX, 0);
     const int error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
     locked_ = error == 0;
-    note(config_.lock_memory, "memory", error, "all pages locked",
-         "raise the memlock limit (ulimit -l) or give the process CAP_IPC_LOCK");
+    note(config_.lock_memory, "memory", error, "all pages locked", grant_capabilities());
   }
   if (config_.dma_latency != Need::kOff) {
     dma_latency_ = open("/dev/cpu_dma_latency", O_RDWR | O_CLOEXEC);
     const std::int32_t none = 0;
     const bool held = dma_latency_ >= 0 && write(dma_latency_, &none, sizeof none) == sizeof none;
     note(config_.dma_latency, "idle states", held ? 0 : errno, "shallow (cpu_dma_latency 0)",
-         "needs write access to /dev/cpu_dma_latency");
+         "sudo setfacl -m u:$USER:rw /dev/cpu_dma_latency");
   }
 }
 
@@ -95,41 +112,61 @@ RealtimeSetup::~RealtimeSetup() {
 }
 
 void RealtimeSetup::note(Need need, const std::string& name, int error, const std::string& got,
-                         const std::string& advice) {
+                         const std::string& grant) {
   if (error == 0) {
-    items_.push_back({name, true, got});
+    items_.push_back({name, true, got, ""});
     return;
   }
-  const std::string why = fmt::format("{}; {}", std::strerror(error), advice);
+  const std::string why = std::strerror(error);
   if (need == Need::kRequire) {
-    throw InputError(fmt::format("realtime: {} is required and was not obtained: {}", name, why));
+    throw InputError(fmt::format("realtime: {} is required and was not obtained: {}{}{}", name, why,
+                                 grant.empty() ? "" : "; to grant it: ", grant));
   }
-  items_.push_back({name, false, why});
+  items_.push_back({name, false, why, grant});
 }
 
-void RealtimeSetup::adopt(pthread_t thread, const std::string& name, int priority, int cpu) {
-  if (config_.affinity != Need::kOff) {
-    cpu_set_t set;
-    CPU_ZERO(&set);
-    CPU_SET(cpu < 0 ? 0 : cpu, &set);
-    note(config_.affinity, name + " processor", pthread_setaffinity_np(thread, sizeof set, &set),
-         fmt::format("CPU {}", cpu), fmt::format("CPU {} cannot be had", cpu));
-  }
-  if (config_.priority != Need::kOff) {
-    const sched_param parameters{.sched_priority = priority};
-    note(config_.priority, name + " priority",
-         pthread_setschedparam(thread, SCHED_FIFO, &parameters),
-         fmt::format("SCHED_FIFO {}", priority),
-         "raise the rtprio limit (ulimit -r) or give the process CAP_SYS_NICE");
-  }
+void RealtimeSetup::pin(pthread_t thread, const std::string& name, int cpu) {
+  if (config_.affinity == Need::kOff) return;
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(cpu < 0 ? 0 : cpu, &set);
+  note(config_.affinity, name + " processor", pthread_setaffinity_np(thread, sizeof set, &set),
+       fmt::format("CPU {}", cpu), "");
+}
+
+void RealtimeSetup::adopt(pthread_t thread, const std::string& name, int priority) {
+  if (config_.priority == Need::kOff) return;
+  const sched_param parameters{.sched_priority = priority};
+  note(config_.priority, name + " priority", pthread_setschedparam(thread, SCHED_FIFO, &parameters),
+       fmt::format("SCHED_FIFO {}", priority), grant_capabilities());
 }
 
 void RealtimeSetup::adopt_control_thread(pthread_t thread) {
-  adopt(thread, "control thread", config_.control_priority, config_.control_cpu);
+  pin(thread, "control thread", config_.control_cpu);
+  adopt(thread, "control thread", config_.control_priority);
 }
 
 void RealtimeSetup::adopt_policy_thread(pthread_t thread) {
-  adopt(thread, "policy thread", config_.policy_priority, config_.policy_cpu);
+  pin(thread, "policy thread", config_.policy_cpu);
+  adopt(thread, "policy thread", config_.policy_priority);
+}
+
+void RealtimeSetup::adopt_watchdog_thread(pthread_t thread) {
+  adopt(thread, "watchdog", std::min(config_.control_priority + 1, kHighestPriority));
+}
+
+std::string missing_rights(const std::vector<SetupItem>& items) {
+  std::string missing;
+  std::vector<std::string> grants;
+  for (const SetupItem& item : items) {
+    if (item.obtained) continue;
+    missing += fmt::format("{}{} ({})", missing.empty() ? "" : ", ", item.name, item.detail);
+    const bool known = std::find(grants.begin(), grants.end(), item.grant) != grants.end();
+    if (!item.grant.empty() && !known) grants.push_back(item.grant);
+  }
+  if (missing.empty()) return "";
+  return fmt::format("not real-time, not obtained: {}{}{}", missing,
+                     grants.empty() ? "" : "; to grant it: ", fmt::join(grants, " && "));
 }
 
 void prepare_this_thread() noexcept {

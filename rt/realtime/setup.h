@@ -33,7 +33,8 @@ RealtimeConfig read_realtime_config(ConfigTree& config);
 struct SetupItem {
   std::string name;
   bool obtained = false;
-  std::string detail;  ///< what was got, or why not and what to do about it
+  std::string detail;  ///< what was got, or why not
+  std::string grant;   ///< the command that grants it; empty: there is none
 };
 
 /// Sets a process up and keeps what has to stay open. Everything that is wanted but not obtained is
@@ -49,19 +50,26 @@ class RealtimeSetup {
   /// SCHED_FIFO and processor of the two threads, before they are let into their loops.
   void adopt_control_thread(pthread_t thread);
   void adopt_policy_thread(pthread_t thread);
+  /// Above both, on any processor.
+  void adopt_watchdog_thread(pthread_t thread);
 
   const std::vector<SetupItem>& items() const noexcept { return items_; }
 
  private:
   void note(Need need, const std::string& name, int error, const std::string& got,
-            const std::string& advice);
-  void adopt(pthread_t thread, const std::string& name, int priority, int cpu);
+            const std::string& grant);
+  void adopt(pthread_t thread, const std::string& name, int priority);
+  void pin(pthread_t thread, const std::string& name, int cpu);
 
   RealtimeConfig config_;
   std::vector<SetupItem> items_;
   int dma_latency_ = -1;  // file descriptor
   bool locked_ = false;
 };
+
+/// One line that says which of the wanted rights were not obtained, and the commands that grant
+/// them; empty if none is missing.
+std::string missing_rights(const std::vector<SetupItem>& items);
 
 /// Touches the stack of the calling thread so far down that its loop finds it present, and flushes
 /// denormals. Each real-time thread calls it first.

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "rt/base/errors.h"
 
 namespace sandrunner {
@@ -12,52 +15,89 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   const auto number = [&](const char* key, double& value, double min, double max) {
     value = config.number(std::string("controller.") + key, value, min, max);
   };
-  const auto ticks = [&](const char* key, std::uint64_t& value, std::int64_t min) {
-    value = static_cast<std::uint64_t>(config.integer(
-        std::string("controller.") + key, static_cast<std::int64_t>(value), min, 1'000'000));
+  const auto ticks = [&](const char* key, std::uint64_t& value, std::int64_t min,
+                         std::uint64_t max = 1'000'000) {
+    value = static_cast<std::uint64_t>(config.integer(std::string("controller.") + key,
+                                                      static_cast<std::int64_t>(value), min,
+                                                      static_cast<std::int64_t>(max)));
   };
-  number("walk.kp_nmprad", c.walk.kp_nmprad, 0.0, 1e4);
-  number("walk.kd_nmsprad", c.walk.kd_nmsprad, 0.0, 1e3);
-  number("walk.stop_deceleration_mps2", c.walk.stop_deceleration_mps2, 0.0, 1e3);
-  number("walk.stop_yaw_deceleration_radps2", c.walk.stop_yaw_deceleration_radps2, 0.0, 1e3);
+  GateConfig& g = c.gate;
+  // Before all gains: no drive gets more than its robot's file allows, whoever asks.
+  const auto gains = [&](const char* mode, double& kp, double& kd) {
+    number(fmt::format("{}.kp_nmprad", mode).c_str(), kp, 0.0, g.kp_limit_nmprad);
+    number(fmt::format("{}.kd_nmsprad", mode).c_str(), kd, 0.0, g.kd_limit_nmsprad);
+  };
+  gains("walk", c.walk.kp_nmprad, c.walk.kd_nmsprad);
+  number("walk.stop_deceleration_mps2", c.walk.stop_deceleration_mps2, 0.1, 10.0);
+  number("walk.stop_yaw_deceleration_radps2", c.walk.stop_yaw_deceleration_radps2, 0.1, 10.0);
   number("walk.stop_speed_radps", c.walk.stop_speed_radps, 0.0, 1e3);
   number("walk.stop_calm_s", c.walk.stop_calm_s, 0.0, 60.0);
   number("walk.stop_time_s", c.walk.stop_time_s, 0.0, 60.0);
   c.walk.latency_ticks = static_cast<std::uint64_t>(
       config.integer("policy.latency_ticks", static_cast<std::int64_t>(c.walk.latency_ticks), 1,
                      kTicksPerPolicyStep - 1));
-  number("stand.kp_nmprad", c.stand.kp_nmprad, 0.0, 1e4);
-  number("stand.kd_nmsprad", c.stand.kd_nmsprad, 0.0, 1e3);
+  gains("stand", c.stand.kp_nmprad, c.stand.kd_nmsprad);
   number("stand.fold_s", c.stand.fold_s, 0.0, 60.0);
   number("stand.extend_s", c.stand.extend_s, 0.0, 60.0);
   number("stand.blend_s", c.stand.blend_s, 0.0, 60.0);
-  number("stand.max_speed_radps", c.stand.max_speed_radps, 0.1, 100.0);
-  number("damping.kd_nmsprad", c.damping.kd_nmsprad, 0.0, 1e3);
+  number("stand.max_speed_radps", c.stand.max_speed_radps, 0.1, 20.0);
+  number("stand.reached_rad", c.stand.reached_rad, 0.01, 1.0);
+  number("stand.reach_s", c.stand.reach_s, 0.0, 10.0);
+  number("damping.kd_nmsprad", c.damping.kd_nmsprad, 0.0, g.kd_limit_nmsprad);
   number("damping.fault_s", c.damping.fault_s, 0.0, 60.0);
+  CommandEnvelope& e = c.shaping.envelope;
+  number("shaping.forward_mps", e.forward_mps, 0.0, 10.0);
+  number("shaping.backward_mps", e.backward_mps, 0.0, 10.0);
+  number("shaping.lateral_mps", e.lateral_mps, 0.0, 10.0);
+  number("shaping.yaw_radps", e.yaw_radps, 0.0, 10.0);
+  number("shaping.acceleration_mps2", e.acceleration_mps2, 0.0, 100.0);
+  number("shaping.yaw_acceleration_radps2", e.yaw_acceleration_radps2, 0.0, 100.0);
   number("shaping.centripetal_limit_mps2", c.shaping.centripetal_limit_mps2, 0.0, 100.0);
-  number("shaping.acceleration_limit_mps2", c.shaping.acceleration_limit_mps2, 0.0, 1e3);
-  number("shaping.yaw_acceleration_limit_radps2", c.shaping.yaw_acceleration_limit_radps2, 0.0,
-         1e3);
   ticks("shaping.operator_hold_ticks", c.shaping.operator_hold_ticks, 0);
-  GateConfig& g = c.gate;
-  number("gate.joint_fault_rad", g.joint_fault_rad, 0.0, 10.0);
-  number("gate.target_margin_rad", g.target_margin_rad, 0.0, 10.0);
-  // 0: those of the robot's joints; else one for all of them.
-  double speed_limit_radps = 0.0, torque_limit_nm = 0.0;
-  number("gate.speed_limit_radps", speed_limit_radps, 0.0, 1e4);
-  if (speed_limit_radps > 0.0) g.speed_limit_radps = all_joints(speed_limit_radps);
-  number("gate.speed_fault_radps", g.speed_fault_radps, 0.0, 1e4);
-  number("gate.torque_limit_nm", torque_limit_nm, 0.0, 1e4);
-  if (torque_limit_nm > 0.0) g.torque_limit_nm = all_joints(torque_limit_nm);
-  number("gate.torque_fault_ratio", g.torque_fault_ratio, 0.0, 100.0);
-  number("gate.torque_fault_s", g.torque_fault_s, 0.0, 10.0);
-  number("gate.tilt_limit_deg", g.tilt_limit_deg, 0.0, 180.0);
-  number("gate.tilt_fault_deg", g.tilt_fault_deg, 0.0, 180.0);
-  ticks("gate.joints_limit_ticks", g.joints_limit_ticks, 0);
-  ticks("gate.joints_fault_ticks", g.joints_fault_ticks, 0);
-  ticks("gate.imu_limit_ticks", g.imu_limit_ticks, 0);
-  ticks("gate.imu_fault_ticks", g.imu_fault_ticks, 0);
-  ticks("gate.policy_fault_ticks", g.policy_fault_ticks, kTicksPerPolicyStep);
+  number("shaping.operator_stand_s", c.shaping.operator_stand_s, 0.0, 3600.0);
+  number("shaping.operator_down_s", c.shaping.operator_down_s, 0.0, 3600.0);
+  const GateConfig& most = kGateCeilings;
+  number("gate.joint_fault_rad", g.joint_fault_rad, 0.0, most.joint_fault_rad);
+  number("gate.target_margin_rad", g.target_margin_rad, 0.0, most.target_margin_rad);
+  number("gate.target_step_rad", g.target_step_rad, 0.0, most.target_step_rad);
+  // 0: those of the robot's joints; else one for all of them, and never above the joint's own.
+  const auto lowered = [&](const char* key, JointArray<double>& limits) {
+    double limit = 0.0;
+    number(key, limit, 0.0, 1e4);
+    if (limit == 0.0) return;
+    for (double& joint : limits) joint = std::min(joint, limit);
+  };
+  lowered("gate.speed_limit_radps", g.speed_limit_radps);
+  number("gate.speed_fault_radps", g.speed_fault_radps, 0.0, most.speed_fault_radps);
+  number("gate.encoder_jump_rad", g.encoder_jump_rad, 0.0, most.encoder_jump_rad);
+  lowered("gate.torque_limit_nm", g.torque_limit_nm);
+  number("gate.torque_fault_ratio", g.torque_fault_ratio, 0.0, most.torque_fault_ratio);
+  number("gate.torque_fault_s", g.torque_fault_s, 0.0, most.torque_fault_s);
+  number("gate.power_limit_w", g.power_limit_w, 0.0, most.power_limit_w);
+  number("gate.tilt_limit_deg", g.tilt_limit_deg, 0.0, most.tilt_limit_deg);
+  number("gate.tilt_fault_s", g.tilt_fault_s, 0.0, most.tilt_fault_s);
+  number("gate.tilt_fault_deg", g.tilt_fault_deg, 0.0, most.tilt_fault_deg);
+  number("gate.free_fall_s", g.free_fall_s, 0.0, most.free_fall_s);
+  ticks("gate.joints_limit_ticks", g.joints_limit_ticks, 0, most.joints_limit_ticks);
+  ticks("gate.joints_fault_ticks", g.joints_fault_ticks, 0, most.joints_fault_ticks);
+  ticks("gate.imu_limit_ticks", g.imu_limit_ticks, 0, most.imu_limit_ticks);
+  ticks("gate.imu_fault_ticks", g.imu_fault_ticks, 0, most.imu_fault_ticks);
+  ticks("gate.policy_fault_ticks", g.policy_fault_ticks, kTicksPerPolicyStep,
+        most.policy_fault_ticks);
+  ticks("gate.stall_fault_ticks", g.stall_fault_ticks, 0, most.stall_fault_ticks);
+  ticks("gate.frozen_ticks", g.frozen_ticks, 2, most.frozen_ticks);
+  ticks("gate.policy_frozen_steps", g.policy_frozen_steps, 2, most.policy_frozen_steps);
+}
+
+/// Throws InputError for a policy whose gains the robot's drives are not to be given.
+void require_gains(const PolicySpec& spec, const sim::Robot& robot) {
+  const auto check = [&](const char* gain, double value, double limit) {
+    if (value <= limit) return;
+    throw InputError(fmt::format("policy '{}': {} is {}, the robot '{}' takes at most {}",
+                                 spec.name, gain, value, robot.description.name, limit));
+  };
+  check("kp_nmprad", spec.kp_nmprad, robot.kp_limit_nmprad);
+  check("kd_nmsprad", spec.kd_nmsprad, robot.kd_limit_nmsprad);
 }
 
 }  // namespace
@@ -73,6 +113,11 @@ ControllerConfig controller_config(const sim::Robot& robot) {
   c.gate.joint_upper_rad = robot.model.upper_rad;
   c.gate.speed_limit_radps = robot.model.speed_limit_radps;
   c.gate.speed_fault_radps = robot.speed_fault_radps;
+  c.gate.kp_limit_nmprad = robot.kp_limit_nmprad;
+  c.gate.kd_limit_nmsprad = robot.kd_limit_nmsprad;
+  c.gate.power_limit_w = robot.power_limit_w;
+  c.gate.continuous_torque_nm = robot.continuous_torque_nm;
+  c.gate.thermal_time_s = robot.thermal_time_s;
   c.gate.torque_limit_nm = robot.model.torque_limit_nm;
   return c;
 }
@@ -85,12 +130,15 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
   ControllerConfig& c = p.controller;
   if (spec) {
     require_joints(*spec, p.robot.description);
+    require_gains(*spec, p.robot);
     c.walk.kp_nmprad = spec->kp_nmprad;
     c.walk.kd_nmsprad = spec->kd_nmsprad;
+    c.shaping.envelope = spec->envelope;
     c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;
-    if (spec->torque_limit_nm > 0.0) {
-      for (double& limit : p.robot.model.torque_limit_nm)
-        limit = std::min(limit, spec->torque_limit_nm);
+    for (int j = 0; j < kNumJoints; ++j) {
+      double& limit_nm = p.robot.model.torque_limit_nm[j];
+      limit_nm = std::min(limit_nm, spec->torque_limit_nm);
+      c.gate.torque_limit_nm[j] = limit_nm;
     }
   }
   p.dds = read_dds_config(config);

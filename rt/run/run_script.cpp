@@ -13,9 +13,9 @@ RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool has
       plan_(plan),
       has_policy_(has_policy),
       walk_ticks_(ticks_from_s(plan.walk_s)),
-      phase_(plan.start_walking ? Phase::kWalk : Phase::kStandUp),
+      phase_(plan.start_walking ? Phase::kWalk : Phase::kArm),
       has_walked_(plan.start_walking) {
-  if (phase_ == Phase::kStandUp) request(ModeRequest::kStand);
+  if (phase_ == Phase::kArm) request(ModeRequest::kArm);
 }
 
 OperatorCommand RunScript::command(std::uint64_t tick) noexcept {
@@ -49,6 +49,12 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
 bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
   in_phase_ += ticks;
   switch (phase_) {
+    case Phase::kArm:
+      if (mode == Mode::kDamping) {
+        request(ModeRequest::kStand);
+        enter(Phase::kStandUp);
+      }
+      return true;
     case Phase::kStandUp:
       if (mode != Mode::kStand) standing_ = 0;
       if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {

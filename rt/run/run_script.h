@@ -35,7 +35,7 @@ class RunScript final : public OperatorInput {
   double walked_s() const noexcept { return static_cast<double>(walked_) * kControlPeriod_s; }
 
  private:
-  enum class Phase { kStandUp, kWalk, kStop, kDamp };
+  enum class Phase { kArm, kStandUp, kWalk, kStop, kDamp };
   void request(ModeRequest r) noexcept;
   void enter(Phase phase) noexcept;
   void damp() noexcept;

@@ -1,21 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/run/signals.h"
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 
 namespace sandrunner {
 namespace {
 
-constexpr int kEnd = SIGUSR1;  // wakes the thread for its end
+const int kEnd = SIGRTMIN;  // wakes the thread for its end
+
+constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
+constexpr std::array kIgnored = {SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN};
+// By default they do nothing, or they cannot be caught.
+constexpr std::array kHarmless = {SIGCHLD, SIGCONT, SIGURG, SIGWINCH, SIGKILL, SIGSTOP};
+
+template <typename List>
+bool contains(const List& list, int number) {
+  return std::find(list.begin(), list.end(), number) != list.end();
+}
+
+std::atomic<RobotIo*> robot_of_a_crash{nullptr};
+static_assert(std::atomic<RobotIo*>::is_always_lock_free);
+
+// Its action is reset: on return the process ends as it would have without it.
+void crash(int) {
+  if (RobotIo* const robot = robot_of_a_crash.load()) robot->cut_drives();
+}
 
 }  // namespace
 
 SignalWatch::SignalWatch() {
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int number : kIgnored) std::signal(number, SIG_IGN);
   sigemptyset(&watched_);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+  for (int number = 1; number <= SIGRTMAX; ++number) {
+    if (contains(kCrashes, number) || contains(kIgnored, number) || contains(kHarmless, number)) {
+      continue;
+    }
     struct sigaction inherited;
-    sigaction(number, nullptr, &inherited);
+    if (sigaction(number, nullptr, &inherited) != 0) continue;          // the C library's own
     if (inherited.sa_handler != SIG_IGN) sigaddset(&watched_, number);  // nohup, a shell's &
   }
   sigaddset(&watched_, kEnd);
@@ -29,10 +52,23 @@ SignalWatch::SignalWatch() {
 }
 
 SignalWatch::~SignalWatch() {
+  if (robot_of_a_crash.exchange(nullptr) != nullptr) {
+    for (const int number : kCrashes) std::signal(number, SIG_DFL);
+  }
   end_ = true;
   pthread_kill(thread_.native_handle(), kEnd);
   thread_.join();
   pthread_sigmask(SIG_UNBLOCK, &watched_, nullptr);
+}
+
+void SignalWatch::cut_in_a_crash(RobotIo& robot) {
+  robot_of_a_crash = &robot;
+  for (const int number : kCrashes) {
+    struct sigaction action {};
+    action.sa_handler = crash;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(number, &action, nullptr);
+  }
 }
 
 }  // namespace sandrunner

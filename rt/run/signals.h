@@ -6,12 +6,18 @@
 #include <atomic>
 #include <thread>
 
+#include "rt/core/robot_io.h"
+
 namespace sandrunner {
 
-/// Takes SIGINT, SIGTERM and SIGHUP (but for those that were ignored from the start, as by nohup)
-/// away from all threads that start after it, and waits for them in a thread of its own: no code
-/// runs in a signal handler, no system call of another thread is interrupted. Also ignores SIGPIPE:
-/// a closed standard output is an error of a write, not the end of a process that controls a robot.
+/// What the process does about signals while it has a robot. Every one that would end or stop it
+/// (Ctrl-C, Ctrl-\, Ctrl-Z, a closed terminal, a timer, a limit of processor time, ...), but for
+/// those that were ignored from the start (nohup), is taken away from all threads that start after
+/// it and waited for in a thread of its own: no code runs in a signal handler, no system call of
+/// another thread is interrupted, and the robot is let down first. Ignored are those that stand for
+/// an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. A crash (SIGSEGV, SIGABRT, ...) cuts
+/// the drives in its handler and then ends the process as it would have. What nobody can catch,
+/// SIGKILL and SIGSTOP, is left to the drives' own time-out.
 class SignalWatch {
  public:
   SignalWatch();
@@ -21,6 +27,9 @@ class SignalWatch {
 
   /// True once any of them has come.
   const std::atomic<bool>& interrupted() const noexcept { return interrupted_; }
+
+  /// Cuts the drives of `robot` in a crash from now on, until the watch ends. It must outlive it.
+  void cut_in_a_crash(RobotIo& robot);
 
  private:
   sigset_t watched_;

@@ -10,6 +10,7 @@
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
+#include "rt/core/gate_config.h"
 #include "sim/robot/clearance.h"
 #include "sim/robot/embedded.h"
 #include "sim/robot/urdf_reader.h"
@@ -107,7 +108,15 @@ void read_figures(Map& map, Robot& robot) {
   robot.stand_kp_nmprad = map.number("gains.stand_kp_nmprad", 0.0, 1e4);
   robot.stand_kd_nmsprad = map.number("gains.stand_kd_nmsprad", 0.0, 1e3);
   robot.damping_kd_nmsprad = map.number("gains.damping_kd_nmsprad", 0.0, 1e3);
-  robot.speed_fault_radps = map.number("limits.speed_fault_radps", 0.0, 1e4);
+  robot.kp_limit_nmprad = map.number("gains.kp_limit_nmprad", 0.0, kGateCeilings.kp_limit_nmprad);
+  robot.kd_limit_nmsprad =
+      map.number("gains.kd_limit_nmsprad", 0.0, kGateCeilings.kd_limit_nmsprad);
+  robot.speed_fault_radps =
+      map.number("limits.speed_fault_radps", 0.0, kGateCeilings.speed_fault_radps);
+  robot.power_limit_w = map.number("limits.power_w", 0.0, kGateCeilings.power_limit_w);
+  robot.continuous_torque_nm =
+      map.number("motor.continuous_torque_nm", 0.0, kGateCeilings.continuous_torque_nm);
+  robot.thermal_time_s = map.number("motor.thermal_time_s", 1e-3, kGateCeilings.thermal_time_s);
   TorqueSpeedLine& line = robot.torque_speed_line;
   line.stall_torque_nm = map.number("motor.stall_torque_nm", 1e-3, 1e4);
   line.no_load_speed_radps = map.number("motor.no_load_speed_radps", 1e-3, 1e4);

@@ -77,7 +77,12 @@ struct Robot {
   double stand_kp_nmprad = 0.0;  ///< gains of StandUp and Stand
   double stand_kd_nmsprad = 0.0;
   double damping_kd_nmsprad = 0.0;  ///< gain of Damping, and of the damping after a fault
-  double speed_fault_radps = 0.0;   ///< a joint measured above it is a fault
+  double kp_limit_nmprad = 0.0;     ///< largest gains that the drives are to be given
+  double kd_limit_nmsprad = 0.0;
+  double speed_fault_radps = 0.0;     ///< a joint measured above it is a fault
+  double power_limit_w = 0.0;         ///< mechanical power of all joints together
+  double continuous_torque_nm = 0.0;  ///< rms torque that a drive gives for ever, at the joint
+  double thermal_time_s = 0.0;        ///< time constant with which its windings warm
   TorqueSpeedLine torque_speed_line;
   /// k_m at the joint: a torque heats the motor by torque^2 / k_m^2, in W.
   double motor_constant_nmpsqrtw = 0.0;

@@ -127,10 +127,12 @@ inline SafeCommand pass_gate(const JointCommand& command) {
   static const SafetyGate gate{{.joint_lower_rad = all_joints(-100.0),
                                 .joint_upper_rad = all_joints(100.0),
                                 .speed_limit_radps = all_joints(1e3),
-                                .torque_limit_nm = all_joints(1e3)},
+                                .torque_limit_nm = all_joints(1e9),
+                                .kp_limit_nmprad = 1e3,
+                                .kd_limit_nmsprad = 50.0},
                                1.0};
   GateState state;
-  return gate.pass(command, true, state);
+  return gate.pass(command, true, {}, state);
 }
 inline JointCommand pd_command(const JointArray<double>& target_rad, double kp, double kd) {
   JointCommand c;

@@ -41,11 +41,16 @@ fold_rad = [0.0, 1.1, -2.2]
 stand_kp_nmprad = 45.0
 stand_kd_nmsprad = 0.7
 damping_kd_nmsprad = 1.1
+kp_limit_nmprad = 90.0
+kd_limit_nmsprad = 2.0
 [limits]
 speed_fault_radps = 44.0
+power_w = 3000.0
 [motor]
 stall_torque_nm = 80.0
 no_load_speed_radps = 20.0
+continuous_torque_nm = 16.0
+thermal_time_s = 15.0
 )";
 
 /// Links and joints of one leg; `front` and `left` are 1 or -1.

@@ -17,7 +17,7 @@ CommandVerdict CommandGate::judge(const Twist& twist, std::uint64_t publisher,
   }
   if (!finite) return CommandVerdict::kNotFinite;
   if (absurd) return CommandVerdict::kAbsurd;
-  if (held_ && publisher != holder_ && now_ns - last_ns_ <= stale_ns_) {
+  if (publisher != holder_ && held(now_ns)) {
     return CommandVerdict::kOtherPublisher;
   }
   held_ = true;

@@ -29,6 +29,9 @@ class CommandGate {
   /// `publisher`: the sender; `now_ns`: steady clock at the arrival.
   CommandVerdict judge(const Twist& twist, std::uint64_t publisher, std::int64_t now_ns) noexcept;
 
+  /// Whether a publisher holds the command.
+  bool held(std::int64_t now_ns) const noexcept { return held_ && now_ns - last_ns_ <= stale_ns_; }
+
  private:
   std::int64_t stale_ns_;
   bool held_ = false;

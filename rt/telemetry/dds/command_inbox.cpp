@@ -35,6 +35,16 @@ Twist twist_from(const geometry_msgs_msg_dds__Twist_& t) {
           .angular_radps = {t.angular.x, t.angular.y, t.angular.z}};
 }
 
+/// The participant of a writer that `reader` knows; zero if it is gone.
+dds_guid_t participant_of(dds_entity_t reader, dds_instance_handle_t writer) {
+  dds_guid_t key{};
+  if (dds_builtintopic_endpoint_t* const data = dds_get_matched_publication_data(reader, writer)) {
+    key = data->participant_key;
+    dds_builtintopic_free_endpoint(data);
+  }
+  return key;
+}
+
 template <std::size_t kSize>
 void copy_text(char (&to)[kSize], std::string_view from) {
   const std::size_t size = std::min(from.size(), kSize - 1);
@@ -106,6 +116,7 @@ void CommandInbox::take_velocity() {
                  : *static_cast<const geometry_msgs_msg_dds__Twist_*>(message));
     const CommandVerdict verdict = gate_.judge(twist, info.publication_handle, steady_ns());
     if (verdict == CommandVerdict::kAccepted) {
+      holder_ = participant_of(cmd_vel_, info.publication_handle);
       asked_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
       ++asked_.velocity_number;
       operator_.ask(asked_);
@@ -115,15 +126,16 @@ void CommandInbox::take_velocity() {
 }
 
 void CommandInbox::take_requests() {
-  take(requests_, [this](const void* message, const dds_sample_info_t&) {
+  take(requests_, [this](const void* message, const dds_sample_info_t& info) {
     const auto& request = *static_cast<const sandrunner_ModeRequest*>(message);
-    answer(request.id, request.request);
+    answer(request.id, request.request, info.publication_handle);
   });
 }
 
-void CommandInbox::answer(std::uint64_t id, std::string_view request) {
+void CommandInbox::answer(std::uint64_t id, std::string_view request,
+                          dds_instance_handle_t writer) {
   const std::string unknown = fmt::format("unknown, expected {}", kRequestNames);
-  const char* const refusal = is_request(request) ? follow(request) : unknown.c_str();
+  const char* const refusal = is_request(request) ? follow(request, writer) : unknown.c_str();
   ++answers_[refusal ? 0 : 1];
   sandrunner_ModeReply reply{};
   reply.id = id;
@@ -133,13 +145,19 @@ void CommandInbox::answer(std::uint64_t id, std::string_view request) {
   dds_write(replies_, &reply);
 }
 
-const char* CommandInbox::follow(std::string_view request) {
+const char* CommandInbox::follow(std::string_view request, dds_instance_handle_t writer) {
   // A stop or damp waits for a controller that does not answer; until the controller has taken it,
   // nothing but a damp replaces it.
   const bool waiting = calming_number_ > operator_.considered();
   if (waiting && request != "damp") return kNoAnswer;
   const RequestDecision decision = decide(request, operator_.mode(), can_walk_);
   if (decision.refusal) return decision.refusal;
+  if (!decision.calms && gate_.held(steady_ns())) {
+    const dds_guid_t asker = participant_of(requests_, writer);
+    if (std::memcmp(asker.v, holder_.v, sizeof(asker.v)) != 0) {
+      return "another operator drives the robot";
+    }
+  }
   if (decision.calms) {
     asked_.velocity = {};
     ++asked_.velocity_number;

@@ -23,8 +23,9 @@ struct CommandCounts {
 };
 
 /// Reads rt/cmd_vel and sandrunner/mode_request in a thread of its own, at ordinary priority, and
-/// passes on what it accepts. Every mode request is answered on sandrunner/mode_reply. Requests are
-/// accepted from anyone, whoever holds the velocity command.
+/// passes on what it accepts. Every mode request is answered on sandrunner/mode_reply. While
+/// somebody holds the velocity command, requests are accepted from that participant alone, but for
+/// stop and damp, which anybody may ask for.
 class CommandInbox {
  public:
   /// `participant` and `op` must outlive the inbox. `can_walk`: there is a policy. Throws
@@ -42,12 +43,14 @@ class CommandInbox {
   void run();
   void take_velocity();
   void take_requests();
-  void answer(std::uint64_t id, std::string_view request);
-  const char* follow(std::string_view request);  // why not; null: done
+  void answer(std::uint64_t id, std::string_view request, dds_instance_handle_t writer);
+  // Why not; null: done.
+  const char* follow(std::string_view request, dds_instance_handle_t writer);
 
   DdsOperator& operator_;
   const bool stamped_, can_walk_;
   CommandGate gate_;
+  dds_guid_t holder_{};  // participant of the velocity that was accepted last
   OperatorRequests asked_;
   std::uint64_t calming_number_ = 0;  // of the latest stop or damp
   dds_entity_t cmd_vel_, requests_, replies_, wake_, waitset_;

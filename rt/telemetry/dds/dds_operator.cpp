@@ -13,15 +13,17 @@ OperatorCommand DdsOperator::command(std::uint64_t tick) noexcept {
     // If slots were missed, the command may have arrived in the first of them.
     arrival_tick_ = first ? tick : std::min(next_tick_, tick);
     command_.velocity = asked.velocity;
+    life_tick_ = std::max(life_tick_, arrival_tick_);
   }
   next_tick_ = tick + 1;
   if (velocity_number_ == 0 || tick - arrival_tick_ > stale_ticks_) command_.velocity = {};
-  command_.tick = arrival_tick_;
   if (!interrupted_ && !first && asked.request_number != request_number_) {
     request_number_ = asked.request_number;
     command_.request = asked.request;
     ++command_.request_id;
+    life_tick_ = tick;
   }
+  command_.tick = life_tick_;
   return command_;
 }
 

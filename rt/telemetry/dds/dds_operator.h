@@ -43,6 +43,7 @@ class DdsOperator final : public OperatorInput {
   std::uint64_t velocity_number_ = 0, request_number_ = 0;  // the latest seen
   std::uint64_t next_tick_ = 0;                             // 0: no tick yet
   std::uint64_t arrival_tick_ = 0;                          // of the velocity
+  std::uint64_t life_tick_ = 0;                             // of the latest velocity or request
   std::uint64_t damped_ticks_ = 0;                          // since the interrupt
   bool interrupted_ = false;
   OperatorCommand command_;

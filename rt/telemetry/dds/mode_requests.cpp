@@ -7,23 +7,27 @@
 namespace sandrunner {
 
 bool is_request(std::string_view name) noexcept {
-  constexpr std::array<std::string_view, 5> kNames = {"stand", "walk", "stop", "damp",
-                                                      "reset_fault"};
+  constexpr std::array<std::string_view, 6> kNames = {"arm",  "stand", "walk",
+                                                      "stop", "damp",  "reset_fault"};
   return std::ranges::find(kNames, name) != kNames.end();
 }
 
 RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept {
   if (name == "damp") return {.request = ModeRequest::kDamp, .calms = true};
-  if (name == "stop") {
-    return {.request = mode == Mode::kWalk ? ModeRequest::kStand : ModeRequest::kNone,
-            .calms = true};
-  }
+  if (name == "stop") return {.request = ModeRequest::kStop, .calms = true};
   if (name == "reset_fault") {
     if (mode != Mode::kFault) return {.refusal = "no fault is latched"};
     return {.request = ModeRequest::kResetFault};
   }
   if (mode == Mode::kFault) return {.refusal = "a fault is latched, reset_fault comes first"};
-  if (name == "stand") return {.request = ModeRequest::kStand};
+  if (name == "arm") {
+    if (mode != Mode::kPassive) return {.refusal = "the drives are on already"};
+    return {.request = ModeRequest::kArm};
+  }
+  if (name == "stand") {
+    if (mode == Mode::kPassive) return {.refusal = "the drives are off, arm comes first"};
+    return {.request = ModeRequest::kStand};
+  }
   if (!can_walk) return {.refusal = "no policy to walk with"};
   if (mode != Mode::kStand && mode != Mode::kWalk) {
     return {.refusal = "the robot does not stand, stand comes first"};
@@ -35,7 +39,11 @@ const char* failure(ModeRequest request, Mode after) noexcept {
   switch (request) {
     case ModeRequest::kNone:
     case ModeRequest::kPassive:  // which nobody can request
+    case ModeRequest::kStop:     // whatever moved is ending
       return nullptr;
+    case ModeRequest::kArm:
+      if (after == Mode::kDamping) return nullptr;
+      break;
     case ModeRequest::kStand:
       if (after == Mode::kStandUp || after == Mode::kStand || after == Mode::kWalk) return nullptr;
       break;
@@ -43,8 +51,10 @@ const char* failure(ModeRequest request, Mode after) noexcept {
       if (after == Mode::kWalk) return nullptr;
       break;
     case ModeRequest::kDamp:
-      // A fault damps too, then switches the drives off.
-      if (after == Mode::kDamping || after == Mode::kFault) return nullptr;
+      // A fault damps too, then switches the drives off; in Passive they are.
+      if (after == Mode::kDamping || after == Mode::kFault || after == Mode::kPassive) {
+        return nullptr;
+      }
       break;
     case ModeRequest::kResetFault:
       if (after != Mode::kFault) return nullptr;

@@ -8,7 +8,7 @@
 namespace sandrunner {
 
 /// What an operator may request over DDS, by name.
-inline constexpr const char* kRequestNames = "stand, walk, stop, damp or reset_fault";
+inline constexpr const char* kRequestNames = "arm, stand, walk, stop, damp or reset_fault";
 bool is_request(std::string_view name) noexcept;
 
 /// What to do about a request.
@@ -18,8 +18,9 @@ struct RequestDecision {
   const char* refusal = nullptr;             ///< why not; null: accepted
 };
 
-/// Decides in `mode`; `name` is one of the above. "stop" is the controlled stop of a walking robot
-/// and does nothing in other modes: it makes no robot stand up. `can_walk`: there is a policy.
+/// Decides in `mode`; `name` is one of the above. "stop" ends every motion: a walking robot's in a
+/// controlled stop, a rising one's in damping; it makes no robot stand up. `can_walk`: there is a
+/// policy.
 RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept;
 
 /// Why a request had no effect, judged by the mode of the controller after it; null: it had.

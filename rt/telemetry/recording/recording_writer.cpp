@@ -32,6 +32,10 @@ const char* request_name(ModeRequest request) {
       return "walk";
     case ModeRequest::kResetFault:
       return "reset_fault";
+    case ModeRequest::kArm:
+      return "arm";
+    case ModeRequest::kStop:
+      return "stop";
   }
   return "none";
 }

@@ -13,6 +13,8 @@
 
 namespace sandrunner {
 
+inline constexpr double kTremble_rad = 1e-6;
+
 inline constexpr JointArray<double> kLyingPosture_rad = {0.3, 1.5, -2.3, -0.3, 1.5, -2.3,
                                                          0.3, 1.5, -2.3, -0.3, 1.5, -2.3};
 
@@ -21,6 +23,7 @@ class FakeRobot : public RobotIo {
  public:
   explicit FakeRobot(const JointArray<double>& posture_rad) {
     now.joints.position_rad = posture_rad;
+    now.imu.linear_acceleration_mps2 = {0.0, 0.0, kGravity_mps2};
   }
 
   void read(std::uint64_t, SensorFrame& frame) noexcept override {
@@ -44,6 +47,7 @@ class FakeRobot : public RobotIo {
   }
 
   void skip(std::uint64_t, const SafeCommand&) noexcept override {}
+  void cut_drives() noexcept override { now.drives_cut = 1; }
   void shut_down() noexcept override {}
 
   SensorFrame now;
@@ -51,7 +55,7 @@ class FakeRobot : public RobotIo {
 };
 
 /// Controller of the test robot, robot and a policy that answers every release at once with
-/// `action_rad`.
+/// `action_rad`, but for one joint that it moves back and forth a little, as a living one does.
 class FakeLoop {
  public:
   explicit FakeLoop(Mode start = Mode::kPassive, const ControllerConfig& config_in = test_robot())
@@ -75,6 +79,7 @@ class FakeLoop {
       policy.episode = output.policy_input.episode;
       ++policy.sequence;
       policy.target_rad = action_rad;
+      if (policy.sequence % 2 == 0) policy.target_rad[0] += kTremble_rad;
     }
     ++robot.now.tick;
   }
@@ -87,11 +92,16 @@ class FakeLoop {
     ++input.command.request_id;
     tick();
   }
+  /// The two steps from Passive to StandUp.
+  void stand_up() {
+    request(ModeRequest::kArm);
+    request(ModeRequest::kStand);
+  }
   /// From Passive to `mode`, by requests.
   void reach(Mode mode) {
     if (mode == Mode::kPassive) return;
-    if (mode == Mode::kDamping) return request(ModeRequest::kDamp);
-    request(ModeRequest::kStand);
+    if (mode == Mode::kDamping) return request(ModeRequest::kArm);
+    stand_up();
     if (mode == Mode::kStandUp) return;
     run_s(3.0);
     if (mode == Mode::kWalk) {

@@ -30,6 +30,7 @@ struct FaultCase {
   std::uint64_t ticks_to_threshold;
   /// The disturbance, from tick 0 on; `last` are the inputs before it began.
   void (*disturb)(ControllerInput& seen, const ControllerInput& last);
+  Fault also = Fault::kNone;  ///< arises in the same tick
 };
 
 const FaultCase kFaultCases[] = {
@@ -47,9 +48,10 @@ const FaultCase kFaultCases[] = {
     {Fault::kImuStale, Mode::kStandUp, 40,
      [](auto& seen, auto& last) { seen.sensors.imu = last.sensors.imu; }},
     {Fault::kJointPosition, Mode::kStand, 0,
-     [](auto& seen, auto&) { seen.sensors.joints.position_rad[2] = 0.351; }},
+     [](auto& seen, auto&) { seen.sensors.joints.position_rad[2] = 0.351; }, Fault::kEncoderJump},
     {Fault::kJointPosition, Mode::kDamping, 0,
-     [](auto& seen, auto&) { seen.sensors.joints.position_rad[8] = -2.5 - 0.351; }},
+     [](auto& seen, auto&) { seen.sensors.joints.position_rad[8] = -2.5 - 0.351; },
+     Fault::kEncoderJump},
     {Fault::kJointSpeed, Mode::kWalk, 0,
      [](auto& seen, auto&) { seen.sensors.joints.velocity_radps[7] = -60.1; }},
     {Fault::kJointTorque, Mode::kWalk, 19,
@@ -59,6 +61,10 @@ const FaultCase kFaultCases[] = {
     {Fault::kTilt, Mode::kStandUp, 0,
      [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(-170.0); }},
 };
+
+std::uint64_t bits(const FaultCase& c) {
+  return static_cast<std::uint64_t>(c.fault) | static_cast<std::uint64_t>(c.also);
+}
 
 void PrintTo(const FaultCase& fault_case, std::ostream* out) {
   *out << fault_name(fault_case.fault) << " in " << mode_name(fault_case.mode);
@@ -90,7 +96,7 @@ TEST_P(FaultCaseTest, BrakesWithinTwoMillisecondsThenSwitchesOff) {
   EXPECT_TRUE(only_brakes(loop.output.command));
   EXPECT_TRUE(loop.output.command.enabled());
   EXPECT_EQ(loop.output.command.joints().kd_nmsprad[0], 2.0);
-  EXPECT_EQ(loop.output.faults, static_cast<std::uint64_t>(fault_case.fault));
+  EXPECT_EQ(loop.output.faults, bits(fault_case));
   EXPECT_EQ(loop.controller.state().gate.first_fault, fault_case.fault);
   EXPECT_EQ(loop.controller.state().gate.first_fault_tick, loop.output.policy_input.tick);
 
@@ -103,7 +109,7 @@ TEST_P(FaultCaseTest, BrakesWithinTwoMillisecondsThenSwitchesOff) {
   loop.tick();
   EXPECT_FALSE(loop.output.command.enabled());
   EXPECT_EQ(loop.output.mode, Mode::kFault);
-  EXPECT_EQ(loop.output.faults, static_cast<std::uint64_t>(fault_case.fault));
+  EXPECT_EQ(loop.output.faults, bits(fault_case));
 }
 
 INSTANTIATE_TEST_SUITE_P(EachFault, FaultCaseTest, testing::ValuesIn(kFaultCases),
@@ -161,7 +167,7 @@ TEST(FaultsTest, PassiveIgnoresHowTheRobotLies) {
   EXPECT_EQ(loop.output.mode, Mode::kPassive);
   EXPECT_EQ(loop.output.faults, 0u);
   // But it does not get up like that, not for a single tick.
-  loop.request(ModeRequest::kStand);
+  loop.stand_up();
   EXPECT_EQ(loop.output.mode, Mode::kFault);
   EXPECT_TRUE(only_brakes(loop.output.command));
 }
@@ -225,7 +231,7 @@ TEST_F(ResetTest, LeadsToPassiveAndNeverFurther) {
     loop.tick();
     ASSERT_FALSE(loop.output.command.enabled());
   }
-  loop.request(ModeRequest::kStand);
+  loop.stand_up();
   EXPECT_EQ(loop.output.mode, Mode::kStandUp);
 }
 

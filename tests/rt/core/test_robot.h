@@ -26,6 +26,17 @@ inline ControllerConfig test_robot() {
   }
   c.gate.speed_limit_radps = all_joints(25.0);
   c.gate.speed_fault_radps = 60.0;
+  c.gate.kp_limit_nmprad = 200.0;
+  c.gate.kd_limit_nmsprad = 5.0;
+  c.gate.power_limit_w = 8000.0;
+  c.gate.continuous_torque_nm = 30.0;
+  c.gate.thermal_time_s = 20.0;
+  c.shaping.envelope = {.forward_mps = 2.0,
+                        .backward_mps = 1.0,
+                        .lateral_mps = 0.5,
+                        .yaw_radps = 1.0,
+                        .acceleration_mps2 = 1e4,
+                        .yaw_acceleration_radps2 = 1e4};
   c.gate.torque_limit_nm = all_joints(60.0);
   return c;
 }

@@ -12,7 +12,7 @@ namespace {
 
 TEST(WalkTest, StartInWalkReleasesThePolicyAtOnceWithTheCommand) {
   FakeLoop loop(Mode::kWalk);
-  loop.action_rad.fill(-0.7);
+  loop.action_rad.fill(-0.5);
   loop.tick();
   EXPECT_EQ(loop.output.mode, Mode::kWalk);
   EXPECT_EQ(loop.output.release_policy, 1u);
@@ -74,7 +74,7 @@ TEST(WalkTest, OutputWaitsForItsLatency) {
   ControllerConfig config = test_robot();
   config.walk.latency_ticks = 8;
   FakeLoop loop(Mode::kWalk, config);
-  loop.action_rad.fill(-0.7);
+  loop.action_rad.fill(-0.5);
   for (int n = 0; n < 8; ++n) {
     loop.tick();
     ASSERT_EQ(loop.output.command.joints().position_rad, config.stand.nominal_rad);
@@ -86,7 +86,7 @@ TEST(WalkTest, OutputWaitsForItsLatency) {
 
 TEST(WalkTest, LateOutputIsTakenAtOnceAndCounted) {
   FakeLoop loop(Mode::kWalk);
-  loop.action_rad.fill(-0.7);
+  loop.action_rad.fill(-0.5);
   loop.spoil = [](ControllerInput& seen) {
     if (seen.sensors.tick < 25) seen.policy = {};
   };
@@ -100,7 +100,7 @@ TEST(WalkTest, LateOutputIsTakenAtOnceAndCounted) {
 
 TEST(WalkTest, MissedOutputHoldsTheLastTarget) {
   FakeLoop loop(Mode::kWalk);
-  loop.action_rad.fill(-0.7);
+  loop.action_rad.fill(-0.5);
   loop.run_s(0.005);
   const JointArray<double> held_rad = loop.action_rad;
   loop.policy_hangs = true;
@@ -132,7 +132,7 @@ TEST(WalkTest, OutputOfAnotherEpisodeDoesNotCount) {
 
 TEST(WalkTest, NewEpisodeStartsAfresh) {
   ControllerConfig config = test_robot();
-  config.shaping.acceleration_limit_mps2 = 1.0;
+  config.shaping.envelope.acceleration_mps2 = 1.0;
   FakeLoop loop(Mode::kPassive, config);
   loop.reach(Mode::kWalk);
   loop.run_s(1.0);
@@ -141,43 +141,54 @@ TEST(WalkTest, NewEpisodeStartsAfresh) {
   loop.request(ModeRequest::kStand);
   loop.run_s(3.0);
   loop.policy.sequence = 0;  // a policy may count anew
-  loop.action_rad.fill(-0.7);
+  loop.action_rad.fill(-0.5);
   loop.request(ModeRequest::kWalk);
   EXPECT_NEAR(loop.output.policy_input.command.vx_mps, kControlPeriod_s, 1e-12);
   loop.run_s(0.02);
-  EXPECT_EQ(loop.output.command.joints().position_rad, loop.action_rad);
+  EXPECT_EQ(loop.output.command.joints().position_rad, loop.policy.target_rad);
 }
 
 TEST(WalkTest, OutputFromTheFutureDoesNotCount) {
   FakeLoop loop(Mode::kWalk);
   loop.tick();
   loop.policy.input_tick = ~std::uint64_t{0};
-  loop.policy.target_rad.fill(-0.7);
+  loop.policy.target_rad.fill(-0.5);
   loop.policy_hangs = true;
   loop.tick();
   EXPECT_EQ(loop.output.command.joints().position_rad, loop.config.stand.nominal_rad);
 }
 
-TEST(WalkTest, WildTargetIsClampedAndCounted) {
+TEST(WalkTest, WildTargetGivesTheJointsTorqueAndNoMoreAndIsCounted) {
   FakeLoop loop(Mode::kWalk);
   loop.action_rad.fill(1e6);
   loop.tick();
   loop.tick();
-  EXPECT_EQ(loop.output.command.joints().position_rad[2], 1.0);
+  EXPECT_NEAR(loop.output.command.joints().position_rad[2], -1.2 + 60.0 / 50.0, 1e-12);
   EXPECT_EQ(loop.controller.state().gate.counters.position_clamped, 1u);
+  EXPECT_EQ(loop.controller.state().gate.counters.torque_clamped, 1u);
 }
 
-TEST(WalkTest, CommandStepPassesThroughByDefault) {
+TEST(WalkTest, CommandBeyondTheEnvelopeIsBroughtInsideAndTheShareLeftIsTold) {
   FakeLoop loop(Mode::kWalk);
-  loop.input.command.velocity = {4.0, -0.5, 0.3};
+  loop.input.command.velocity = {1.0, -0.2, 0.3};
   loop.tick();
-  EXPECT_EQ(loop.output.policy_input.command.vx_mps, 4.0);
-  EXPECT_EQ(loop.output.policy_input.command.vy_mps, -0.5);
+  EXPECT_EQ(loop.output.policy_input.command.vx_mps, 1.0);
+  EXPECT_EQ(loop.output.policy_input.command.vy_mps, -0.2);
   EXPECT_EQ(loop.output.policy_input.command.wz_radps, 0.3);
+  EXPECT_EQ(loop.output.command_share, 1.0);
+  EXPECT_EQ(loop.controller.state().gate.counters.command_clamped, 0u);
+  loop.input.command.velocity = {0.0, -2.0, 0.3};
+  loop.tick();
+  EXPECT_NEAR(loop.output.policy_input.command.vy_mps, -0.5, 1e-12);
+  EXPECT_EQ(loop.output.policy_input.command.wz_radps, 0.3);
+  EXPECT_NEAR(loop.output.command_share, 0.25, 1e-12);
+  EXPECT_EQ(loop.controller.state().gate.counters.command_clamped, 1u);
 }
 
 TEST(WalkTest, YawRateIsClippedToTheCentripetalLimit) {
-  FakeLoop loop(Mode::kWalk);
+  ControllerConfig config = test_robot();
+  config.shaping.envelope = {5.0, 5.0, 10.0, 5.0, 1e9, 1e9};
+  FakeLoop loop(Mode::kWalk, config);
   loop.input.command.velocity = {3.0, 4.0, -2.0};
   loop.tick();
   EXPECT_DOUBLE_EQ(loop.output.policy_input.command.wz_radps, -2.943 / 5.0);
@@ -188,8 +199,7 @@ TEST(WalkTest, YawRateIsClippedToTheCentripetalLimit) {
 
 TEST(WalkTest, SlewLimitsBoundTheCommand) {
   ControllerConfig config = test_robot();
-  config.shaping.acceleration_limit_mps2 = 4.0;
-  config.shaping.yaw_acceleration_limit_radps2 = 8.0;
+  config.shaping.envelope = {2.0, 2.0, 2.0, 2.0, 4.0, 8.0};
   FakeLoop loop(Mode::kWalk, config);
   loop.input.command.velocity = {1.0, -1.0, 1.0};
   for (int n = 1; n <= 1000; ++n) {

@@ -36,6 +36,7 @@ class SpoiltRobot : public RobotIo {
   void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
     simulator_.skip(ticks, held);
   }
+  void cut_drives() noexcept override { simulator_.cut_drives(); }
   void shut_down() noexcept override {}
 
   /// What happens to each frame from kDisturbed_tick on; `last` is the one before.

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Thresholds of the safety gate, and what no setting can put them beyond.
+#pragma once
+
+#include <cstdint>
+
+#include "rt/core/messages.h"
+
+namespace sandrunner {
+
+/// The same value for every joint.
+inline JointArray<double> all_joints(double value) noexcept {
+  JointArray<double> all;
+  all.fill(value);
+  return all;
+}
+
+/// Thresholds. A value that equals its threshold passes. The robot's figures come from its file and
+/// are 0 without one: every movement is then a fault, every torque is bounded to nothing.
+struct GateConfig {
+  // Joint positions, rad.
+  JointArray<double> joint_lower_rad{};  ///< stops; limit: past one is counted. From the URDF
+  JointArray<double> joint_upper_rad{};
+  /// Fault: measured this far past a stop. The published network goes 0.3 rad past a knee's in
+  /// normal running.
+  double joint_fault_rad = 0.35;
+  /// A commanded position is clamped to the stops plus this. A target past a stop is how a policy
+  /// asks for torque there: 1 rad is 50 N m at the published network's Kp.
+  double target_margin_rad = 1.0;
+  /// A commanded position moves by at most this in a tick. A policy may ask for any torque at once;
+  /// what lies beyond the joint's whole range is a mistake.
+  double target_step_rad = 2.0;
+
+  // Joint speeds, rad/s.
+  /// Limit: counted; a commanded velocity is clamped to it. From the URDF.
+  JointArray<double> speed_limit_radps{};
+  double speed_fault_radps = 0.0;  ///< fault, of any joint. From the robot's map
+  /// Fault: a position that changes in a tick by this more than the speed fault explains.
+  double encoder_jump_rad = 0.1;
+
+  // Joint torques, N m.
+  /// A joint command that would give more is moved until it gives this. From the URDF.
+  JointArray<double> torque_limit_nm{};
+  /// Fault: measured torque over this times its limit (drives regulate to a few percent) ...
+  double torque_fault_ratio = 1.2;
+  double torque_fault_s = 0.005;  ///< ... in all samples of a joint for this long
+  /// Largest gains that a joint command may have. From the robot's map.
+  double kp_limit_nmprad = 0.0;
+  double kd_limit_nmsprad = 0.0;
+  /// Joint commands that would give more mechanical power together are moved until they give
+  /// this, W. From the robot's map.
+  double power_limit_w = 0.0;
+  /// I2t: the mean of the squared torque over about `thermal_time_s` may not exceed the square of
+  /// this. Counted from four fifths of it on; fault. From the robot's map.
+  double continuous_torque_nm = 0.0;
+  double thermal_time_s = 1.0;
+
+  // Tilt: angle between the body's and the world's z axis, degrees. A robot on its feet on the
+  // steepest sand (the angle of repose, about 34 degrees) is below both.
+  double tilt_limit_deg = 45.0;  ///< counted; fault after `tilt_fault_s`
+  double tilt_fault_s = 0.5;
+  double tilt_fault_deg = 60.0;
+  /// Fault: the accelerometer feels less than this, m/s^2 ...
+  double free_fall_mps2 = 2.0;
+  double free_fall_s = 0.25;  ///< ... for this long: a fall of 0.3 m. In running it is 0.05 s.
+
+  // Ages, in control ticks of 0.25 ms in which the loop ran: a stall of the loop itself makes
+  // nothing older, it is judged for itself.
+  std::uint64_t joints_limit_ticks = 2;  ///< counted: a bus cycle that came late
+  std::uint64_t joints_fault_ticks = 8;  ///< fault: 2 ms without joint values
+  std::uint64_t imu_limit_ticks = 8;     ///< counted
+  std::uint64_t imu_fault_ticks = 40;    ///< fault: a policy period without an IMU sample
+  /// Fault: age of the input from which the policy output in use was computed; three policy
+  /// periods.
+  std::uint64_t policy_fault_ticks = 120;
+  /// Fault: ticks that the loop missed in a row while the robot carries itself: as long as a silent
+  /// policy is tolerated.
+  std::uint64_t stall_fault_ticks = 120;
+  std::uint64_t frozen_ticks = 200;        ///< fault: a joint's values are the same to the bit ...
+  double frozen_move_rad = 0.2;            ///< ... while its target has moved by this
+  std::uint64_t policy_frozen_steps = 20;  ///< fault: steps of the policy with the same targets
+};
+
+/// What no setting can go beyond: compiled in. Thresholds above are lowered to these; those of the
+/// robot (limits of joints, power) are its file's business.
+inline constexpr GateConfig kGateCeilings{.joint_fault_rad = 0.5,
+                                          .target_margin_rad = 2.0,
+                                          .target_step_rad = 4.0,
+                                          .speed_fault_radps = 100.0,
+                                          .encoder_jump_rad = 0.5,
+                                          .torque_fault_ratio = 2.0,
+                                          .torque_fault_s = 0.1,
+                                          .kp_limit_nmprad = 1000.0,
+                                          .kd_limit_nmsprad = 50.0,
+                                          .power_limit_w = 1e5,
+                                          .continuous_torque_nm = 1e3,
+                                          .thermal_time_s = 600.0,
+                                          .tilt_limit_deg = 60.0,
+                                          .tilt_fault_s = 2.0,
+                                          .tilt_fault_deg = 80.0,
+                                          .free_fall_s = 1.0,
+                                          .joints_limit_ticks = 40,
+                                          .joints_fault_ticks = 40,
+                                          .imu_limit_ticks = 200,
+                                          .imu_fault_ticks = 200,
+                                          .policy_fault_ticks = 400,
+                                          .stall_fault_ticks = 400,
+                                          .frozen_ticks = 4000,
+                                          .frozen_move_rad = 1.0,
+                                          .policy_frozen_steps = 100};
+
+/// `config` with no threshold beyond kGateCeilings.
+GateConfig below_ceilings(const GateConfig& config) noexcept;
+
+}  // namespace sandrunner

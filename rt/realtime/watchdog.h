@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "rt/core/robot_io.h"
+#include "rt/loop/clock.h"
+
+namespace sandrunner {
+
+/// How long the control thread may not tick while the machine runs: longer than any stall that the
+/// safety gate tolerates, shorter than the drives' own time-outs are by habit.
+inline constexpr std::int64_t kWatchdog_ns = 100'000'000;
+
+/// The last line but the drives' own: when the control thread hangs, cuts the drives, for good. Has
+/// a thread of its own, above the control thread's priority. A stall of the whole machine, which
+/// stops the watchdog as well, is the control thread's to judge.
+class Watchdog {
+ public:
+  /// `ticks` grows with every tick of the control thread. All must outlive the watchdog.
+  Watchdog(RobotIo& robot, const std::atomic<std::uint64_t>& ticks, Clock& clock)
+      : robot_(robot), ticks_(ticks), clock_(clock) {}
+
+  /// Watches from `start_ns` on until stop(). Real-time safe.
+  void run(std::int64_t start_ns) noexcept;
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+
+  /// One look; the first one is given the time from which it watches. Cuts the drives if need be.
+  void look(std::int64_t now_ns) noexcept;
+  bool has_cut() const noexcept { return cut_.load(std::memory_order_relaxed); }
+
+ private:
+  RobotIo& robot_;
+  const std::atomic<std::uint64_t>& ticks_;
+  Clock& clock_;
+  std::atomic<bool> stop_{false}, cut_{false};
+  std::uint64_t seen_ = 0;
+  std::int64_t looked_ns_ = 0, alive_ns_ = 0;
+  bool watching_ = false;
+};
+
+}  // namespace sandrunner
