@@ -106,8 +106,8 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kEncoderJump, "encoder_jump",
      "a joint's position changed by more than its speed explains", "drives", kMoving, "1 tick"},
     {Fault::kEncoderFrozen, "encoder_frozen",
-     "a joint's values stay the same to the bit while it is told to move", "drives",
-     kStandUpOnly | kWalkOnly, "50 ms, or when it was told to move by 0.2 rad"},
+     "a joint's values stay the same to the bit while it moves or is told to", "drives",
+     kStandUpOnly | kWalkOnly, "0.005 rad by its speed, or 0.2 rad by its target and 50 ms"},
     {Fault::kPolicyFrozen, "policy_frozen", "the policy gives the same targets to the bit",
      "policy", kWalkOnly, "0.2 s"},
     {Fault::kOverload, "overload", "a drive gives more torque than it can for long (I2t)", "drives",
@@ -117,6 +117,15 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kNotStanding, "not_standing", "the joints do not reach the posture of Stand", "drives",
      kStandUpOnly, "1 s after the motion"},
 }};
+
+/// After these the values of the joints that they are about are not to be trusted.
+inline constexpr std::uint64_t kBlindingFaults =
+    static_cast<std::uint64_t>(Fault::kNonFiniteJoint) |
+    static_cast<std::uint64_t>(Fault::kJointsStale) |
+    static_cast<std::uint64_t>(Fault::kJointPosition) |
+    static_cast<std::uint64_t>(Fault::kJointSpeed) |
+    static_cast<std::uint64_t>(Fault::kEncoderJump) |
+    static_cast<std::uint64_t>(Fault::kEncoderFrozen);
 
 constexpr bool faults_in_order() noexcept {
   for (int i = 0; i < kNumFaults; ++i) {

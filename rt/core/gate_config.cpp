@@ -17,7 +17,7 @@ GateConfig below_ceilings(const GateConfig& config) noexcept {
         &GateConfig::kd_limit_nmsprad, &GateConfig::power_limit_w,
         &GateConfig::continuous_torque_nm, &GateConfig::thermal_time_s, &GateConfig::tilt_limit_deg,
         &GateConfig::tilt_fault_s, &GateConfig::tilt_fault_deg, &GateConfig::free_fall_s,
-        &GateConfig::frozen_move_rad}) {
+        &GateConfig::frozen_moved_rad, &GateConfig::frozen_told_rad}) {
     lower(threshold);
   }
   for (const auto threshold : {&GateConfig::joints_limit_ticks, &GateConfig::joints_fault_ticks,

@@ -76,8 +76,11 @@ struct GateConfig {
   /// Fault: ticks that the loop missed in a row while the robot carries itself: as long as a silent
   /// policy is tolerated.
   std::uint64_t stall_fault_ticks = 120;
-  std::uint64_t frozen_ticks = 200;        ///< fault: a joint's values are the same to the bit ...
-  double frozen_move_rad = 0.2;            ///< ... while its target has moved by this
+  // Fault: new samples of a joint are the same to the bit ...
+  double frozen_moved_rad = 0.005;   ///< ... while by its own speed it has moved by this: some ten
+                                     ///< counts of an encoder; or ...
+  double frozen_told_rad = 0.2;      ///< ... while its target has moved by this ...
+  std::uint64_t frozen_ticks = 200;  ///< ... for this long
   std::uint64_t policy_frozen_steps = 20;  ///< fault: steps of the policy with the same targets
 };
 
@@ -105,8 +108,9 @@ inline constexpr GateConfig kGateCeilings{.joint_fault_rad = 0.5,
                                           .imu_fault_ticks = 200,
                                           .policy_fault_ticks = 400,
                                           .stall_fault_ticks = 400,
+                                          .frozen_moved_rad = 0.1,
+                                          .frozen_told_rad = 1.0,
                                           .frozen_ticks = 4000,
-                                          .frozen_move_rad = 1.0,
                                           .policy_frozen_steps = 100};
 
 /// `config` with no threshold beyond kGateCeilings.

@@ -56,19 +56,21 @@ struct GateState {
   std::uint64_t first_fault_tick = 0;
   /// Joints that a latched fault is about, bit j for joint j; kept over a reset.
   std::uint64_t fault_joints = 0;
-  std::uint64_t tick = 0;                             ///< of the latest judgement
-  std::uint64_t judged = 0;                           ///< judgements since the start
+  std::uint64_t blind_joints = 0;  ///< whose values a latched fault makes untrustworthy
+  std::uint64_t tick = 0;          ///< of the latest judgement
+  std::uint64_t judged = 0;        ///< judgements since the start
   std::uint64_t stall_end_tick = 0, stall_ticks = 0;  ///< of the latest stall of the loop
   std::uint64_t tilted_ticks = 0;                     ///< how long tilted past the limit
   std::uint64_t falling_ticks = 0;                    ///< how long without weight
 
   JointArray<std::uint64_t> torque_over_ticks{};  ///< samples in a row above the fault torque
   JointArray<double> heat_n2m2{};                 ///< squared torque, averaged over thermal_time_s
-  std::uint64_t seen = 0;             ///< 1: the next two are those of the last judgement
-  JointArray<double> position_rad{};  ///< as last judged
+  std::uint64_t encoders_seen = 0;  ///< 1: the next three are those of the last judgement
+  JointArray<std::uint64_t> sample_tick{};
+  JointArray<double> position_rad{};
   JointArray<double> velocity_radps{};
-  JointArray<std::uint64_t> same_ticks{};  ///< samples in a row with the same bits
-  JointArray<double> told_rad{};           ///< commanded when they began to be the same
+  JointArray<std::uint64_t> changed_tick{};  ///< sample since which they have had the same bits
+  JointArray<double> told_rad{};             ///< commanded position then
 
   JointArray<double> sent_rad{};    ///< the last commanded positions
   std::uint64_t sent = 0;           ///< 1: the last command had stiffness
@@ -79,6 +81,6 @@ struct GateState {
   GateCounters counters;
 };
 static_assert(std::is_trivially_copyable_v<GateState>);
-static_assert(sizeof(GateState) == 8 * (15 + 8 * kNumJoints) + sizeof(GateCounters), "no padding");
+static_assert(sizeof(GateState) == 8 * (16 + 9 * kNumJoints) + sizeof(GateCounters), "no padding");
 
 }  // namespace sandrunner

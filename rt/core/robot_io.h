@@ -19,17 +19,22 @@ class SafeCommand {
   const JointCommand& joints() const noexcept { return joints_; }
   /// False: the drives are to be without torque, whatever `joints()` says (it is then zero).
   bool enabled() const noexcept { return enabled_ != 0; }
+  /// Joints whose measured values are not to be trusted, bit j for joint j. A drive damps them by
+  /// its own encoder; who evaluates the law of a torque drive gives them no torque: damping by a
+  /// wrong speed would drive.
+  std::uint64_t blind_joints() const noexcept { return blind_joints_; }
 
  private:
   friend class SafetyGate;
-  SafeCommand(const JointCommand& joints, bool enabled) noexcept
-      : joints_(joints), enabled_(enabled ? 1 : 0) {}
+  SafeCommand(const JointCommand& joints, bool enabled, std::uint64_t blind_joints) noexcept
+      : joints_(joints), enabled_(enabled ? 1 : 0), blind_joints_(blind_joints) {}
 
   JointCommand joints_;
   std::uint64_t enabled_ = 0;  // as wide as the rest: no padding in a recording
+  std::uint64_t blind_joints_ = 0;
 };
 static_assert(std::is_trivially_copyable_v<SafeCommand>);
-static_assert(sizeof(SafeCommand) == sizeof(JointCommand) + 8, "no padding");
+static_assert(sizeof(SafeCommand) == sizeof(JointCommand) + 16, "no padding");
 
 /// The robot as the control loop sees it: real drives and IMU, or the simulator. Called from the
 /// control thread, in each tick: `read`, `Controller::step`, `write`. Time comes from the loop:

@@ -82,12 +82,13 @@ bool judged_in(Mode mode, ModeSet modes) noexcept { return (modes & mode_set(mod
 void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept {
   if (found == 0) return;
   if (state.faults == 0) {
-    state.fault_joints = 0;
+    state.fault_joints = state.blind_joints = 0;
     state.first_fault = static_cast<Fault>(std::uint64_t{1} << std::countr_zero(found));
     state.first_fault_tick = state.tick;
   }
   state.faults |= found;
   state.fault_joints |= joints;
+  if ((found & kBlindingFaults) != 0) state.blind_joints |= joints;
 }
 
 }  // namespace
@@ -140,7 +141,7 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
     std::uint64_t& joints_at_fault = judged_in(mode, kMoving) ? at_fault : at_rest;
     const std::uint64_t hot = judge_heat(sensors.joints, elapsed, state, joints_at_fault);
     if (judged_in(mode, kMoving)) found |= hot | judge_joints(sensors.joints, state, at_fault);
-    found |= judge_encoders(sensors.joints, elapsed, mode, state, at_fault);
+    found |= judge_encoders(sensors.joints, mode, state, at_fault);
   }
   if (mode == Mode::kPassive) state.torque_over_ticks.fill(0);
   if (judged_in(mode, kCarrying) && imu_usable) {
@@ -243,35 +244,40 @@ std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t ela
   return found;
 }
 
-std::uint64_t SafetyGate::judge_encoders(const JointState& joints, std::uint64_t elapsed, Mode mode,
-                                         GateState& state, std::uint64_t& at_fault) const noexcept {
+std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, GateState& state,
+                                         std::uint64_t& at_fault) const noexcept {
   std::uint64_t found = 0;
-  const double reach_rad = config_.encoder_jump_rad + config_.speed_fault_radps * kControlPeriod_s *
-                                                          static_cast<double>(elapsed);
   for (int j = 0; j < kNumJoints; ++j) {
+    const std::uint64_t tick = joints.tick[j];
+    if (state.encoders_seen != 0 && tick <= state.sample_tick[j]) continue;  // no new sample
     std::uint64_t faults = 0;
-    const double way_rad = joints.position_rad[j] - state.position_rad[j];
-    if (state.seen != 0 && judged_in(mode, kMoving) && std::fabs(way_rad) > reach_rad) {
-      faults |= bit(Fault::kEncoderJump);
+    const auto seconds = [](std::uint64_t ticks) {
+      return kControlPeriod_s * static_cast<double>(ticks);
+    };
+    if (state.encoders_seen != 0 && judged_in(mode, kMoving)) {
+      const double way_rad = std::fabs(joints.position_rad[j] - state.position_rad[j]);
+      const double reach_rad = config_.encoder_jump_rad +
+                               config_.speed_fault_radps * seconds(tick - state.sample_tick[j]);
+      if (way_rad > reach_rad) faults |= bit(Fault::kEncoderJump);
     }
     const bool same = same_bits(joints.position_rad[j], state.position_rad[j]) &&
                       same_bits(joints.velocity_radps[j], state.velocity_radps[j]);
-    std::uint64_t& same_ticks = state.same_ticks[j];
     if (!same || state.sent == 0) {
-      same_ticks = 0;
-    } else {
-      if (same_ticks == 0) state.told_rad[j] = state.sent_rad[j];
-      ++same_ticks;
-      const double told_to_move_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
-      if (same_ticks >= config_.frozen_ticks && told_to_move_rad > config_.frozen_move_rad &&
-          judged_in(mode, kStandUpOnly | kWalkOnly)) {
-        faults |= bit(Fault::kEncoderFrozen);
-      }
+      state.changed_tick[j] = tick;
+      state.told_rad[j] = state.sent_rad[j];
+    } else if (judged_in(mode, kStandUpOnly | kWalkOnly)) {
+      // What its own speed says that it moved, and what it was told to.
+      const std::uint64_t frozen_ticks = tick - state.changed_tick[j];
+      const double moved_rad = std::fabs(joints.velocity_radps[j]) * seconds(frozen_ticks);
+      const double told_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
+      const bool deaf = frozen_ticks >= config_.frozen_ticks && told_rad > config_.frozen_told_rad;
+      if (deaf || moved_rad > config_.frozen_moved_rad) faults |= bit(Fault::kEncoderFrozen);
     }
     if (faults != 0) at_fault |= std::uint64_t{1} << j;
     found |= faults;
   }
-  state.seen = 1;
+  state.encoders_seen = 1;
+  state.sample_tick = joints.tick;
   state.position_rad = joints.position_rad;
   state.velocity_radps = joints.velocity_radps;
   return found;
@@ -319,7 +325,7 @@ SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const Joi
   state.sent = 0;
   if (!enabled) return SafeCommand{};
   if (!all_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), 0, state);
-  if (state.faults != 0) return SafeCommand{damping_, true};
+  if (state.faults != 0) return SafeCommand{damping_, true, state.blind_joints};
 
   JointCommand allowed = wanted;
   const JointArray<double> asked_rad =
@@ -329,8 +335,12 @@ SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const Joi
   if (stiff) {
     state.sent = 1;
     state.sent_rad = asked_rad;
+    if (!stiff_before) {
+      state.told_rad = asked_rad;
+      state.changed_tick = joints.tick;
+    }
   }
-  return SafeCommand{allowed, true};
+  return SafeCommand{allowed, true, 0};
 }
 
 void SafetyGate::clear(GateState& state) const noexcept {

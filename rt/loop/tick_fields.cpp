@@ -65,6 +65,8 @@ constexpr std::array kFields = {
     COMMAND_FIELD("command_feedforward_nm", feedforward_nm),
     field<std::uint64_t>("command_enabled",
                          offsetof(TickRecord, output.command) + sizeof(JointCommand)),
+    field<std::uint64_t>("command_blind_joints",
+                         offsetof(TickRecord, output.command) + sizeof(JointCommand) + 8),
     FIELD("released_tick", output.policy_input.tick),
     FIELD("released_episode", output.policy_input.episode),
     FIELD("released_vx_mps", output.policy_input.command.vx_mps),

@@ -169,7 +169,7 @@ TEST(ControllerTest, StopThatIsAskedForAgainAndAgainIsStillOneStop) {
 TEST(ControllerTest, StopEndsAfterItsLongestWaitIfTheRobotNeverRests) {
   FakeLoop loop;
   loop.reach(Mode::kWalk);
-  loop.spoil = [&](ControllerInput& seen) { seen.sensors.joints.velocity_radps[7] = 1.5; };
+  loop.spoil = [&](ControllerInput& seen) { seen.sensors.imu.angular_velocity_radps[2] = 1.5; };
   loop.request(ModeRequest::kStand);
   loop.run_s(1.0 + 2.98);
   EXPECT_EQ(loop.output.mode, Mode::kWalk);

@@ -289,17 +289,17 @@ TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
   EXPECT_NEAR(torque_of(passed, sensors.joints, 2), 30.0, 1e-9);
   EXPECT_NEAR(torque_of(passed, sensors.joints, 1), 50.0, 1e-9);
   sensors.joints.velocity_radps[3] = sensors.joints.velocity_radps[5] = 11.0;
-  judge(other, Mode::kWalk);
+  judge(other, Mode::kStand);
   EXPECT_EQ(state.counters.joint_too_fast, 0u);
   sensors.joints.velocity_radps[4] = 11.0;
-  judge(other, Mode::kWalk);
+  judge(other, Mode::kStand);
   EXPECT_EQ(state.counters.joint_too_fast, 1u);
   sensors.joints.torque_nm[1] = sensors.joints.torque_nm[3] = 40.0;
   for (int n = 0; n < 40; ++n) {
-    EXPECT_EQ(judge(other, Mode::kWalk), 0u);
+    EXPECT_EQ(judge(other, Mode::kStand), 0u);
   }
   sensors.joints.torque_nm[2] = 40.0;
-  for (int n = 0; n < 20; ++n) judge(other, Mode::kWalk);
+  for (int n = 0; n < 20; ++n) judge(other, Mode::kStand);
   EXPECT_EQ(state.faults, static_cast<std::uint64_t>(Fault::kJointTorque));
 }
 

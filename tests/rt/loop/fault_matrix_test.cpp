@@ -40,6 +40,7 @@ class FaultyRobot final : public RobotIo {
   }
   void write(const SafeCommand& command) noexcept override {
     last = command;
+    if (weak) return simulator_.write(sim::pass_gate(JointCommand{}));
     simulator_.write(drives_ == Drives::kGains || !command.enabled() ? command : as_torque());
   }
   void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
@@ -51,10 +52,11 @@ class FaultyRobot final : public RobotIo {
   /// What happens to each frame; `good` is the last one before, `n` counts from 0.
   std::function<void(SensorFrame& frame, const SensorFrame& good, std::uint64_t n)> spoil;
   SafeCommand last;
+  bool weak = false;  ///< the drives give no torque
 
  private:
   // What the driver of torque drives does: it evaluates the law on what it has read, and gives no
-  // torque where that is no number.
+  // torque where that is not to be trusted.
   SafeCommand as_torque() const {
     const JointCommand& c = last.joints();
     JointCommand torque;
@@ -62,7 +64,8 @@ class FaultyRobot final : public RobotIo {
       const double nm = joint_torque(seen_.joints.position_rad[j], seen_.joints.velocity_radps[j],
                                      c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j],
                                      c.kd_nmsprad[j], c.feedforward_nm[j]);
-      torque.feedforward_nm[j] = std::isfinite(nm) ? nm : 0.0;
+      const bool blind = (last.blind_joints() >> j & 1) != 0;
+      torque.feedforward_nm[j] = blind ? 0.0 : nm;
     }
     return sim::pass_gate(torque);
   }
@@ -196,8 +199,8 @@ std::vector<FaultCase> cases() {
       sensor(Fault::kImuStale, 41, [](F f, G g, N) { f.imu = g.imu; }),
       {Fault::kPolicyStale, 122, [](Plant& p) { p.policy.hangs = true; }},
       // Slowly, as an encoder that jumps is another fault.
-      sensor(Fault::kJointPosition, 300,
-             [](F f, G, N n) { f.joints.position_rad[2] += 0.01 * static_cast<double>(n); }),
+      sensor(Fault::kJointPosition, 40,
+             [](F f, G, N n) { f.joints.position_rad[2] += 0.08 * static_cast<double>(n); }),
       sensor(Fault::kJointSpeed, 1, [](F f, G, N) { f.joints.velocity_radps[1] = -60.1; }),
       sensor(Fault::kJointTorque, 20, [](F f, G, N) { f.joints.torque_nm[7] = 76.2; }),
       sensor(Fault::kTilt, 1, [on_its_side](F f, G, N) { f.imu.orientation_wxyz = on_its_side; }),
@@ -222,10 +225,7 @@ std::vector<FaultCase> cases() {
              [](F f, G, N) {
                f.imu.linear_acceleration_mps2 = {0.5, 0.5, -0.5};
              }),
-      sensor(Fault::kNotStanding, 12000,
-             [](F f, G, N n) {
-               f.joints.position_rad[4] += 0.0001 * static_cast<double>(std::min(n, N{5000}));
-             }),
+      {Fault::kNotStanding, 12000, [](Plant& p) { p.robot.weak = true; }},
   };
 }
 

@@ -3,10 +3,12 @@
 #include "rt/run/signals.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <string>
 #include <thread>
 
@@ -29,7 +31,8 @@ bool sleeps(pid_t thread) {
 }
 
 TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
-  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP, SIGXCPU, SIGUSR1, SIGUSR2,
+                           SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGRTMAX}) {
     const auto child = [number] {
       signal(number, SIG_DFL);  // whatever the test's own parent did
       const SignalWatch watch;
@@ -75,6 +78,49 @@ TEST(SignalWatchDeathTest, ClosedPipeIsAnErrorOfTheWrite) {
     _exit(write(ends[1], "x", 1) == -1 && errno == EPIPE && !watch.interrupted() ? 0 : 1);
   };
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
+}
+
+TEST(SignalWatchDeathTest, ATooLargeFileIsAnErrorOfTheWrite) {
+  const auto child = [] {
+    const SignalWatch watch;
+    const rlimit limit{0, 0};
+    char name[] = "/tmp/sandrunner-limit-XXXXXX";
+    const int file = mkstemp(name);
+    unlink(name);
+    if (file < 0 || setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(2);
+    _exit(write(file, "x", 1) == -1 && errno == EFBIG && !watch.interrupted() ? 0 : 1);
+  };
+  EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
+}
+
+/// Says so on standard error when its drives are cut.
+class LoudRobot final : public RobotIo {
+ public:
+  void read(std::uint64_t, SensorFrame&) noexcept override {}
+  void write(const SafeCommand&) noexcept override {}
+  void skip(std::uint64_t, const SafeCommand&) noexcept override {}
+  void cut_drives() noexcept override {
+    constexpr char kText[] = "drives cut";
+    if (::write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(3);
+  }
+  void shut_down() noexcept override {}
+};
+
+TEST(SignalWatchDeathTest, ACrashCutsTheDrivesAndEndsAsItWouldHave) {
+  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS}) {
+    const auto child = [number] {
+      const rlimit no_core{0, 0};
+      setrlimit(RLIMIT_CORE, &no_core);
+      signal(number, SIG_DFL);  // whatever a sanitizer did
+      LoudRobot robot;
+      SignalWatch watch;
+      watch.cut_in_a_crash(robot);
+      raise(number);
+      raise(number);  // its action is the default one now
+      _exit(0);
+    };
+    EXPECT_EXIT(child(), testing::KilledBySignal(number), "drives cut") << number;
+  }
 }
 
 TEST(SignalWatchDeathTest, WhatWasIgnoredFromTheStartStaysIgnored) {
