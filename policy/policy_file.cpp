@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char* kFormatVersion = "1";
 constexpr double kLargestObservationClip = 1e6;
+constexpr double kLargestInEnvelope = 100.0;  // m/s, m/s^2, ...: beyond any robot
 constexpr std::string_view kProvenancePrefix = "provenance.";
 
 /// Keys of the envelope in the metadata.
@@ -62,6 +63,14 @@ class Metadata {
   double not_negative(const std::string& key) {
     const double value = parse(key, text(key));
     if (value < 0.0) fail_file(path_, "metadata '{}' is {}, expected at least 0", key, value);
+    return value;
+  }
+
+  double from_zero_to(const std::string& key, double largest) {
+    const double value = not_negative(key);
+    if (value > largest) {
+      fail_file(path_, "metadata '{}' is {}, expected at most {}", key, value, largest);
+    }
     return value;
   }
 
@@ -166,7 +175,7 @@ PolicySpec read_spec(const std::string& path, const std::map<std::string, std::s
                   [&](const EnvelopeKey& key) { return values.contains(key.name); });
   if (spec.has_envelope) {
     for (const EnvelopeKey& key : kEnvelopeKeys) {
-      spec.envelope.*key.value = values.not_negative(key.name);
+      spec.envelope.*key.value = values.from_zero_to(key.name, kLargestInEnvelope);
     }
   }
   spec.provenance = values.provenance();

@@ -122,6 +122,12 @@ int run(int argc, char** argv) {
       load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
                                                                  : options->policy_path);
   const ProcessConfig config = read_config(*options, policy.spec());
+  if (!policy.spec().has_envelope) {
+    to_standard_error(
+        fmt::format("sandrunner: policy '{}' does not say which commands it can follow: they are "
+                    "held to a narrow envelope (sandrunner-policy envelope)\n",
+                    policy.spec().name));
+  }
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");
 

@@ -117,10 +117,11 @@ void RealtimeSetup::note(Need need, const std::string& name, int error, const st
     items_.push_back({name, true, got, ""});
     return;
   }
-  const std::string why = std::strerror(error);
+  const std::string why = grant.empty()
+                              ? fmt::format("{}: {}", got, std::strerror(error))
+                              : fmt::format("{}; to grant it: {}", std::strerror(error), grant);
   if (need == Need::kRequire) {
-    throw InputError(fmt::format("realtime: {} is required and was not obtained: {}{}{}", name, why,
-                                 grant.empty() ? "" : "; to grant it: ", grant));
+    throw InputError(fmt::format("realtime: {} is required and was not obtained: {}", name, why));
   }
   items_.push_back({name, false, why, grant});
 }
@@ -160,7 +161,7 @@ std::string missing_rights(const std::vector<SetupItem>& items) {
   std::vector<std::string> grants;
   for (const SetupItem& item : items) {
     if (item.obtained) continue;
-    missing += fmt::format("{}{} ({})", missing.empty() ? "" : ", ", item.name, item.detail);
+    missing += (missing.empty() ? "" : ", ") + item.name;
     const bool known = std::find(grants.begin(), grants.end(), item.grant) != grants.end();
     if (!item.grant.empty() && !known) grants.push_back(item.grant);
   }

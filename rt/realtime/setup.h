@@ -33,8 +33,8 @@ RealtimeConfig read_realtime_config(ConfigTree& config);
 struct SetupItem {
   std::string name;
   bool obtained = false;
-  std::string detail;  ///< what was got, or why not
-  std::string grant;   ///< the command that grants it; empty: there is none
+  std::string detail;  ///< what was got, or why not and the command that grants it
+  std::string grant;   ///< that command; empty: it was got, or there is none
 };
 
 /// Sets a process up and keeps what has to stay open. Everything that is wanted but not obtained is

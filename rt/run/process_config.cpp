@@ -46,10 +46,10 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   number("damping.kd_nmsprad", c.damping.kd_nmsprad, 0.0, g.kd_limit_nmsprad);
   number("damping.fault_s", c.damping.fault_s, 0.0, 60.0);
   CommandEnvelope& e = c.shaping.envelope;
-  number("shaping.forward_mps", e.forward_mps, 0.0, 10.0);
-  number("shaping.backward_mps", e.backward_mps, 0.0, 10.0);
-  number("shaping.lateral_mps", e.lateral_mps, 0.0, 10.0);
-  number("shaping.yaw_radps", e.yaw_radps, 0.0, 10.0);
+  number("shaping.forward_mps", e.forward_mps, 0.0, 100.0);
+  number("shaping.backward_mps", e.backward_mps, 0.0, 100.0);
+  number("shaping.lateral_mps", e.lateral_mps, 0.0, 100.0);
+  number("shaping.yaw_radps", e.yaw_radps, 0.0, 100.0);
   number("shaping.acceleration_mps2", e.acceleration_mps2, 0.0, 100.0);
   number("shaping.yaw_acceleration_radps2", e.yaw_acceleration_radps2, 0.0, 100.0);
   number("shaping.centripetal_limit_mps2", c.shaping.centripetal_limit_mps2, 0.0, 100.0);

@@ -59,6 +59,13 @@ inline PolicyFile random_policy_file(std::uint64_t seed = 1) {
   spec.kd_nmsprad = 0.75;
   spec.torque_limit_nm = 60.0;
   spec.yaw_command_clip_mps2 = 2.5;
+  spec.envelope = {.forward_mps = 4.0,
+                   .backward_mps = 4.0,
+                   .lateral_mps = 4.0,
+                   .yaw_radps = 4.0,
+                   .acceleration_mps2 = 100.0,
+                   .yaw_acceleration_radps2 = 100.0};
+  spec.has_envelope = true;
   for (int i = 0; i < kEstimateSize; ++i) {
     spec.estimate_mean[i] = 0.1f * static_cast<float>(i);
     spec.estimate_variance[i] = 0.25f;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kHelp =
     "w/s forward, backward   a/d left, right   q/e turn   +/- faster, slower   space stop\n"
-    "g stand   f walk   x damp   ESC or Ctrl-C quit\n";
+    "r arm   g stand   f walk   x damp   ESC or Ctrl-C quit\n";
 
 // Errors are ignored: output that nobody can read is no reason to end the drive.
 void say(const std::string& text) {
@@ -41,6 +41,8 @@ const char* request_of(KeyAction action) {
   switch (action) {
     case KeyAction::kStop:
       return "stop";
+    case KeyAction::kArm:
+      return "arm";
     case KeyAction::kStand:
       return "stand";
     case KeyAction::kWalk:

@@ -47,6 +47,8 @@ KeyAction KeyDriver::press(char key, std::int64_t now_ns) {
       return KeyAction::kNone;
     case ' ':
       return stop_and(KeyAction::kStop);
+    case 'r':
+      return stop_and(KeyAction::kArm);
     case 'g':
       return stop_and(KeyAction::kStand);
     case 'f':

@@ -22,7 +22,7 @@ inline constexpr char kKeyCtrlC = '\x03';
 std::vector<char> keys_from(std::string_view bytes);
 
 /// What a key asks for besides a velocity.
-enum class KeyAction { kNone, kStop, kStand, kWalk, kDamp, kQuit };
+enum class KeyAction { kNone, kStop, kArm, kStand, kWalk, kDamp, kQuit };
 
 /// Turns keys into a velocity: w/s forward/backward, a/d left/right, q/e turn left/right. The last
 /// of them is in force until no steering key has come for 0.6 s, which is longer than a terminal

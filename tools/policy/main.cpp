@@ -46,6 +46,15 @@ void import_policy(const std::string& input, const std::string& output, const st
   fmt::print("wrote {}\n", output);
 }
 
+void set_envelope(const std::string& input, const std::string& output,
+                  const CommandEnvelope& envelope) {
+  PolicyFile file = read_policy_file(input);
+  file.spec.envelope = envelope;
+  file.spec.has_envelope = true;
+  write_policy_file(output, file);
+  fmt::print("wrote {}\n", output);
+}
+
 std::size_t number_of_parameters(NetworkParameters parameters) {
   std::size_t count = 0;
   for (const NamedTensor& tensor : tensors_of(parameters)) count += tensor.size();
@@ -76,6 +85,13 @@ void print_info(const std::string& path) {
                            spec.kd_nmsprad, spec.torque_limit_nm));
   row("yaw command",
       fmt::format("limited to {} m/s^2 of centripetal acceleration", spec.yaw_command_clip_mps2));
+
+  const CommandEnvelope& e = spec.envelope;
+  row("commands",
+      fmt::format("vx -{} to {}, vy +-{} m/s, yaw rate +-{} rad/s; changes {} m/s^2, {} rad/s^2{}",
+                  e.backward_mps, e.forward_mps, e.lateral_mps, e.yaw_radps, e.acceleration_mps2,
+                  e.yaw_acceleration_radps2,
+                  spec.has_envelope ? "" : " (the file does not say: narrow)"));
 
   fmt::print("\n{:<20}{:>10}{:>12}{:>12}\n", "nominal pose, rad", "HAA", "HFE", "KFE");
   for (int leg = 0; leg < kNumLegs; ++leg) {
@@ -112,6 +128,22 @@ int run(int argc, char** argv) {
   import_command->add_option("--out", output, "policy file to write")->required();
   import_command->add_option("--name", name, "name of the policy (default: that of IN)");
 
+  CommandEnvelope envelope;
+  CLI::App* envelope_command = app.add_subcommand(
+      "envelope", "say in a policy file which velocity commands the policy can follow");
+  envelope_command->add_option("IN", input, "policy file")->required();
+  envelope_command->add_option("--out", output, "policy file to write")->required();
+  const auto speed = [&](const char* option, double& value, const char* what) {
+    envelope_command->add_option(option, value, what)->required()->check(CLI::Range(0.0, 100.0));
+  };
+  speed("--forward", envelope.forward_mps, "largest vx, m/s");
+  speed("--backward", envelope.backward_mps, "largest -vx, m/s");
+  speed("--lateral", envelope.lateral_mps, "largest |vy|, m/s");
+  speed("--yaw", envelope.yaw_radps, "largest |yaw rate|, rad/s");
+  speed("--acceleration", envelope.acceleration_mps2, "largest change of vx and of vy, m/s^2");
+  speed("--yaw-acceleration", envelope.yaw_acceleration_radps2,
+        "largest change of the yaw rate, rad/s^2");
+
   std::string path;
   CLI::App* info_command =
       app.add_subcommand("info", "check a policy file and print what it holds");
@@ -121,6 +153,8 @@ int run(int argc, char** argv) {
   if (*import_command) {
     if (name.empty()) name = std::filesystem::path(input).stem().string();
     import_policy(input, output, name);
+  } else if (*envelope_command) {
+    set_envelope(input, output, envelope);
   } else if (*info_command) {
     print_info(path);
   }

@@ -54,6 +54,7 @@ class MortalPolicy final : public PolicyLink {
     newest_.episode = input.episode;
     ++newest_.sequence;
     newest_.target_rad = input.joints.position_rad;
+    newest_.target_rad[0] += 1e-9 * static_cast<double>(newest_.sequence % 2);  // alive
   }
   std::uint64_t last = ~std::uint64_t{0};
 

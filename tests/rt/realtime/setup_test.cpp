@@ -175,8 +175,9 @@ bool give_up_rights() {
 TEST(RealtimeSetupDeathTest, WithoutRightsRunsAndSaysWhatIsMissing) {
   RealtimeConfig config = all_off();
   config.priority = config.dma_latency = Need::kWarn;
-  EXPECT_EXIT(print_setup_without_rights(config), testing::ExitedWithCode(0),
-              "no idle states: .*/dev/cpu_dma_latency\nno control thread priority: .*rtprio");
+  EXPECT_EXIT(
+      print_setup_without_rights(config), testing::ExitedWithCode(0),
+      "no idle states: .*/dev/cpu_dma_latency\nno control thread priority: .*setcap cap_sys_nice");
 }
 
 TEST(RealtimeSetupDeathTest, WithoutRightsEndsInOneLineIfRequired) {
@@ -197,7 +198,7 @@ TEST(RealtimeSetupDeathTest, MemoryThatCannotBeLockedIsNotedOrRefused) {
   RealtimeConfig config = all_off();
   config.lock_memory = Need::kWarn;
   EXPECT_EXIT(print_setup_without_rights(config), testing::ExitedWithCode(0),
-              "^no memory: .*memlock limit");
+              "^no memory: .*setcap cap_sys_nice,cap_ipc_lock");
   config.lock_memory = Need::kRequire;
   EXPECT_EXIT(print_setup_without_rights(config), testing::ExitedWithCode(1),
               "^refused: realtime: memory is required and was not obtained: [^\n]*\\.\n$");

@@ -134,7 +134,7 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   write("raibo.urdf", urdf);
   write("map.toml", map + "[wheels]\nradius_m = 0.1\n");
   expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
-  expect_refused("--robot map.toml", "map.toml:57: unknown key 'wheels.radius_m'");
+  expect_refused("--robot map.toml", "map.toml:65: unknown key 'wheels.radius_m'");
   expect_refused("--robot absent.toml", "absent.toml: cannot be read");
   write("map.toml", map.substr(0, map.find("[gains]")));
   expect_refused("--robot map.toml", "map.toml: 'gains.stand_kp_nmprad' is missing");

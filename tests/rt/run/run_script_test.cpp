@@ -11,7 +11,12 @@ constexpr std::uint64_t kSettle_ticks = 4000, kDamping_ticks = 2000;
 
 class RunScriptTest : public testing::Test {
  protected:
-  RunScript walk_from_lying() const { return {source_, {.walk_s = 2.0}, true}; }
+  /// Armed: its next request is to stand up.
+  RunScript walk_from_lying() const {
+    RunScript script(source_, {.walk_s = 2.0}, true);
+    arm(script);
+    return script;
+  }
   RunScript walk_at_once() const { return {source_, {.walk_s = 2.0, .start_walking = true}, true}; }
 
   static OperatorVerdict in(RunScript& script, Mode mode, std::uint64_t ticks = 1) {
@@ -25,6 +30,11 @@ class RunScriptTest : public testing::Test {
       ++ticks;
     } while (in(script, mode).running && script.command(0).request_id == id && ticks < 100000);
     return ticks;
+  }
+  static void arm(RunScript& script) {
+    EXPECT_EQ(asked(script), ModeRequest::kArm);
+    EXPECT_TRUE(in(script, Mode::kPassive).running);
+    EXPECT_TRUE(in(script, Mode::kDamping).running);
   }
   static ModeRequest asked(RunScript& script) { return script.command(0).request; }
   /// Brings walk_from_lying() into Walk.
@@ -56,6 +66,7 @@ TEST_F(RunScriptTest, StandsUpSettlesWalksStopsAndWaits) {
 
 TEST_F(RunScriptTest, WithoutPolicyEndsWhenItHasStood) {
   RunScript script(source_, {}, false);
+  arm(script);
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   EXPECT_EQ(ticks_in(script, Mode::kStand), kSettle_ticks);
   EXPECT_EQ(asked(script), ModeRequest::kStand);
@@ -137,6 +148,7 @@ TEST_F(RunScriptTest, FallWhileItStopsCounts) {
 TEST_F(RunScriptTest, BaseOnTheGroundAfterStandingUpDidNotStand) {
   for (const bool has_policy : {true, false}) {
     RunScript script(source_, {}, has_policy);
+    arm(script);
     in(script, Mode::kStand, kSettle_ticks - 1);
     EXPECT_TRUE(script.survived());
     const OperatorVerdict verdict = script.advance({.mode = Mode::kStand, .base_contact = true});

@@ -46,7 +46,11 @@ inline TickRecord example_tick(std::uint64_t tick) {
                              .velocity_mps = {0.8, 0.0, 0.01},
                              .foot_height_m = {0.01, 0.02, 0.03, 0.04}};
   GateState gate;
-  r.output.command = SafetyGate(GateConfig{}, 2.0).pass(wanted, true, {}, gate);
+  r.output.command =
+      SafetyGate(
+          {.torque_limit_nm = all_joints(1e9), .kp_limit_nmprad = 1e3, .kd_limit_nmsprad = 50.0},
+          2.0)
+          .pass(wanted, true, {}, gate);
   r.output.mode = Mode::kWalk;
   r.output.policy_input.episode = 1;
   r.output.policy_input.command = {.vx_mps = 0.9, .vy_mps = -0.1, .wz_radps = 0.2};

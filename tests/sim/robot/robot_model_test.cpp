@@ -294,7 +294,7 @@ TEST(RobotModelTest, EveryFigureOfTheMapIsNeeded) {
       ++needed;
     }
   }
-  EXPECT_EQ(needed, 26);
+  EXPECT_EQ(needed, 31);
 }
 
 TEST(RobotModelTest, FollowsWhatTheMapLeavesOut) {

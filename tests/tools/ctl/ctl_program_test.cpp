@@ -80,7 +80,9 @@ TEST(CtlProgramTest, ModePrintsWhatTheRobotSays) {
   expect_error(run({"mode", "walk"}, config), 1,
                "walk: refused in mode passive: the robot does not stand, stand comes first");
   expect_error(run({"mode", "reset_fault"}, config), 1, "refused in mode passive: no fault");
-  Ended ended = run({"mode", "stand"}, config);
+  Ended ended = run({"mode", "arm"}, config);
+  EXPECT_EQ(ended.out, "arm: accepted, mode damping\n") << ended.err;
+  ended = run({"mode", "stand"}, config);
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(ended.out, "stand: accepted, mode stand_up\n");
   ASSERT_TRUE(robot.wait_for(Mode::kStand));
@@ -209,14 +211,14 @@ TEST(CtlProgramTest, WatchShowsWhatOthersAskAndWhatTheRobotAnswers) {
   const auto request = peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc, 2);
   peer.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1);
   const sandrunner_ModeRequest asked[] = {{.id = 0xabc, .request = "reset_fault"},
-                                          {.id = 0xdef, .request = "stand"}};
+                                          {.id = 0xdef, .request = "damp"}};
   EXPECT_TRUE(wait_until([&] {  // they may not yet know these writers
     for (const auto& a : asked) dds_write(request, &a);
     drive(cmd_vel, 0.5);
     return commands.has_printed("linear 0.500 0.000 0.000 m/s  angular 0.000 0.000 0.000") &&
-           requests.has_printed("0000000000000abc  reset_fault\n0000000000000def  stand\n") &&
+           requests.has_printed("0000000000000abc  reset_fault\n0000000000000def  damp\n") &&
            replies.has_printed("0000000000000abc  refused: no fault is latched  mode ") &&
-           replies.has_printed("0000000000000def  accepted  mode stand\n");
+           replies.has_printed("0000000000000def  accepted  mode ");
   }));
   for (Program* program : {&commands, &requests, &replies}) {
     program->signal(SIGINT);
@@ -279,10 +281,10 @@ TEST(CtlProgramTest, WithSecurityOnlyTheOperatorIsHeard) {
   config.security_dir = keys;
   FakeRobot robot(config);
   Program stranger({"mode", "stand"}, config);
-  const Ended ended = run({"--security", keys, "mode", "stand"}, config);
-  EXPECT_EQ(ended.out, "stand: accepted, mode stand_up\n") << ended.err;
+  const Ended ended = run({"--security", keys, "mode", "arm"}, config);
+  EXPECT_EQ(ended.out, "arm: accepted, mode damping\n") << ended.err;
   EXPECT_TRUE(
-      has(run({"--security", keys, "status", "--once"}, config).out, "mode           stand"));
+      has(run({"--security", keys, "status", "--once"}, config).out, "mode           damping"));
   EXPECT_EQ(run({"--security", keys, "cmd", "0", "0", "0", "--for", "0.1"}, config).code, 0);
   expect_error(stranger.wait(), 1, "stand: no robot answered");
 }

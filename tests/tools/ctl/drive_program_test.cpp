@@ -51,6 +51,8 @@ TEST_F(DriveProgramTest, KeysMoveTheRobotAndItStopsWhenTheyEnd) {
   ASSERT_TRUE(wait_until([&] { return is_raw(); }));
   pty_.type("f");
   EXPECT_TRUE(wait_for("walk: refused: the robot does not stand, stand comes first")) << shown_;
+  pty_.type("r");
+  ASSERT_TRUE(robot_.wait_for(Mode::kDamping));
   pty_.type("g");
   ASSERT_TRUE(robot_.wait_for(Mode::kStand));
   EXPECT_TRUE(wait_for("stand: accepted")) << shown_;

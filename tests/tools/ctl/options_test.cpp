@@ -66,7 +66,7 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
                 {{"cmd", "0", "0", "inf"}, "WZ: found inf"},
                 {{"cmd", "1", "0", "0", "--for", "0"}, "--for: found 0"},
                 {{"cmd", "1", "0", "0", "--for", "nan"}, "--for: found nan"},
-                {{"mode", "jump"}, "mode: found 'jump', expected stand, walk, stop, damp"},
+                {{"mode", "jump"}, "mode: found 'jump', expected arm, stand, walk, stop, damp"},
                 {{"mode"}, "REQUEST is required"},
                 {{"watch", "rt/nothing"}, "watch: found 'rt/nothing', expected rt/joint_states,"},
                 {{"watch", "rt/odom", "--count", "-1"}, "--count: found -1"}};

@@ -155,7 +155,7 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     Trial trial;
     trial.terrain = study_.add(Study::preset(ground));
     trial.start = &study_.start(0);
-    trial.command = {{1.5, 0.0, 0.0}, 0.0, INFINITY};
+    trial.command = {{1.5, 0.0, 0.0}, 0.0, policy.spec().envelope.acceleration_mps2};
     trial.duration_s = 5.0;
     const TrialFigures e =
         run_trials(study_.robot(), study_.foot(), policy, {trial}, {.torque_speed_line = false})[0];

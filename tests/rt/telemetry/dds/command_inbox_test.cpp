@@ -13,6 +13,7 @@ namespace {
 // A robot that has been asked over DDS to stand up and walk, and two operators.
 struct Walking : LiveSetup {
   Walking() : first(config), second(config), asker(first) {
+    EXPECT_TRUE(asker.ask("arm").accepted);
     EXPECT_TRUE(asker.ask("stand").accepted);
     EXPECT_TRUE(wait_until([&] { return robot.mode() == Mode::kStand; }));
     EXPECT_TRUE(asker.ask("walk").accepted);
@@ -128,6 +129,17 @@ TEST(CommandInboxTest, StopAndDampAreTakenFromOneThatDoesNotHoldTheCommand) {
   EXPECT_EQ(setup.robot.mode(), Mode::kDamping);
 }
 
+TEST(CommandInboxTest, WhoeverHoldsTheCommandAloneMayAskForMore) {
+  Walking setup;
+  Asker bystander(setup.second);
+  setup.drive_until(0.5);
+  EXPECT_STREQ(bystander.ask("walk").reason, "another operator drives the robot");
+  drive(setup.twist, 0.5);
+  EXPECT_TRUE(setup.asker.ask("walk").accepted);
+  // Who has been silent for the stale time holds nothing any more.
+  EXPECT_TRUE(wait_until([&] { return bystander.ask("walk").accepted; }));
+}
+
 TEST(CommandInboxTest, RepliesSayWhyARequestIsRefused) {
   LiveSetup setup;
   Peer peer(setup.config);
@@ -139,8 +151,9 @@ TEST(CommandInboxTest, RepliesSayWhyARequestIsRefused) {
     EXPECT_STREQ(reply.mode, mode_name(setup.robot.mode()));
   };
   refused("walk", "the robot does not stand, stand comes first");
+  refused("stand", "the drives are off, arm comes first");
   refused("reset_fault", "no fault is latched");
-  refused("dance", "unknown, expected stand, walk, stop, damp or reset_fault");
+  refused("dance", "unknown, expected arm, stand, walk, stop, damp or reset_fault");
   // Stop makes no robot stand up.
   EXPECT_TRUE(asker.ask("stop").accepted);
   ASSERT_TRUE(setup.robot.go_on());
@@ -155,7 +168,7 @@ TEST(CommandInboxTest, RepliesSayWhyARequestIsRefused) {
   const sandrunner_ModeReply reset = asker.ask("reset_fault");
   EXPECT_TRUE(reset.accepted) << reset.reason;
   EXPECT_STREQ(reset.mode, "passive");
-  EXPECT_EQ(setup.inbox.counts().requests_refused, 5u);
+  EXPECT_EQ(setup.inbox.counts().requests_refused, 6u);
   EXPECT_EQ(setup.inbox.counts().requests_accepted, 2u);
 }
 
@@ -163,6 +176,7 @@ TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
   LiveSetup setup(test_config(), false);
   Peer peer(setup.config);
   Asker asker(peer);
+  EXPECT_TRUE(asker.ask("arm").accepted);
   EXPECT_TRUE(asker.ask("stand").accepted);
   ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
   EXPECT_STREQ(asker.ask("walk").reason, "no policy to walk with");
@@ -171,7 +185,7 @@ TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
 TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLater) {
   const DdsConfig config = test_config();
   for (const auto& [request, later] :
-       {std::pair("stand", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
+       {std::pair("arm", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
     DdsParticipant participant(config);
     DdsOperator op(config.stale_ticks());
     CommandInbox inbox(participant, config, true, op);
@@ -189,7 +203,7 @@ TEST(CommandInboxTest, ADampThatWaitsForTheControllerIsNotReplacedByAWalk) {
   CommandInbox inbox(participant, config, true, op);
   Peer peer(config);
   Asker asker(peer);
-  for (const char* request : {"damp", "stand", "walk"}) {
+  for (const char* request : {"damp", "arm", "walk"}) {
     EXPECT_STREQ(asker.ask(request).reason, "the controller does not answer") << request;
   }
   op.command(0);

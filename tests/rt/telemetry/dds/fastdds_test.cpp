@@ -18,6 +18,7 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   {
     Peer peer(setup.config);
     Asker asker(peer);
+    ASSERT_TRUE(asker.ask("arm").accepted);
     ASSERT_TRUE(asker.ask("stand").accepted);
     ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
     ASSERT_TRUE(asker.ask("walk").accepted);

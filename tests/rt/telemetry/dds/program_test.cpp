@@ -113,7 +113,8 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
     Peer operators(config);
     Asker asker(operators);
     const dds_entity_t twist = operators.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
-    for (const char* request : {"stand", "walk"}) {  // the process starts, and the robot stands up
+    for (const char* request :
+         {"arm", "stand", "walk"}) {  // the process starts, and the robot stands up
       ASSERT_TRUE(wait_until([&] { return asker.ask(request).accepted; }));
     }
     for (int step = 0; step < 75; ++step) {  // at 50 Hz

@@ -195,7 +195,8 @@ TEST_F(RecordingTest, EventsAreModesRequestsAndFaults) {
     }
   }
   EXPECT_EQ(events,
-            "mode passive; request stand; mode stand_up; mode stand; mode walk; request walk; "
+            "mode passive; request arm; mode damping; mode stand_up; request stand; mode stand; "
+            "mode walk; request walk; "
             "request stand; mode stand; ");
 }
 
