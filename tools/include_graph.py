@@ -24,7 +24,7 @@ LAYERS = [
     ["rt/telemetry/dds", "rt/telemetry/recording", "rt/report"],
     ["rt/run"],
     ["rt"],
-    ["tools/train/data"],
+    ["tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
     ["tools/bench", "tools/ctl", "tools/evaluate", "tools/policy", "tools/replay", "tools/train"],
 ]

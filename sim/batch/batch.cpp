@@ -6,18 +6,13 @@
 #include <new>
 #include <stdexcept>
 
+#include "sim/lanes/processor.h"
+
 namespace sandrunner::sim {
 namespace {
 
-bool runs_here(BatchWidth width) noexcept {
-  if (width != BatchWidth::kSixteen) return true;  // all of the program is built for x86-64-v3
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512cd");
-}
-
 const detail::BatchKernel& kernel_of(BatchWidth width) {
-  if (!runs_here(width))
+  if (width == BatchWidth::kSixteen && !has_avx512())
     throw std::invalid_argument("this processor has no AVX-512: batch width 16");
   switch (width) {
     case BatchWidth::kOne:
@@ -35,7 +30,7 @@ constexpr std::size_t kAlignment = 64;
 }  // namespace
 
 BatchWidth best_batch_width() noexcept {
-  return runs_here(BatchWidth::kSixteen) ? BatchWidth::kSixteen : BatchWidth::kEight;
+  return has_avx512() ? BatchWidth::kSixteen : BatchWidth::kEight;
 }
 
 void Batch::Free::operator()(std::byte* memory) const noexcept {

@@ -40,6 +40,9 @@ inline bool both(bool a, bool b) noexcept { return a && b; }
 inline bool either(bool a, bool b) noexcept { return a || b; }
 inline bool no(bool a) noexcept { return !a; }
 
+inline void load(const double* from, double& to) noexcept { to = *from; }
+inline void store(double from, double* to) noexcept { *to = from; }
+
 /// The mask of all lanes.
 template <typename S>
 inline Mask<S> every_lane() noexcept {

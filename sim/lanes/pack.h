@@ -78,6 +78,13 @@ inline bool any(PackMask<8> m) noexcept { return _mm256_movemask_ps(m.bits) != 0
 inline Pack<8> select(PackMask<8> m, Pack<8> a, Pack<8> b) noexcept {
   return _mm256_blendv_ps(b.v, a.v, m.bits);
 }
+/// 2^n for whole n from -126 to 127.
+inline Pack<8> two_to(Pack<8> n) noexcept {
+  const __m256i exponent = _mm256_add_epi32(_mm256_cvtps_epi32(n.v), _mm256_set1_epi32(127));
+  return _mm256_castsi256_ps(_mm256_slli_epi32(exponent, 23));
+}
+inline void load(const float* from, Pack<8>& to) noexcept { to.v = _mm256_loadu_ps(from); }
+inline void store(Pack<8> from, float* to) noexcept { _mm256_storeu_ps(to, from.v); }
 
 #ifdef __AVX512F__
 template <>
@@ -134,6 +141,12 @@ inline bool any(PackMask<16> m) noexcept { return m.bits != 0; }
 inline Pack<16> select(PackMask<16> m, Pack<16> a, Pack<16> b) noexcept {
   return _mm512_mask_blend_ps(m.bits, b.v, a.v);
 }
+inline Pack<16> two_to(Pack<16> n) noexcept {
+  const __m512i exponent = _mm512_add_epi32(_mm512_cvtps_epi32(n.v), _mm512_set1_epi32(127));
+  return _mm512_castsi512_ps(_mm512_slli_epi32(exponent, 23));
+}
+inline void load(const float* from, Pack<16>& to) noexcept { to.v = _mm512_loadu_ps(from); }
+inline void store(Pack<16> from, float* to) noexcept { _mm512_storeu_ps(to, from.v); }
 #endif
 
 }  // namespace sandrunner::sim

@@ -29,25 +29,27 @@ template double entropy(const float* log_std);
 template double entropy(const double* log_std);
 
 template <typename Scalar>
-BlockPass<Scalar>::BlockPass(const ParameterLayout& layout, int steps, int envs, int chunk_steps)
+BlockPass<Scalar>::BlockPass(const ParameterLayout& layout, int steps, int envs, int chunk_steps,
+                             const Kernels<Scalar>& kernels)
     : layout_(layout),
       steps_(steps),
       envs_(envs),
       chunk_steps_(chunk_steps),
-      encoder_(kProprioceptionSize, layout.hidden(), steps, envs),
-      estimator_(layout.estimator(), chunk_steps * envs),
-      actor_(layout.actor(), chunk_steps * envs),
-      critic_(layout.critic(), chunk_steps * envs),
+      encoder_(kProprioceptionSize, layout.hidden(), steps, envs, kernels),
+      estimator_(layout.estimator(), chunk_steps * envs, kernels),
+      actor_(layout.actor(), chunk_steps * envs, kernels),
+      critic_(layout.critic(), chunk_steps * envs, kernels),
       actor_input_(kCommandSize + layout.hidden() + kEstimateSize, chunk_steps * envs),
       critic_input_(layout.privileged(), chunk_steps * envs),
       output_gradient_(layout.hidden(), steps * envs) {}
 
 template <typename Scalar>
-void BlockPass<Scalar>::run_heads(const Scalar* parameters, const BasicRollout<Scalar>& rollout,
-                                  int t, int steps, int first_env, int window_step) {
+void BlockPass<Scalar>::run_heads(const Weights<Scalar>& weights,
+                                  const BasicRollout<Scalar>& rollout, int t, int steps,
+                                  int first_env, int window_step) {
   const int n = steps * envs_;
   const auto h = encoder_.output().middleCols(window_step * envs_, n);
-  estimator_.forward(parameters, h);
+  estimator_.forward(weights.estimator(), h);
   for (int k = 0; k < steps; ++k) {
     const auto command = rollout.observation(t + k).middleCols(first_env, envs_);
     actor_input_.block(0, k * envs_, kCommandSize, envs_) = command.topRows(kCommandSize);
@@ -56,53 +58,53 @@ void BlockPass<Scalar>::run_heads(const Scalar* parameters, const BasicRollout<S
   }
   actor_input_.block(kCommandSize, 0, layout_.hidden(), n) = h;
   actor_input_.block(kCommandSize + layout_.hidden(), 0, kEstimateSize, n) = estimator_.output(n);
-  actor_.forward(parameters, actor_input_.leftCols(n));
-  critic_.forward(parameters, critic_input_.leftCols(n));
+  actor_.forward(weights.actor(), actor_input_.leftCols(n));
+  critic_.forward(weights.critic(), critic_input_.leftCols(n));
 }
 
 template <typename Scalar>
-void BlockPass<Scalar>::act(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t,
+void BlockPass<Scalar>::act(const Weights<Scalar>& weights, BasicRollout<Scalar>& rollout, int t,
                             int first_env, MatrixRef<Scalar> h, MatrixRef<Scalar> c) {
-  answer(parameters, rollout.observation(t).middleCols(first_env, envs_),
-         &rollout.reset(t, first_env), h, c, rollout.mean(t).middleCols(first_env, envs_));
-  evaluate(parameters, rollout, t, first_env);
+  answer(weights, rollout.observation(t).middleCols(first_env, envs_), &rollout.reset(t, first_env),
+         h, c, rollout.mean(t).middleCols(first_env, envs_));
+  evaluate(weights, rollout, t, first_env);
 }
 
 template <typename Scalar>
-void BlockPass<Scalar>::answer(const Scalar* parameters, const ConstMatrixRef<Scalar>& observation,
-                               const std::uint8_t* reset, MatrixRef<Scalar> h, MatrixRef<Scalar> c,
-                               MatrixRef<Scalar> mean) {
+void BlockPass<Scalar>::answer(const Weights<Scalar>& weights,
+                               const ConstMatrixRef<Scalar>& observation, const std::uint8_t* reset,
+                               MatrixRef<Scalar> h, MatrixRef<Scalar> c, MatrixRef<Scalar> mean) {
   encoder_.input(0) = observation.bottomRows(kProprioceptionSize);
-  encoder_.forward(parameters + layout_.encoder(), h, c, reset, 0);
+  encoder_.forward(weights.encoder(), h, c, reset, 0);
   h = encoder_.output();
   c = encoder_.last_cell();
-  estimator_.forward(parameters, encoder_.output());
+  estimator_.forward(weights.estimator(), encoder_.output());
   actor_input_.block(0, 0, kCommandSize, envs_) = observation.topRows(kCommandSize);
   actor_input_.block(kCommandSize, 0, layout_.hidden(), envs_) = encoder_.output();
   actor_input_.block(kCommandSize + layout_.hidden(), 0, kEstimateSize, envs_) =
       estimator_.output(envs_);
-  actor_.forward(parameters, actor_input_.leftCols(envs_));
+  actor_.forward(weights.actor(), actor_input_.leftCols(envs_));
   mean = actor_.output(envs_);
 }
 
 template <typename Scalar>
-void BlockPass<Scalar>::evaluate(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t,
-                                 int first_env) {
-  critic_.forward(parameters, rollout.privileged(t).middleCols(first_env, envs_));
+void BlockPass<Scalar>::evaluate(const Weights<Scalar>& weights, BasicRollout<Scalar>& rollout,
+                                 int t, int first_env) {
+  critic_.forward(weights.critic(), rollout.privileged(t).middleCols(first_env, envs_));
   for (int env = 0; env < envs_; ++env) {
     rollout.value(t, first_env + env) = critic_.output(envs_)(0, env);
   }
 }
 
 template <typename Scalar>
-Scalar BlockPass<Scalar>::value(const Scalar* parameters, const Scalar* privileged) {
-  critic_.forward(parameters,
+Scalar BlockPass<Scalar>::value(const Weights<Scalar>& weights, const Scalar* privileged) {
+  critic_.forward(weights.critic(),
                   Eigen::Map<const Matrix<Scalar>>(privileged, layout_.privileged(), 1));
   return critic_.output(1)(0, 0);
 }
 
 template <typename Scalar>
-LossSums BlockPass<Scalar>::loss_and_gradient(const Scalar* parameters,
+LossSums BlockPass<Scalar>::loss_and_gradient(const Weights<Scalar>& weights,
                                               const BasicRollout<Scalar>& rollout, int first_env,
                                               const LossConfig& config, const AdvantageScale& scale,
                                               int samples, Scalar* gradient) {
@@ -113,30 +115,30 @@ LossSums BlockPass<Scalar>::loss_and_gradient(const Scalar* parameters,
     encoder_.input(t) =
         rollout.observation(t).middleCols(first_env, envs_).bottomRows(kProprioceptionSize);
   }
-  encoder_.forward(parameters + layout_.encoder(), initial_h, initial_c, reset, rollout.shape.envs);
+  encoder_.forward(weights.encoder(), initial_h, initial_c, reset, rollout.shape.envs);
   LossSums sums;
   output_gradient_.setZero();
   for (int t = 0; t < steps_; t += chunk_steps_) {
     const int steps = std::min(chunk_steps_, steps_ - t);
     const int n = steps * envs_;
-    run_heads(parameters, rollout, t, steps, first_env, t);
-    differentiate_loss(parameters, rollout, t, steps, first_env, config, scale, samples, sums,
+    run_heads(weights, rollout, t, steps, first_env, t);
+    differentiate_loss(weights, rollout, t, steps, first_env, config, scale, samples, sums,
                        gradient);
-    critic_.backward(parameters, critic_input_.leftCols(n), gradient);
-    actor_.backward(parameters, actor_input_.leftCols(n), gradient);
-    estimator_.backward(parameters, encoder_.output().middleCols(t * envs_, n), gradient);
+    critic_.backward(weights.critic(), critic_input_.leftCols(n), gradient);
+    actor_.backward(weights.actor(), actor_input_.leftCols(n), gradient);
+    estimator_.backward(weights.estimator(), encoder_.output().middleCols(t * envs_, n), gradient);
     // Of the actor's inputs only h: command is data, the estimate is detached.
     auto dh = output_gradient_.middleCols(t * envs_, n);
-    actor_.add_input_gradient(parameters, kCommandSize, dh);
-    estimator_.add_input_gradient(parameters, 0, dh);
+    actor_.add_input_gradient(weights.actor(), dh);
+    estimator_.add_input_gradient(weights.estimator(), dh);
   }
-  encoder_.backward(parameters + layout_.encoder(), output_gradient_, reset, rollout.shape.envs,
+  encoder_.backward(weights.encoder(), output_gradient_, reset, rollout.shape.envs,
                     gradient + layout_.encoder());
   return sums;
 }
 
 template <typename Scalar>
-void BlockPass<Scalar>::differentiate_loss(const Scalar* parameters,
+void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
                                            const BasicRollout<Scalar>& rollout, int t, int steps,
                                            int first_env, const LossConfig& config,
                                            const AdvantageScale& scale, int samples, LossSums& sums,
@@ -147,7 +149,7 @@ void BlockPass<Scalar>::differentiate_loss(const Scalar* parameters,
   const auto value_factor = static_cast<Scalar>(config.value_weight) * inverse_samples;
   const auto estimate_factor =
       static_cast<Scalar>(config.estimate_weight * 2.0 / kEstimateSize) * inverse_samples;
-  const Scalar* log_std = parameters + layout_.log_std();
+  const Scalar* log_std = weights.log_std().data();
   std::array<Scalar, kActionSize> inverse_std{};
   std::array<Scalar, kActionSize> log_std_gradient{};
   std::array<Scalar, kActionSize> kl_variance{};  // old variance / new variance

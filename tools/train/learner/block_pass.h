@@ -10,6 +10,7 @@
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/mlp.h"
 #include "tools/train/learner/parameters.h"
+#include "tools/train/learner/weights.h"
 
 namespace sandrunner::learner {
 
@@ -53,39 +54,41 @@ template <typename Scalar>
 class BlockPass {
  public:
   /// The heads work on chunk_steps * envs columns at a time: few enough to stay in the cache.
-  BlockPass(const ParameterLayout& layout, int steps, int envs, int chunk_steps);
+  BlockPass(const ParameterLayout& layout, int steps, int envs, int chunk_steps,
+            const Kernels<Scalar>& kernels = best_kernels<Scalar>());
 
   /// One step of acting: fills mean, value of rollout step t for the block, and carries its memory
   /// h, c (hidden x envs) on. The block has one step (constructor).
-  void act(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t, int first_env,
+  void act(const Weights<Scalar>& weights, BasicRollout<Scalar>& rollout, int t, int first_env,
            MatrixRef<Scalar> h, MatrixRef<Scalar> c);
 
   /// What the policy, with a memory h, c of its own, answers to other observations (33 x envs) of
   /// step t; -> mean (12 x envs).
-  void answer(const Scalar* parameters, const ConstMatrixRef<Scalar>& observation,
+  void answer(const Weights<Scalar>& weights, const ConstMatrixRef<Scalar>& observation,
               const std::uint8_t* reset, MatrixRef<Scalar> h, MatrixRef<Scalar> c,
               MatrixRef<Scalar> mean);
 
   /// The critic's values of rollout step t; `steps` is the state after the window.
-  void evaluate(const Scalar* parameters, BasicRollout<Scalar>& rollout, int t, int first_env);
+  void evaluate(const Weights<Scalar>& weights, BasicRollout<Scalar>& rollout, int t,
+                int first_env);
 
   /// Value of one privileged vector.
-  Scalar value(const Scalar* parameters, const Scalar* privileged);
+  Scalar value(const Weights<Scalar>& weights, const Scalar* privileged);
 
   /// Loss of the window of the block's environments; adds its gradient, divided by `samples` (the
   /// number of samples in the whole minibatch), to `gradient`.
-  LossSums loss_and_gradient(const Scalar* parameters, const BasicRollout<Scalar>& rollout,
+  LossSums loss_and_gradient(const Weights<Scalar>& weights, const BasicRollout<Scalar>& rollout,
                              int first_env, const LossConfig& config, const AdvantageScale& scale,
                              int samples, Scalar* gradient);
 
  private:
   /// Fills actor_input_ and critic_input_ and runs the heads for rollout steps t ... t + steps,
   /// whose encoder outputs begin with step `window_step` of the encoder.
-  void run_heads(const Scalar* parameters, const BasicRollout<Scalar>& rollout, int t, int steps,
-                 int first_env, int window_step);
+  void run_heads(const Weights<Scalar>& weights, const BasicRollout<Scalar>& rollout, int t,
+                 int steps, int first_env, int window_step);
   /// Fills the output gradients of the heads and adds that of log_std.
-  void differentiate_loss(const Scalar* parameters, const BasicRollout<Scalar>& rollout, int t,
-                          int steps, int first_env, const LossConfig& config,
+  void differentiate_loss(const Weights<Scalar>& weights, const BasicRollout<Scalar>& rollout,
+                          int t, int steps, int first_env, const LossConfig& config,
                           const AdvantageScale& scale, int samples, LossSums& sums,
                           Scalar* gradient);
 

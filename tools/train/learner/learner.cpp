@@ -92,13 +92,14 @@ double adapted_learning_rate(double learning_rate, double kl, const LearnerConfi
 }
 
 Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
-                 WorkerPool& pool, std::optional<Symmetry> symmetry)
+                 WorkerPool& pool, std::optional<Symmetry> symmetry, const Kernels<float>& kernels)
     : config_(checked(config, shape)),
       layout_(config.network, shape.privileged),
       pool_(pool),
       symmetry_(std::move(symmetry)),
       rollout_(shape, config.network.hidden),
       parameters_(initial_parameters(layout_, seed, config.action_std_start)),
+      weights_(layout_),
       averaged_(parameters_),
       adam_(parameters_.size()),
       h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
@@ -110,8 +111,8 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
   counters_.learning_rate = config.learning_rate_start;
   const int chunk_steps = std::clamp(kChunkColumns / config.block_envs, 1, shape.steps);
   for (int worker = 0; worker < pool.threads(); ++worker) {
-    acting_.emplace_back(layout_, 1, config.block_envs, 1);
-    learning_.emplace_back(layout_, shape.steps, config.block_envs, chunk_steps);
+    acting_.emplace_back(layout_, 1, config.block_envs, 1, kernels);
+    learning_.emplace_back(layout_, shape.steps, config.block_envs, chunk_steps, kernels);
   }
   const int blocks_per_minibatch = (blocks() + config.minibatches - 1) / config.minibatches;
   gradients_.assign(static_cast<std::size_t>(blocks_per_minibatch),
@@ -122,7 +123,7 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
 void Learner::act_block(int block, int t, int worker) {
   const int first = block * config_.block_envs;
   const int end = first + config_.block_envs;
-  acting_[static_cast<std::size_t>(worker)].act(parameters_.data(), rollout_, t, first,
+  acting_[static_cast<std::size_t>(worker)].act(weights_, rollout_, t, first,
                                                 h_.middleCols(first, config_.block_envs),
                                                 c_.middleCols(first, config_.block_envs));
   if (symmetry_) act_in_mirror(block, t, worker);
@@ -155,10 +156,10 @@ void Learner::act_in_mirror(int block, int t, int worker) {
     symmetry_->observation.apply(observation.col(i), scratch.data());
   }
   Matrix<float> mean(kActionSize, config_.block_envs);
-  acting_[static_cast<std::size_t>(worker)].answer(
-      parameters_.data(), observation, &rollout_.reset(t, first),
-      mirror_h_.middleCols(first, config_.block_envs),
-      mirror_c_.middleCols(first, config_.block_envs), mean);
+  acting_[static_cast<std::size_t>(worker)].answer(weights_, observation, &rollout_.reset(t, first),
+                                                   mirror_h_.middleCols(first, config_.block_envs),
+                                                   mirror_c_.middleCols(first, config_.block_envs),
+                                                   mean);
   for (int i = 0; i < config_.block_envs; ++i) {
     symmetry_->action.apply(mean.col(i), scratch.data());
   }
@@ -171,7 +172,7 @@ void Learner::value_timeouts(int first_env, int worker) {
     for (int env = first_env; env < first_env + config_.block_envs; ++env) {
       if (rollout_.end(t, env) != End::kTimeout) continue;
       rollout_.timeout_value(t, env) =
-          pass.value(parameters_.data(), rollout_.final_privileged(t).col(env).data());
+          pass.value(weights_, rollout_.final_privileged(t).col(env).data());
     }
   }
 }
@@ -186,8 +187,8 @@ void Learner::compute_advantages(UpdateStats& stats) {
   std::vector<Sums> sums(static_cast<std::size_t>(blocks()));
   pool_.run(blocks(), [&](int block, int worker) {
     const int first = block * config_.block_envs;
-    acting_[static_cast<std::size_t>(worker)].evaluate(parameters_.data(), rollout_,
-                                                       rollout_.shape.steps, first);
+    acting_[static_cast<std::size_t>(worker)].evaluate(weights_, rollout_, rollout_.shape.steps,
+                                                       first);
     value_timeouts(first, worker);
     compute_gae(rollout_, first, config_.block_envs, config_.gamma, config_.lambda);
     Sums& sum = sums[static_cast<std::size_t>(block)];
@@ -255,12 +256,13 @@ double Learner::reduce_gradients(int count) {
 bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) {
   const int samples = count * config_.block_envs * rollout_.shape.steps;
   std::vector<LossSums> sums(static_cast<std::size_t>(count));
+  weights_.set(parameters_.data());
   pool_.run(count, [&](int i, int worker) {
     const auto slot = static_cast<std::size_t>(i);
     std::fill(gradients_[slot].begin(), gradients_[slot].end(), 0.0f);
     sums[slot] = learning_[static_cast<std::size_t>(worker)].loss_and_gradient(
-        parameters_.data(), rollout_, blocks[i] * config_.block_envs, config_.loss,
-        advantage_scale_, samples, gradients_[slot].data());
+        weights_, rollout_, blocks[i] * config_.block_envs, config_.loss, advantage_scale_, samples,
+        gradients_[slot].data());
   });
   LossSums total;
   for (const LossSums& sum : sums) total.add(sum);
@@ -347,6 +349,7 @@ UpdateStats Learner::update() {
 }
 
 void Learner::begin_window() {
+  weights_.set(parameters_.data());
   rollout_.initial_h(0) = h_;
   rollout_.initial_c(0) = c_;
   rollout_.log_std =

@@ -15,6 +15,7 @@
 #include "tools/train/learner/block_pass.h"
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/parameters.h"
+#include "tools/train/learner/weights.h"
 
 namespace sandrunner::learner {
 
@@ -77,7 +78,8 @@ class Learner {
   /// With a symmetry, loss.symmetry_weight pulls the policy's answers to what it sees and to the
   /// mirror image of that together (Yu, Turk, Liu 2018).
   Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
-          WorkerPool& pool, std::optional<Symmetry> symmetry = std::nullopt);
+          WorkerPool& pool, std::optional<Symmetry> symmetry = std::nullopt,
+          const Kernels<float>& kernels = best_kernels<float>());
 
   Rollout& rollout() { return rollout_; }
   const LearnerConfig& config() const { return config_; }
@@ -142,6 +144,7 @@ class Learner {
   Rollout rollout_;
   Counters counters_;
   std::vector<float> parameters_;
+  Weights<float> weights_;  // the parameters, packed
   std::vector<float> averaged_;
   Adam adam_;
   Matrix<float> h_;  // memory of each environment

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "tools/train/learner/matrix.h"
+#include "tools/train/learner/weights.h"
 
 namespace sandrunner::learner {
 
@@ -17,14 +18,14 @@ namespace sandrunner::learner {
 template <typename Scalar>
 class Lstm {
  public:
-  Lstm(int inputs, int hidden, int steps, int envs);
+  Lstm(int inputs, int hidden, int steps, int envs, const Kernels<Scalar>& kernels);
 
   /// Input of step t, inputs x envs: to be filled before `forward`.
   auto input(int t) { return stacked_.block(0, t * envs_, inputs_, envs_); }
 
   /// Runs all steps. h0, c0: state before the first step, hidden x envs. reset + t * reset_stride:
   /// for each environment, whether its state is cleared before step t.
-  void forward(const Scalar* weight, const ConstMatrixRef<Scalar>& h0,
+  void forward(const LayerWeights<Scalar>& weights, const ConstMatrixRef<Scalar>& h0,
                const ConstMatrixRef<Scalar>& c0, const std::uint8_t* reset,
                std::ptrdiff_t reset_stride);
 
@@ -35,10 +36,11 @@ class Lstm {
 
   /// After `forward`: adds dL/dW to `weight_gradient`, given dL/dh of the outputs (as `output`),
   /// which it uses as working memory. Nothing flows back into h0, c0. Destroys what `forward` kept.
-  void backward(const Scalar* weight, Matrix<Scalar>& output_gradient, const std::uint8_t* reset,
-                std::ptrdiff_t reset_stride, Scalar* weight_gradient);
+  void backward(const LayerWeights<Scalar>& weights, Matrix<Scalar>& output_gradient,
+                const std::uint8_t* reset, std::ptrdiff_t reset_stride, Scalar* weight_gradient);
 
  private:
+  const Kernels<Scalar>* kernels_;
   int inputs_;
   int hidden_;
   int steps_;

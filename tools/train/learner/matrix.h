@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Matrix types of the learner. Data matrices are column-major with one sample a column; weights are
-// row-major.
+// Matrix types of the learner: column-major with one sample a column.
 #pragma once
 
 #include <Eigen/Core>
+#include <type_traits>
+
+#include "tools/train/kernels/kernels.h"
 
 namespace sandrunner::learner {
 
@@ -16,10 +18,10 @@ using ConstMatrixRef = Eigen::Ref<const Matrix<Scalar>, 0, Eigen::OuterStride<>>
 template <typename Scalar>
 using MatrixRef = Eigen::Ref<Matrix<Scalar>, 0, Eigen::OuterStride<>>;
 
-template <typename Scalar>
-using Weight = Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-template <typename Scalar>
-using ConstWeight =
-    Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+/// A matrix as the kernels take it: a sample, here a column, is a row there.
+template <typename M>
+auto rows_of(M&& matrix) {
+  return Rows<std::remove_pointer_t<decltype(matrix.data())>>{matrix.data(), matrix.outerStride()};
+}
 
 }  // namespace sandrunner::learner

@@ -30,12 +30,19 @@ class GradientTest : public testing::Test {
       : layout_(sizes(), kShape.privileged),
         rollout_(random_rollout<double>(kShape, layout_.hidden())),
         pass_(layout_, kShape.steps, kEnvs, kChunkSteps),
+        weights_(layout_),
         parameters_(random_parameters(layout_)) {}
+
+  /// The parameters as they are now.
+  const Weights<double>& weights() {
+    weights_.set(parameters_.data());
+    return weights_;
+  }
 
   double loss(const LossConfig& config, LossSums* sums_out = nullptr) {
     std::vector<double> unused(parameters_.size());
-    const LossSums sums = pass_.loss_and_gradient(parameters_.data(), rollout_, kFirstEnv, config,
-                                                  kScale, kSamples, unused.data());
+    const LossSums sums = pass_.loss_and_gradient(weights(), rollout_, kFirstEnv, config, kScale,
+                                                  kSamples, unused.data());
     if (sums_out != nullptr) *sums_out = sums;
     double estimate = 0.0;
     for (const double square : sums.estimate_square) estimate += square / kEstimateSize;
@@ -47,7 +54,7 @@ class GradientTest : public testing::Test {
 
   std::vector<double> gradient(const LossConfig& config) {
     std::vector<double> result(parameters_.size());
-    pass_.loss_and_gradient(parameters_.data(), rollout_, kFirstEnv, config, kScale, kSamples,
+    pass_.loss_and_gradient(weights(), rollout_, kFirstEnv, config, kScale, kSamples,
                             result.data());
     return result;
   }
@@ -93,6 +100,7 @@ class GradientTest : public testing::Test {
   ParameterLayout layout_;
   BasicRollout<double> rollout_;
   BlockPass<double> pass_;
+  Weights<double> weights_;
   std::vector<double> parameters_;
 };
 
@@ -144,8 +152,10 @@ TEST_F(GradientTest, FloatMatchesDouble) {
   const std::vector<float> parameters(parameters_.begin(), parameters_.end());
   std::vector<float> actual(parameters.size());
   BlockPass<float> pass(layout_, kShape.steps, kEnvs, kChunkSteps);
-  pass.loss_and_gradient(parameters.data(), random_rollout<float>(kShape, layout_.hidden()),
-                         kFirstEnv, kLoss, kScale, kSamples, actual.data());
+  Weights<float> weights(layout_);
+  weights.set(parameters.data());
+  pass.loss_and_gradient(weights, random_rollout<float>(kShape, layout_.hidden()), kFirstEnv, kLoss,
+                         kScale, kSamples, actual.data());
   for (const TensorView& tensor : layout_.tensors()) {
     double error_square = 0.0;
     double norm_square = 0.0;

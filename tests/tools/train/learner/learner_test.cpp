@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <numbers>
@@ -12,6 +14,8 @@
 #include <vector>
 
 #include "rt/base/errors.h"
+#include "rt/core/state_hash.h"
+#include "sim/lanes/processor.h"
 #include "toy_task.h"
 
 namespace sandrunner::learner {
@@ -27,9 +31,10 @@ const RolloutShape kSmallShape{64, 8, kToyPrivileged};
 
 /// A training on the toy task, whose symmetry it is told.
 struct Training {
-  Training(int threads, std::uint64_t seed, const LearnerConfig& config = small_config())
+  Training(int threads, std::uint64_t seed, const LearnerConfig& config = small_config(),
+           const Kernels<float>& kernels = best_kernels<float>())
       : pool(threads),
-        learner(config, kSmallShape, seed, pool, toy_symmetry()),
+        learner(config, kSmallShape, seed, pool, toy_symmetry(), kernels),
         task(learner, pool) {}
 
   void run(int windows) {
@@ -56,6 +61,24 @@ TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfThreads) {
   EXPECT_NE(one.learner.parameters(), other_seed.learner.parameters());
   EXPECT_EQ(one.learner.updates(), 6u);
   EXPECT_EQ(one.learner.transitions(), 6u * 64u * 8u);
+}
+
+TEST(LearnerTest, SameSeedGivesTheSameWeightsWithAvx2AndAvx512) {
+  if (!sim::has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
+  Training x8(1, 4, small_config(), kernels_x8());
+  Training x16(2, 4, small_config(), kernels_x16());
+  for (Training* training : {&x8, &x16}) training->run(6);
+  EXPECT_EQ(x8.learner.parameters(), x16.learner.parameters());
+}
+
+TEST(LearnerTest, WeightsAreThoseWrittenDownFromBothCompilers) {
+  Training training(2, 4);
+  training.run(6);
+  StateHash hash;
+  for (const float weight : training.learner.parameters()) {
+    hash.add(std::uint64_t{std::bit_cast<std::uint32_t>(weight)});
+  }
+  EXPECT_EQ(hash.value(), 0x62B9524325FC6244u);
 }
 
 TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
