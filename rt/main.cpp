@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "policy/policy_file.h"
-#include "policy/safetensors.h"
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
@@ -117,7 +117,7 @@ int run(int argc, char** argv) {
   const CommandSource command(options->live ? "0,0,0" : options->command);
   const std::string policy_text = options->policy_path.empty()
                                       ? std::string(shipped_policy_text())
-                                      : read_safetensors_bytes(options->policy_path);
+                                      : read_input_file(options->policy_path, "a policy file");
   Policy policy =
       load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
                                                                  : options->policy_path);

@@ -5,17 +5,15 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
+#include "rt/base/toml_depth.h"
 
 namespace sandrunner {
 
@@ -184,6 +182,10 @@ ConfigTree::ConfigTree(ConfigTree&&) noexcept = default;
 ConfigTree& ConfigTree::operator=(ConfigTree&&) noexcept = default;
 
 void ConfigTree::add_layer(std::string_view toml, const std::string& origin, bool has_lines) {
+  if (const TomlDepth found = find_too_deep(toml); found.line != 0) {
+    throw InputError(one_line(fmt::format(
+        "{}{}: {}", origin, has_lines ? fmt::format(":{}", found.line) : "", found.problem)));
+  }
   try {
     layers_.push_back(
         {std::make_shared<const toml::table>(toml::parse(toml, origin)), origin, has_lines});
@@ -199,18 +201,7 @@ void ConfigTree::add_text(std::string_view toml, const std::string& origin) {
 }
 
 void ConfigTree::add_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string content;
-  std::array<char, 4096> block{};
-  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
-    content.append(block.data(), static_cast<std::size_t>(file.gcount()));
-  }
-  // A directory can be opened but not read.
-  if (!file.is_open() || file.bad()) {
-    throw InputError(one_line(
-        fmt::format("{}: cannot be read ({}), expected a TOML file", path, std::strerror(errno))));
-  }
-  add_layer(content, path, true);
+  add_layer(read_input_file(path, "a TOML file"), path, true);
 }
 
 void ConfigTree::set(const std::string& assignment) {

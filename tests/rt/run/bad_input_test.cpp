@@ -81,14 +81,16 @@ TEST_F(BadInputTest, SettingsAreRefusedWithTheirKey) {
   expect_refused("--set sim.sensor_delay_ticks=0.5", "found 0.5");
   expect_refused("--config absent.toml", "absent.toml: cannot be read");
   expect_refused("--config .", "cannot be read");
+  expect_refused("--config /dev/zero", "/dev/zero: cannot be read (not a regular file)");
   write("unknown.toml", "[controller]\nspeed = 1\n");
   expect_refused("--config unknown.toml", "unknown.toml:2: unknown key 'controller.speed'");
 }
 
 TEST_F(BadInputTest, DamagedPoliciesAreRefused) {
   const std::string bytes = read_file(folder_.path("good"));
-  expect_refused("--policy absent", "'absent': no such file");
-  expect_refused("--policy .", "'.': not a regular file");
+  expect_refused("--policy absent",
+                 "absent: cannot be read (No such file or directory), expected a policy file");
+  expect_refused("--policy .", ".: cannot be read (not a regular file)");
   for (const std::size_t size : {0u, 7u, 1000u, 300000u}) {
     write("truncated", bytes.substr(0, size));
     expect_refused("--policy truncated", "'truncated': ");
@@ -136,6 +138,8 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
   expect_refused("--robot map.toml", "map.toml:57: unknown key 'wheels.radius_m'");
   expect_refused("--robot absent.toml", "absent.toml: cannot be read");
+  expect_refused("--robot /dev/null",
+                 "/dev/null: cannot be read (not a regular file), expected the map of a robot");
   write("map.toml", map.substr(0, map.find("[gains]")));
   expect_refused("--robot map.toml", "map.toml: 'gains.stand_kp_nmprad' is missing");
   expect_refused("--robot " + write_small_robot(folder_),
