@@ -159,7 +159,7 @@ int run(int argc, char** argv) {
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
   const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name, options->terrain,
-                     options->seed};
+                     options->realtime ? "realtime" : "lockstep", options->seed};
   std::string written;
   std::exception_ptr not_written;
   try {

@@ -13,6 +13,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
+#include "rt/base/likely_meant.h"
 #include "rt/base/toml_depth.h"
 
 namespace sandrunner {
@@ -112,40 +113,6 @@ std::optional<double> number_in(const toml::node& node, double min, double max) 
   if (!value || !(node.is_floating_point() || node.is_integer())) return std::nullopt;
   if (!std::isfinite(*value) || *value < min || *value > max) return std::nullopt;
   return value;
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, substituted}));
-    }
-  }
-  return row.back();
-}
-
-std::string_view last_part(std::string_view path) {
-  return path.substr(path.rfind('.') + 1);  // npos + 1 is 0
-}
-
-/// The known key that `unknown` was probably meant to be: one that is spelt nearly the same, or the
-/// same key in another table. Empty if there is none.
-std::string likely_meant(const std::string& unknown, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t best_distance = 3 + unknown.size() / 8;
-  for (const std::string& candidate : known) {
-    const std::string_view key = last_part(candidate);
-    const std::size_t distance = key == last_part(unknown) ? 1 : edit_distance(unknown, candidate);
-    // A distance as long as the key says nothing: all short keys are near each other.
-    if (distance < std::min(best_distance, key.size())) {
-      best = candidate;
-      best_distance = distance;
-    }
-  }
-  return best;
 }
 
 /// A key as it is written in a dotted path.

@@ -16,7 +16,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   CLI::App app{
       "Runs a legged robot on sand: the control process, here with the granular simulator in place "
-      "of the robot."};
+      "of the robot.",
+      "sandrunner"};
   app.option_defaults()->always_capture_default();
   std::string start = "stand";
   app.add_option("--policy", o.policy_path, "policy file (default: the one that ships)")
@@ -43,14 +44,15 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option(
          "--start", start,
          "stand: lies, stands up, walks, stands again; walk: walks at once from the nominal pose")
-      ->check(CLI::IsMember({"stand", "walk"}));
+      ->check(CLI::IsMember({"stand", "walk"}))
+      ->type_name("stand|walk");
   std::string clock = "lockstep";
   app.add_option("--clock", clock,
                  "lockstep: one thread, simulated time, as fast as the machine goes; realtime: the "
                  "threads of the robot on the system's clock")
-      ->check(CLI::IsMember({"lockstep", "realtime"}));
+      ->check(CLI::IsMember({"lockstep", "realtime"}))
+      ->type_name("lockstep|realtime");
   app.add_option("--seed", o.seed, "0: exactly the nominal start; above 0: a disturbed one")
-      ->check(CLI::Range(0.0, 9e15))
       ->type_name("N");
   app.add_option("--config", o.config_files,
                  "TOML file with settings; may be repeated, later ones win")
@@ -70,7 +72,12 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("DIR");
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
-  app.set_version_flag("--version", std::string("sandrunner ") + SANDRUNNER_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  sandrunner --command 3,0,0 --out results\n"
+      "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
+      "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
+      "  sandrunner --clock realtime --command dds");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = start == "walk";
   o.realtime = clock == "realtime";
@@ -87,6 +94,11 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   if (!std::isfinite(o.duration_s) || o.duration_s <= 0.0 || o.duration_s > 86400.0) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
+  }
+  // Above it, JSON's readers would round it.
+  constexpr std::uint64_t kLargestSeed = 9'000'000'000'000'000;
+  if (o.seed > kLargestSeed) {
+    throw InputError(fmt::format("--seed: {}, expected 0 to {}", o.seed, kLargestSeed));
   }
   return o;
 }

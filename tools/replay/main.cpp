@@ -43,7 +43,6 @@ std::optional<Arguments> parse(int argc, char** argv) {
       "and compares the outputs bit by bit. Exit code 0: all agree; 1: the first difference is "
       "printed.",
       "sandrunner-replay");
-  app.set_version_flag("--version", "sandrunner-replay " SANDRUNNER_VERSION);
   app.add_option("FILE", a.file, "recording (run.mcap, black-box-TICK.mcap)")->required();
   app.add_option("--from", a.from_s, "first second that is compared and drawn")->type_name("S");
   app.add_option("--to", a.to_s, "last second")->type_name("S");
@@ -51,6 +50,11 @@ std::optional<Arguments> parse(int argc, char** argv) {
   app.add_option("--set", a.assignments, "what if: one setting otherwise; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
+  app.footer(
+      "Examples:\n"
+      "  sandrunner-replay results/run.mcap\n"
+      "  sandrunner-replay results/run.mcap --plot plots --from 2 --to 6\n"
+      "  sandrunner-replay results/run.mcap --set controller.walk.kp_nmprad=40");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (!(a.from_s >= 0.0) || !(a.to_s > a.from_s)) {
     throw InputError(fmt::format("--from {} --to {}: expected 0 <= from < to", a.from_s, a.to_s));
