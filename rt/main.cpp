@@ -129,7 +129,7 @@ int run(int argc, char** argv) {
   const SignalWatch signals;
   Listeners listeners;
   if (config.dds.enabled) listeners.dds.emplace(config, options->live);
-  listeners.recorder = make_recorder(*options, config, policy_text);
+  listeners.recorder = make_recorder(*options, config, policy_text, policy);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
   sim::Simulator simulator(config.robot, config.simulator);
   if (!options->start_walking) simulator.reset_lying();
@@ -166,6 +166,10 @@ int run(int argc, char** argv) {
     if (out) written = write_results(result, info, config.effective, options->out_dir);
   } catch (const InputError&) {
     not_written = std::current_exception();
+  }
+  if (recorded.failed && !not_written) {
+    not_written = std::make_exception_ptr(
+        InputError(fmt::format("--record: the recording is cut: {}", recorded.stopped_because)));
   }
   if (listeners.recorder) written += recording_line(recorded, options->record_dir);
   if (listeners.black_box) written += black_box_lines(kept);

@@ -44,7 +44,8 @@ class HelpFormat : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override {
     std::string text = option->get_description();
     const std::string value = option->get_default_str();
-    if (!value.empty() && value != "[]") text += fmt::format(" (default {})", value);
+    const bool has_default = !value.empty() && value != "[]" && !option->get_required();
+    if (has_default) text += fmt::format(" (default {})", value);
     if (option->get_required() && !option->get_positional()) text += " (required)";
     return wrapped(text, kWidth - kColumn);
   }
@@ -82,6 +83,7 @@ void collect_names(CLI::App& app, std::vector<std::string>& names) {
 
 void set_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
   app.formatter(format);
+  app.get_help_ptr()->description("print this help");
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     set_format(*command, format);
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 
 #include "rt/base/command_line.h"
@@ -11,6 +12,21 @@
 #include "sim/ground/terrain_description.h"
 
 namespace sandrunner {
+namespace {
+
+std::uint64_t seed_of(const std::string& text) {
+  constexpr std::uint64_t kLargest = 9'000'000'000'000'000;  // JSON's readers would round others
+  std::uint64_t seed = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, seed);
+  if (error != std::errc() || stop != end || seed > kLargest) {
+    throw InputError(
+        fmt::format("--seed: '{}', expected a whole number from 0 to {}", text, kLargest));
+  }
+  return seed;
+}
+
+}  // namespace
 
 std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
@@ -47,12 +63,13 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->check(CLI::IsMember({"stand", "walk"}))
       ->type_name("stand|walk");
   std::string clock = "lockstep";
+  std::string seed = "0";
   app.add_option("--clock", clock,
                  "lockstep: one thread, simulated time, as fast as the machine goes; realtime: the "
                  "threads of the robot on the system's clock")
       ->check(CLI::IsMember({"lockstep", "realtime"}))
       ->type_name("lockstep|realtime");
-  app.add_option("--seed", o.seed, "0: exactly the nominal start; above 0: a disturbed one")
+  app.add_option("--seed", seed, "0: exactly the nominal start; above 0: a disturbed one")
       ->type_name("N");
   app.add_option("--config", o.config_files,
                  "TOML file with settings; may be repeated, later ones win")
@@ -95,11 +112,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
   }
-  // Above it, JSON's readers would round it.
-  constexpr std::uint64_t kLargestSeed = 9'000'000'000'000'000;
-  if (o.seed > kLargestSeed) {
-    throw InputError(fmt::format("--seed: {}, expected 0 to {}", o.seed, kLargestSeed));
-  }
+  o.seed = seed_of(seed);
   return o;
 }
 

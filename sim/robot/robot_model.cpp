@@ -223,6 +223,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   Robot robot;
   robot.description.name = map.text("name");
   robot.description.urdf = urdf_text;
+  robot.map = map_text;
   map.text("urdf");
   const Names names = read_names(map);
   robot.description.base_link = names.base;

@@ -76,7 +76,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   const CLI::Option* has_for =
       cmd->add_option("--for", for_s, "for this long; without it, until Ctrl-C")
           ->type_name("S")
-          ->always_capture_default(false);
+          ->default_str("");
   CLI::App* mode = app.add_subcommand("mode", "request a mode and print the answer");
   mode->add_option("REQUEST", o.mode, kRequestNames)->required()->always_capture_default(false);
   CLI::App* watch = app.add_subcommand("watch", "print the messages of a topic, one per line");

@@ -44,6 +44,25 @@ TEST_F(BadInputTest, OptionsAreRefusedBeforeAnyWork) {
   expect_refused("--seed x", "x");
 }
 
+TEST_F(BadInputTest, EmptyValuesAreRefused) {
+  for (const char* option : {"--policy", "--robot", "--terrain", "--command", "--dds-security",
+                             "--config", "--set", "--record", "--seed"}) {
+    expect_refused(std::string(option) + " ''", std::string(option) + ": found an empty value");
+  }
+  ProgramTest::expect_refused("--out ''", "--out: found an empty value");
+  for (const char* option : {"--duration", "--start", "--clock"}) {
+    expect_refused(std::string(option) + " ''", option);
+  }
+}
+
+TEST_F(BadInputTest, WhatWasProbablyMeantIsSaid) {
+  expect_refused("--terain rigid", "'--terain', did you mean '--terrain'?");
+  expect_refused("--dds_security=x", "did you mean '--dds-security'?");
+  expect_refused("rt-rpeort", "did you mean 'rt-report'?");
+  expect_refused("--terrain dry-snad", "did you mean 'dry-sand'?");
+  expect_refused("--set controller.walk.kp=3", "did you mean 'controller.walk.kp_nmprad'?");
+}
+
 TEST_F(BadInputTest, SeedsOutOfRangeAreRefused) {
   expect_refused("--seed -1", "-1");
   expect_refused("--seed 99999999999999999999", "99999999999999999999");
