@@ -237,7 +237,7 @@ void take(const std::string& path, const std::vector<NamedTensor>& wanted,
     if (node.empty()) fail_file(path, "tensor '{}' is missing", want.name);
     if (node.mapped().shape != want.shape) {
       fail_file(path, "tensor '{}' has shape [{}], expected [{}]", want.name,
-                joined(node.mapped().shape, ", "), joined(want.shape, ", "));
+                printable(joined(node.mapped().shape, ", ")), joined(want.shape, ", "));
     }
     *want.values = std::move(node.mapped().values);
   }

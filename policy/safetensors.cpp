@@ -3,18 +3,15 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "policy/text.h"
+#include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 
 namespace sandrunner {
@@ -24,12 +21,18 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 
 using Json = nlohmann::json;
 constexpr std::size_t kLengthBytes = 8;
-constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;  // a policy has half a megabyte
+// A policy's header has some kilobytes; each value is held by an object of the parser.
+constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 20;
+constexpr int kMaxHeaderDepth = 3;  // of the sizes in "shape": header, tensor, array
 
-/// Parses the header; a key that occurs twice in one object is an error.
+/// Parses the header; a key that occurs twice in one object is an error, and so is deeper nesting
+/// than the format has.
 Json parse_header(const std::string& path, std::string_view text) {
   std::vector<std::set<std::string>> open_objects;
-  const auto watch_keys = [&](int, Json::parse_event_t event, Json& parsed) {
+  const auto watch_keys = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > kMaxHeaderDepth) {
+      fail_file(path, "header is nested more than {} deep", kMaxHeaderDepth);
+    }
     if (event == Json::parse_event_t::object_start) {
       open_objects.emplace_back();
     } else if (event == Json::parse_event_t::object_end) {
@@ -97,7 +100,7 @@ TensorEntry read_entry(const std::string& path, const std::string& name, const J
   }
   if (bytes != sizeof(float) * values) {
     fail_file(path, "tensor '{}': {} bytes of data do not fit the shape [{}]", tensor, bytes,
-              joined(entry.shape, ", "));
+              printable(joined(entry.shape, ", ")));
   }
   return entry;
 }
@@ -125,27 +128,8 @@ std::map<std::string, std::string> read_metadata(const std::string& path, const 
 
 }  // namespace
 
-std::string read_safetensors_bytes(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail_file(path, "no such file");
-  if (!std::filesystem::is_regular_file(status)) fail_file(path, "not a regular file");
-  const auto size = std::filesystem::file_size(path, error);
-  if (error) fail_file(path, "cannot be read: {}", error.message());
-  if (size > kMaxFileBytes) {
-    fail_file(path, "{} bytes, expected at most {}", size, kMaxFileBytes);
-  }
-  std::string bytes(size, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) fail_file(path, "cannot be read: {}", std::generic_category().message(errno));
-  stream.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (stream.gcount() != static_cast<std::streamsize>(size))
-    fail_file(path, "changed while it was read");
-  return bytes;
-}
-
 TensorFile read_safetensors(const std::string& path) {
-  return parse_safetensors(read_safetensors_bytes(path), path);
+  return parse_safetensors(read_input_file(path, "a policy file"), path);
 }
 
 TensorFile parse_safetensors(std::string_view bytes, const std::string& path) {
@@ -158,6 +142,9 @@ TensorFile parse_safetensors(std::string_view bytes, const std::string& path) {
     fail_file(path,
               "a header of {} bytes does not fit in a file of {} (truncated, or not safetensors)",
               header_bytes, bytes.size());
+  }
+  if (header_bytes > kMaxHeaderBytes) {
+    fail_file(path, "a header of {} bytes, expected at most {}", header_bytes, kMaxHeaderBytes);
   }
   const std::string_view data = bytes.substr(kLengthBytes + header_bytes);
   const Json header = parse_header(path, bytes.substr(kLengthBytes, header_bytes));

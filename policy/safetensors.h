@@ -28,10 +28,6 @@ struct TensorFile {
 /// a well-formed file of finite float32 tensors that fill the data area without gap or overlap.
 TensorFile read_safetensors(const std::string& path);
 
-/// The bytes of such a file. Throws InputError if it does not exist, is not a regular file or is
-/// larger than 64 MiB.
-std::string read_safetensors_bytes(const std::string& path);
-
 /// The same from memory; `name` stands for the file in errors.
 TensorFile parse_safetensors(std::string_view bytes, const std::string& name);
 

@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "policy/policy_file.h"
-#include "policy/safetensors.h"
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
@@ -117,7 +117,7 @@ int run(int argc, char** argv) {
   const CommandSource command(options->live ? "0,0,0" : options->command);
   const std::string policy_text = options->policy_path.empty()
                                       ? std::string(shipped_policy_text())
-                                      : read_safetensors_bytes(options->policy_path);
+                                      : read_input_file(options->policy_path, "a policy file");
   Policy policy =
       load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
                                                                  : options->policy_path);
@@ -135,7 +135,7 @@ int run(int argc, char** argv) {
   SignalWatch signals;
   Listeners listeners;
   if (config.dds.enabled) listeners.dds.emplace(config, options->live);
-  listeners.recorder = make_recorder(*options, config, policy_text);
+  listeners.recorder = make_recorder(*options, config, policy_text, policy);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
   sim::Simulator simulator(config.robot, config.simulator);
   if (!options->start_walking) simulator.reset_lying();
@@ -166,13 +166,17 @@ int run(int argc, char** argv) {
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
   const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name, options->terrain,
-                     options->seed};
+                     options->realtime ? "realtime" : "lockstep", options->seed};
   std::string written;
   std::exception_ptr not_written;
   try {
     if (out) written = write_results(result, info, config.effective, options->out_dir);
   } catch (const InputError&) {
     not_written = std::current_exception();
+  }
+  if (recorded.failed && !not_written) {
+    not_written = std::make_exception_ptr(
+        InputError(fmt::format("--record: the recording is cut: {}", recorded.stopped_because)));
   }
   if (listeners.recorder) written += recording_line(recorded, options->record_dir);
   if (listeners.black_box) written += black_box_lines(kept);

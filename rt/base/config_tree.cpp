@@ -5,17 +5,16 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
+#include "rt/base/likely_meant.h"
+#include "rt/base/toml_depth.h"
 
 namespace sandrunner {
 
@@ -116,40 +115,6 @@ std::optional<double> number_in(const toml::node& node, double min, double max) 
   return value;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, substituted}));
-    }
-  }
-  return row.back();
-}
-
-std::string_view last_part(std::string_view path) {
-  return path.substr(path.rfind('.') + 1);  // npos + 1 is 0
-}
-
-/// The known key that `unknown` was probably meant to be: one that is spelt nearly the same, or the
-/// same key in another table. Empty if there is none.
-std::string likely_meant(const std::string& unknown, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t best_distance = 3 + unknown.size() / 8;
-  for (const std::string& candidate : known) {
-    const std::string_view key = last_part(candidate);
-    const std::size_t distance = key == last_part(unknown) ? 1 : edit_distance(unknown, candidate);
-    // A distance as long as the key says nothing: all short keys are near each other.
-    if (distance < std::min(best_distance, key.size())) {
-      best = candidate;
-      best_distance = distance;
-    }
-  }
-  return best;
-}
-
 /// A key as it is written in a dotted path.
 std::string key_text(std::string_view key) {
   const bool bare = key.find_first_not_of(kPathCharacters) == std::string_view::npos &&
@@ -184,6 +149,10 @@ ConfigTree::ConfigTree(ConfigTree&&) noexcept = default;
 ConfigTree& ConfigTree::operator=(ConfigTree&&) noexcept = default;
 
 void ConfigTree::add_layer(std::string_view toml, const std::string& origin, bool has_lines) {
+  if (const TomlDepth found = find_too_deep(toml); found.line != 0) {
+    throw InputError(one_line(fmt::format(
+        "{}{}: {}", origin, has_lines ? fmt::format(":{}", found.line) : "", found.problem)));
+  }
   try {
     layers_.push_back(
         {std::make_shared<const toml::table>(toml::parse(toml, origin)), origin, has_lines});
@@ -199,18 +168,7 @@ void ConfigTree::add_text(std::string_view toml, const std::string& origin) {
 }
 
 void ConfigTree::add_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string content;
-  std::array<char, 4096> block{};
-  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
-    content.append(block.data(), static_cast<std::size_t>(file.gcount()));
-  }
-  // A directory can be opened but not read.
-  if (!file.is_open() || file.bad()) {
-    throw InputError(one_line(
-        fmt::format("{}: cannot be read ({}), expected a TOML file", path, std::strerror(errno))));
-  }
-  add_layer(content, path, true);
+  add_layer(read_input_file(path, "a TOML file"), path, true);
 }
 
 void ConfigTree::set(const std::string& assignment) {

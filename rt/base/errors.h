@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -15,9 +16,13 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// An error message as the one line that a program prints: names given by the user may hold line
-/// breaks.
+/// An error message as the one line that a program prints: what it quotes of the user's may hold
+/// line breaks, and be long, which costs the message its middle.
 inline std::string one_line(std::string message) {
+  constexpr std::size_t kLongest = 1000, kEnd = 300;
+  if (message.size() > kLongest) {
+    message.replace(kLongest - kEnd, message.size() - kLongest, " ... ");
+  }
   std::replace_if(
       message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
       ' ');

@@ -36,7 +36,7 @@ struct GateConfig {
   JointArray<double> speed_limit_radps{};
   double speed_fault_radps = 0.0;  ///< fault, of any joint. From the robot's map
   /// Fault: a position that changes in a tick by this more than the speed fault explains.
-  double encoder_jump_rad = 0.1;
+  double encoder_jump_rad = 0.2;
 
   // Joint torques, N m.
   /// A joint command that would give more is moved until it gives this. From the URDF.

@@ -15,6 +15,7 @@ namespace sandrunner {
 /// What a person asked for, in their words.
 struct RunInfo {
   std::string command, policy, terrain;
+  std::string clock;  ///< "lockstep" or "realtime"
   std::uint64_t seed = 0;
 };
 

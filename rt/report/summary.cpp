@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "rt/base/errors.h"
+#include "rt/base/build.h"
 
 namespace sandrunner {
 
@@ -150,8 +150,10 @@ std::string summary_json(const RunResult& r, const RunInfo& info) {
   const RunFigures& f = r.figures;
   Json j;
   j["version"] = SANDRUNNER_VERSION;
+  j["commit"] = build_commit();
   j["policy"] = info.policy.empty() ? Json() : Json(info.policy);
   j["terrain"] = info.terrain;
+  j["clock"] = info.clock;
   j["seed"] = info.seed;
   j["survived"] = r.survived;
   j["fall_time_s"] = r.fall_time_s ? Json(*r.fall_time_s) : Json();

@@ -7,9 +7,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 
 namespace sandrunner {
 namespace {
@@ -63,12 +64,12 @@ CommandSource::CommandSource(const std::string& text) : text_(text) {
     rows_.push_back({0.0, checked(numbers[0], numbers[1], numbers[2], "--command")});
     return;
   }
-  std::ifstream in(text);
   std::error_code unreadable;  // a wrong list of numbers may be too long for a name
-  if (!std::filesystem::is_regular_file(text, unreadable) || !in) {
+  if (!std::filesystem::is_regular_file(text, unreadable)) {
     throw InputError(
         fmt::format("--command: '{}' is neither vx,vy,wz (finite numbers) nor a file", text));
   }
+  std::istringstream in(read_input_file(text, "a CSV file of commands"));
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();

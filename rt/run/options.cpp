@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 
 #include "rt/base/command_line.h"
@@ -11,12 +12,28 @@
 #include "sim/ground/terrain_description.h"
 
 namespace sandrunner {
+namespace {
+
+std::uint64_t seed_of(const std::string& text) {
+  constexpr std::uint64_t kLargest = 9'000'000'000'000'000;  // JSON's readers would round others
+  std::uint64_t seed = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, seed);
+  if (error != std::errc() || stop != end || seed > kLargest) {
+    throw InputError(
+        fmt::format("--seed: '{}', expected a whole number from 0 to {}", text, kLargest));
+  }
+  return seed;
+}
+
+}  // namespace
 
 std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   CLI::App app{
       "Runs a legged robot on sand: the control process, here with the granular simulator in place "
-      "of the robot."};
+      "of the robot.",
+      "sandrunner"};
   app.option_defaults()->always_capture_default();
   std::string start = "stand";
   app.add_option("--policy", o.policy_path, "policy file (default: the one that ships)")
@@ -43,14 +60,16 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option(
          "--start", start,
          "stand: lies, stands up, walks, stands again; walk: walks at once from the nominal pose")
-      ->check(CLI::IsMember({"stand", "walk"}));
+      ->check(CLI::IsMember({"stand", "walk"}))
+      ->type_name("stand|walk");
   std::string clock = "lockstep";
+  std::string seed = "0";
   app.add_option("--clock", clock,
                  "lockstep: one thread, simulated time, as fast as the machine goes; realtime: the "
                  "threads of the robot on the system's clock")
-      ->check(CLI::IsMember({"lockstep", "realtime"}));
-  app.add_option("--seed", o.seed, "0: exactly the nominal start; above 0: a disturbed one")
-      ->check(CLI::Range(0.0, 9e15))
+      ->check(CLI::IsMember({"lockstep", "realtime"}))
+      ->type_name("lockstep|realtime");
+  app.add_option("--seed", seed, "0: exactly the nominal start; above 0: a disturbed one")
       ->type_name("N");
   app.add_option("--config", o.config_files,
                  "TOML file with settings; may be repeated, later ones win")
@@ -70,7 +89,12 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("DIR");
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
-  app.set_version_flag("--version", std::string("sandrunner ") + SANDRUNNER_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  sandrunner --command 3,0,0 --out results\n"
+      "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
+      "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
+      "  sandrunner --clock realtime --command dds");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = start == "walk";
   o.realtime = clock == "realtime";
@@ -88,6 +112,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
   }
+  o.seed = seed_of(seed);
   return o;
 }
 

@@ -122,10 +122,11 @@ ControllerConfig controller_config(const sim::Robot& robot) {
   return c;
 }
 
-ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec) {
+ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
+                                  const sim::Robot* robot) {
   ProcessConfig p;
-  const std::string robot = config.text("robot", "raibo");
-  p.robot = robot == "raibo" ? sim::load_raibo() : sim::load_robot(robot);
+  const std::string name = config.text("robot", "raibo");
+  p.robot = robot ? *robot : name == "raibo" ? sim::load_raibo() : sim::load_robot(name);
   p.controller = controller_config(p.robot);
   ControllerConfig& c = p.controller;
   if (spec) {

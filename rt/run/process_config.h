@@ -28,7 +28,9 @@ struct ProcessConfig {
 ControllerConfig controller_config(const sim::Robot& robot);
 
 /// Reads everything and rejects what is unknown. The robot's figures and the policy's gains (`spec`
-/// may be null) are the defaults of the controller's. Throws InputError.
-ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec);
+/// may be null) are the defaults of the controller's. `robot`, if given, is taken in place of the
+/// one that the key "robot" names. Throws InputError.
+ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
+                                  const sim::Robot* robot = nullptr);
 
 }  // namespace sandrunner

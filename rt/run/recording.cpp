@@ -17,6 +17,7 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
   info.clock = options.realtime ? "realtime" : "lockstep";
   info.config = config.effective;
   info.policy = policy;
+  info.robot_map = config.robot.map;
   info.robot = config.robot.description;
   return info;
 }
@@ -24,12 +25,12 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
 }  // namespace
 
 std::unique_ptr<Recorder> make_recorder(const Options& options, const ProcessConfig& config,
-                                        std::string_view policy) {
+                                        std::string_view policy_file, const Policy& policy) {
   if (options.record_dir.empty()) return nullptr;
   prepare_folder(options.record_dir, "--record");
   return std::make_unique<Recorder>(options.record_dir + "/run.mcap",
-                                    info_of(options, config, policy), config.recording,
-                                    !options.realtime);
+                                    info_of(options, config, policy_file), config.recording,
+                                    !options.realtime, &config.controller, &policy);
 }
 
 std::unique_ptr<BlackBox> make_black_box(const Options& options, const ProcessConfig& config,

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "rt/base/errors.h"
+#include "rt/base/likely_meant.h"
 #include "sim/ground/embedded.h"
 
 namespace sandrunner::sim {
@@ -66,8 +67,8 @@ void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) 
 
 const std::string& checked_preset(const std::string& name) {
   if (std::find(kPresets.begin(), kPresets.end(), name) == kPresets.end()) {
-    throw InputError(fmt::format("terrain.patch: preset '{}', expected one of {}", name,
-                                 fmt::join(kPresets, ", ")));
+    throw InputError(fmt::format("terrain.patch: preset '{}', expected one of {}{}", name,
+                                 fmt::join(kPresets, ", "), did_you_mean(name, kPresets)));
   }
   return name;
 }
@@ -83,8 +84,9 @@ void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file) {
   }
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(preset_or_file, unreadable)) {
-    throw InputError(fmt::format("--terrain: '{}' is neither a preset ({}) nor a file",
-                                 preset_or_file, fmt::join(kPresets, ", ")));
+    throw InputError(fmt::format("--terrain: '{}' is neither a preset ({}) nor a file{}",
+                                 preset_or_file, fmt::join(kPresets, ", "),
+                                 did_you_mean(preset_or_file, kPresets)));
   }
   config.add_file(preset_or_file);
 }

@@ -5,11 +5,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 #include "rt/core/gate_config.h"
 #include "sim/robot/clearance.h"
 #include "sim/robot/embedded.h"
@@ -19,14 +18,6 @@ namespace sandrunner::sim {
 namespace {
 
 using Vec = Vec3<double>;
-
-std::string read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be read, expected a robot description", path));
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 // What the map calls the parts of the URDF. {leg} in a joint or link stands for a leg's name.
 struct Names {
@@ -189,6 +180,15 @@ void read_foot(const UrdfReader& urdf, const Names& names, int l, const std::str
   }
 }
 
+// A link that moves by itself and weighs next to nothing is a slip (g for kg), and one that the
+// simulator's step cannot resolve. A foot weighs as a part of its shank.
+void check_mass(const UrdfReader& urdf, const std::string& link, const Body<double>& body) {
+  constexpr double kLeast_kg = 1e-3;
+  if (body.mass >= kLeast_kg) return;
+  urdf.fail(
+      fmt::format("link '{}' has mass {} kg, expected at least {}", link, body.mass, kLeast_kg));
+}
+
 void read_leg(const UrdfReader& urdf, const Names& names, int l, Robot& robot) {
   const std::string hip = with_leg(names.links[0], names.legs[l]);
   const std::string thigh = with_leg(names.links[1], names.legs[l]);
@@ -200,10 +200,14 @@ void read_leg(const UrdfReader& urdf, const Names& names, int l, Robot& robot) {
   leg.hip = urdf.body(hip);
   leg.thigh = urdf.body(thigh);
   read_foot(urdf, names, l, shank, robot.model);
+  check_mass(urdf, hip, leg.hip);
+  check_mass(urdf, thigh, leg.thigh);
+  check_mass(urdf, shank, leg.shank);
 }
 
 void read_base(const UrdfReader& urdf, const std::string& base, RobotModel<double>& m) {
   m.base = urdf.body(base);
+  check_mass(urdf, base, m.base);
   const urdf::Box* box = urdf.box(base, m.base_box_centre_m);
   if (!box) urdf.fail(fmt::format("link '{}' has no collision box", base));
   m.base_box_half_m = {box->dim.x / 2, box->dim.y / 2, box->dim.z / 2};
@@ -228,6 +232,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   Robot robot;
   robot.description.name = map.text("name");
   robot.description.urdf = urdf_text;
+  robot.map = map_text;
   map.text("urdf");
   const Names names = read_names(map);
   robot.description.base_link = names.base;
@@ -254,11 +259,11 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
 }
 
 Robot load_robot(const std::string& map_path) {
-  const std::string map_text = read_text(map_path);
+  const std::string map_text = read_input_file(map_path, "the map of a robot");
   const std::string urdf = Map(map_text, map_path).text("urdf");
   const std::string urdf_path =
       (std::filesystem::path(map_path).parent_path() / urdf).lexically_normal().string();
-  return parse_robot(map_text, map_path, read_text(urdf_path), urdf_path);
+  return parse_robot(map_text, map_path, read_input_file(urdf_path, "a URDF"), urdf_path);
 }
 
 Robot load_raibo() {

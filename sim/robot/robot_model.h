@@ -68,6 +68,7 @@ struct TorqueSpeedLine {
 /// (sim/robot/README.md says what each figure is and where it comes from).
 struct Robot {
   RobotDescription description;
+  std::string map;  ///< text of its map, as read: with the URDF's, all that there is to know
   RobotModel<double> model;
   JointArray<double> nominal_rad{};  ///< posture of Stand; pose of `--start walk`
   double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching

@@ -6,9 +6,9 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <cmath>
-#include <regex>
 
 #include "rt/base/errors.h"
+#include "sim/robot/urdf_text.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -28,16 +28,6 @@ class FirstMessage : public console_bridge::OutputHandler {
   mutable std::string text;
 };
 
-// Exporters write blanks inside numbers' quotes and <dynamics> without the attributes that urdfdom
-// insists on; neither means anything to us.
-std::string tolerable(const std::string& text) {
-  static const std::regex dynamics(R"(<dynamics[^>]*/>)"), before(R"(="\s+)"),
-      after(R"(\s+"(\s|/|>))");
-  std::string t = std::regex_replace(text, dynamics, "");
-  t = std::regex_replace(t, before, "=\"");
-  return std::regex_replace(t, after, "\"$1");
-}
-
 // To compare shapes of one kind; for spheres any measure of size will do.
 double size_of(const urdf::Box& b) { return b.dim.x * b.dim.y * b.dim.z; }
 double size_of(const urdf::Cylinder& c) { return c.radius * c.radius * c.length; }
@@ -49,6 +39,24 @@ Sym3<double> rotated(const Sym3<double>& m, const urdf::Rotation& q) {
   return {dot(r.r0, a), dot(r.r0, b), dot(r.r0, c), dot(r.r1, b), dot(r.r1, c), dot(r.r2, c)};
 }
 
+// Above 0 in every direction.
+bool is_positive_definite(const Sym3<double>& m) {
+  const double d2 = m.xx * m.yy - m.xy * m.xy;
+  const double d3 = m.xx * (m.yy * m.zz - m.yz * m.yz) - m.xy * (m.xy * m.zz - m.yz * m.xz) +
+                    m.xz * (m.xy * m.yz - m.yy * m.xz);
+  return m.xx > 0.0 && d2 > 0.0 && d3 > 0.0;
+}
+
+// The moment about an axis is the mass's spread along the two others: an inertia J belongs to a
+// body if its spread, trace(J)/2 - J, is not negative in any direction. A plate has none across;
+// rounded figures may be a thousandth below.
+bool is_inertia_of_a_body(const Sym3<double>& m) {
+  const double trace = m.xx + m.yy + m.zz;
+  const double half = (0.5 + 1e-3) * trace;
+  return is_positive_definite(m) &&
+         is_positive_definite({half - m.xx, -m.xy, -m.xz, half - m.yy, -m.yz, half - m.zz});
+}
+
 }  // namespace
 
 Vec to_vec(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
@@ -56,7 +64,7 @@ Vec to_vec(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 UrdfReader::UrdfReader(const std::string& text, std::string name) : name_(std::move(name)) {
   if (text.find("<robot") == std::string::npos) fail("not a URDF: has no robot element");
   const FirstMessage message;
-  urdf_ = urdf::parseURDF(tolerable(text));
+  urdf_ = urdf::parseURDF(tolerable_urdf(text, name_));
   if (!urdf_) {
     fail(message.text.empty() ? "not a valid URDF" : "not a valid URDF: " + message.text);
   }
@@ -101,12 +109,11 @@ Body<double> UrdfReader::body(const std::string& link_name) const {
   if (!std::isfinite(all) || b.mass <= 0.0) {
     fail(fmt::format("link '{}' has mass {}, expected a positive finite one", link_name, b.mass));
   }
-  const double d2 = b.inertia.xx * b.inertia.yy - b.inertia.xy * b.inertia.xy;
-  const double d3 = b.inertia.xx * (b.inertia.yy * b.inertia.zz - b.inertia.yz * b.inertia.yz) -
-                    b.inertia.xy * (b.inertia.xy * b.inertia.zz - b.inertia.yz * b.inertia.xz) +
-                    b.inertia.xz * (b.inertia.xy * b.inertia.yz - b.inertia.yy * b.inertia.xz);
-  if (b.inertia.xx <= 0.0 || d2 <= 0.0 || d3 <= 0.0) {
-    fail(fmt::format("link '{}' has an inertia that is not positive definite", link_name));
+  if (!is_inertia_of_a_body(b.inertia)) {
+    fail(
+        fmt::format("link '{}' has an inertia that no body can have: each of the three principal "
+                    "moments must be above 0 and at most the sum of the other two",
+                    link_name));
   }
   return b;
 }

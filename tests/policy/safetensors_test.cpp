@@ -57,6 +57,23 @@ TEST(SafetensorsTest, ReadsAHeaderAsOtherWritersPadIt) {
       "");
 }
 
+TEST(SafetensorsTest, RefusesADeepOrHugeHeaderAtOnce) {
+  EXPECT_NE(read_error(file_bytes(std::string(1'000'000, '['), 0)).find("nested more than 3 deep"),
+            std::string::npos);
+  EXPECT_NE(read_error(file_bytes(std::string(30'000'000, '['), 0))
+                .find("header of 30000000 bytes, expected at most 1048576"),
+            std::string::npos);
+}
+
+TEST(SafetensorsTest, PrintsALongShapeShort) {
+  std::string sizes = "1";
+  for (int i = 0; i < 100'000; ++i) sizes += ",1";
+  const std::string error = read_error(
+      file_bytes(R"({"a":{"dtype":"F32","shape":[)" + sizes + R"(],"data_offsets":[0,8]}})", 8));
+  EXPECT_NE(error.find("do not fit the shape [1, 1, 1, "), std::string::npos) << error;
+  EXPECT_LT(error.size(), 250u);
+}
+
 struct BadHeader {
   const char* name;
   const char* header;

@@ -20,7 +20,6 @@ namespace {
 
 int run(int argc, char** argv) {
   CLI::App app("Measures how fast sandrunner is on this machine.", "sandrunner-bench");
-  app.set_version_flag("--version", "sandrunner-bench " SANDRUNNER_VERSION);
   app.require_subcommand(1);
 
   std::string json_path;
@@ -37,9 +36,11 @@ int run(int argc, char** argv) {
     command->add_option("--json", json_path, "file for the figures")->type_name("FILE");
     command->add_option("--rounds", rounds, "interleaved rounds")
         ->check(CLI::Range(1, 10000))
+        ->type_name("N")
         ->capture_default_str();
   }
 
+  app.footer("Example:\n  sandrunner-bench rt --rounds 5 --json rt.json");
   if (!parse_command_line(app, argc, argv)) return kExitOk;
   // Made now: a place that cannot be written is found before the measurement.
   std::optional<WholeFile> file;

@@ -28,11 +28,6 @@ void check(const Options& o) {
   if (o.dds.domain < 0 || o.dds.domain > 230) {
     throw InputError(fmt::format("--domain: found {}, expected 0 to 230", o.dds.domain));
   }
-  if (o.dds.interface.empty()) {
-    throw InputError(
-        "--interface: found an empty name, expected a network interface (\"lo\": this computer "
-        "only)");
-  }
   if (o.subcommand == "cmd") {
     check_speed("VX", o.velocity.vx_mps, kAbsurdSpeed_mps, "m/s");
     check_speed("VY", o.velocity.vy_mps, kAbsurdSpeed_mps, "m/s");
@@ -56,7 +51,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   std::string cmd_vel = "twist";
   double for_s = 0.0;
-  CLI::App app{"Watches and commands, over DDS, a robot that runs sandrunner."};
+  CLI::App app{"Watches and commands, over DDS, a robot that runs sandrunner.", "sandrunner-ctl"};
   app.option_defaults()->always_capture_default();
   app.require_subcommand(1);
   app.fallthrough();  // common options may also follow the subcommand
@@ -67,7 +62,6 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
                  "folder with the files of the identity \"operator\" (tools/dds_security.sh)")
       ->type_name("DIR");
   app.add_option("--cmd-vel", cmd_vel, "the robot's dds.cmd_vel")->type_name("twist|twist_stamped");
-  app.set_version_flag("--version", std::string("sandrunner-ctl ") + SANDRUNNER_VERSION);
 
   CLI::App* status = app.add_subcommand(
       "status", "show the state of the robot; on a terminal, keep refreshing it");
@@ -82,13 +76,18 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   const CLI::Option* has_for =
       cmd->add_option("--for", for_s, "for this long; without it, until Ctrl-C")
           ->type_name("S")
-          ->always_capture_default(false);
+          ->default_str("");
   CLI::App* mode = app.add_subcommand("mode", "request a mode and print the answer");
   mode->add_option("REQUEST", o.mode, kRequestNames)->required()->always_capture_default(false);
   CLI::App* watch = app.add_subcommand("watch", "print the messages of a topic, one per line");
   watch->add_option("TOPIC", o.topic, topic_names())->required()->always_capture_default(false);
   watch->add_option("--count", o.count, "end after N messages; 0: at Ctrl-C")->type_name("N");
   app.add_subcommand("drive", "drive with the keyboard, and with a gamepad if there is one");
+  app.footer(
+      "Examples:\n"
+      "  sandrunner-ctl mode stand\n"
+      "  sandrunner-ctl cmd 0.5 0 0 --for 3\n"
+      "  sandrunner-ctl watch rt/odom --count 1");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (cmd_vel != "twist" && cmd_vel != "twist_stamped") {
     throw InputError(

@@ -29,7 +29,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   std::string line = "on";
   CLI::App app{
       "Measures how well a policy runs, in simulation; compares two policies on the same starts, "
-      "commands and disturbances."};
+      "commands and disturbances.",
+      "sandrunner-evaluate"};
   app.option_defaults()->always_capture_default();
   app.add_option("--policy", o.policy_path, "policy file")->type_name("FILE")->required();
   app.add_option("--against", o.against_path, "second policy file, to compare with")
@@ -53,7 +54,11 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->always_capture_default(false);
   app.add_option("--torque-speed-line", line, "drives lose torque towards their no-load speed")
       ->type_name("on|off");
-  app.set_version_flag("--version", std::string("sandrunner-evaluate ") + SANDRUNNER_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  sandrunner-evaluate --policy mine.safetensors --out results\n"
+      "  sandrunner-evaluate --policy mine.safetensors --against theirs.safetensors --only "
+      "straight");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   check("--threads", o.threads, 1, 1024);
   check("--runs", o.study.runs, 1, 100000);

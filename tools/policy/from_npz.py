@@ -23,7 +23,11 @@ import sys
 import zipfile
 import zlib
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:
+    print("from_npz.py: needs numpy (Debian: python3-numpy)", file=sys.stderr)
+    sys.exit(2)
 
 SHAPES = {
     "encoder.weight_ih": (256, 30), "encoder.weight_hh": (256, 64),

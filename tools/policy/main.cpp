@@ -116,7 +116,6 @@ void print_info(const std::string& path) {
 
 int run(int argc, char** argv) {
   CLI::App app("Imports and describes the policy files of sandrunner.", "sandrunner-policy");
-  app.set_version_flag("--version", "sandrunner-policy " SANDRUNNER_VERSION);
   app.require_subcommand(1);
 
   std::string input;
@@ -125,8 +124,11 @@ int run(int argc, char** argv) {
   CLI::App* import_command = app.add_subcommand(
       "import", "turn published weights (bare safetensors) into a policy file for Raibo");
   import_command->add_option("IN", input, "weights in the layout of compliant-gym")->required();
-  import_command->add_option("--out", output, "policy file to write")->required();
-  import_command->add_option("--name", name, "name of the policy (default: that of IN)");
+  import_command->add_option("--out", output, "policy file to write")
+      ->type_name("FILE")
+      ->required();
+  import_command->add_option("--name", name, "name of the policy (default: that of IN)")
+      ->type_name("NAME");
 
   CommandEnvelope envelope;
   CLI::App* envelope_command = app.add_subcommand(
@@ -149,6 +151,10 @@ int run(int argc, char** argv) {
       app.add_subcommand("info", "check a policy file and print what it holds");
   info_command->add_option("FILE", path, "policy file")->required();
 
+  app.footer(
+      "Examples:\n"
+      "  sandrunner-policy info mine.safetensors\n"
+      "  sandrunner-policy import weights.safetensors --out mine.safetensors");
   if (!parse_command_line(app, argc, argv)) return kExitOk;
   if (*import_command) {
     if (name.empty()) name = std::filesystem::path(input).stem().string();

@@ -26,6 +26,7 @@
 #include "rt/run/process_config.h"
 #include "rt/run/scene.h"
 #include "rt/telemetry/recording/recording_file.h"
+#include "sim/robot/robot_model.h"
 
 namespace sandrunner {
 namespace {
@@ -41,9 +42,9 @@ std::optional<Arguments> parse(int argc, char** argv) {
   CLI::App app(
       "Replays a recording: computes every control and policy step again from the recorded inputs "
       "and compares the outputs bit by bit. Exit code 0: all agree; 1: the first difference is "
-      "printed.",
+      "printed, or there was nothing to compare; 2: the recording is damaged (what is whole is "
+      "compared all the same).",
       "sandrunner-replay");
-  app.set_version_flag("--version", "sandrunner-replay " SANDRUNNER_VERSION);
   app.add_option("FILE", a.file, "recording (run.mcap, black-box-TICK.mcap)")->required();
   app.add_option("--from", a.from_s, "first second that is compared and drawn")->type_name("S");
   app.add_option("--to", a.to_s, "last second")->type_name("S");
@@ -51,6 +52,11 @@ std::optional<Arguments> parse(int argc, char** argv) {
   app.add_option("--set", a.assignments, "what if: one setting otherwise; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
+  app.footer(
+      "Examples:\n"
+      "  sandrunner-replay results/run.mcap\n"
+      "  sandrunner-replay results/run.mcap --plot plots --from 2 --to 6\n"
+      "  sandrunner-replay results/run.mcap --set controller.walk.kp_nmprad=40");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (!(a.from_s >= 0.0) || !(a.to_s > a.from_s)) {
     throw InputError(fmt::format("--from {} --to {}: expected 0 <= from < to", a.from_s, a.to_s));
@@ -58,14 +64,31 @@ std::optional<Arguments> parse(int argc, char** argv) {
   return a;
 }
 
+// The robot of the recording itself, whatever files of its name there may be.
+sim::Robot recorded_robot(const RecordingInfo& info, const std::string& file) {
+  const auto require = [&](const std::string& data, const char* attachment) {
+    if (!data.empty()) return;
+    throw InputError(
+        fmt::format("{}: has no attachment '{}', so its robot is not known", file, attachment));
+  };
+  require(info.robot_map, kRobotMapAttachment);
+  require(info.robot.urdf, kRobotAttachment);
+  return sim::parse_robot(info.robot_map, fmt::format("{}: {}", file, kRobotMapAttachment),
+                          info.robot.urdf, fmt::format("{}: {}", file, kRobotAttachment));
+}
+
 // Everything that needs the recorded settings before the first tick.
 struct Player {
   Player(const RecordingInfo& info, const Arguments& arguments) {
     ConfigTree tree;
     tree.add_text(info.config, "the recording's settings");
+    const std::string robot_name = tree.text("robot", "");
     for (const std::string& assignment : arguments.assignments) tree.set(assignment);
     if (!info.policy.empty()) policy.emplace(load_policy_text(info.policy, "the recorded policy"));
-    config = read_process_config(tree, policy ? &policy->spec() : nullptr);
+    const sim::Robot robot = recorded_robot(info, arguments.file);
+    const bool another = tree.text("robot", "") != robot_name;  // by --set
+    config =
+        read_process_config(tree, policy ? &policy->spec() : nullptr, another ? nullptr : &robot);
     if (info.first_tick == 0 || !info.state.empty()) {
       replay.emplace(config.controller, start_mode_of(info), policy ? &*policy : nullptr);
       if (info.first_tick > 0) {
@@ -81,8 +104,24 @@ struct Player {
   ProcessConfig config;
   std::optional<Policy> policy;
   std::optional<Replay> replay;  ///< nothing: the recording has no state to start from
+  bool in_step = true;           ///< false: behind damage, until the next state
   std::unique_ptr<RunObserver> observer;
 };
+
+std::string seconds(std::uint64_t tick) {
+  return fmt::format("{:.5f} s", static_cast<double>(tick) * kControlPeriod_s);
+}
+
+void write_plots(Player& player, const std::string& folder) {
+  const RunRecord record = player.observer->take_record();
+  const std::string dir = folder + "/";
+  prepare_folder(folder, "--plot");
+  write_csv(record, dir + "run.csv");
+  draw_run_plot(record, dir + "run.png");
+  if (record.has_truth()) draw_run_strip(record, dir + "strip.png");
+  fmt::print("wrote {0}run.csv, {0}run.png{1}\n", dir,
+             record.has_truth() ? fmt::format(", {}strip.png", dir) : "");
+}
 
 int run(int argc, char** argv) {
   const std::optional<Arguments> arguments = parse(argc, argv);
@@ -90,8 +129,9 @@ int run(int argc, char** argv) {
   flush_denormals_to_zero();
   std::optional<Player> player;
   std::optional<ReplayDifference> difference;
-  std::uint64_t compared = 0;
-  const auto begin = [&](const RecordingInfo& info) {
+  std::uint64_t compared = 0, drawn = 0, last_tick = 0;
+  RecordingVisitor visitor;
+  visitor.begin = [&](const RecordingInfo& info) {
     player.emplace(info, *arguments);
     if (info.build != build_name()) {
       to_standard_error(
@@ -99,44 +139,59 @@ int run(int argc, char** argv) {
                       build_name()));
     }
   };
-  const auto tick = [&](const TickRecord& recorded) {
-    const double t_s = static_cast<double>(recorded.input.sensors.tick) * kControlPeriod_s;
+  visitor.tick = [&](const TickRecord& recorded) {
+    last_tick = recorded.input.sensors.tick;
+    const double t_s = static_cast<double>(last_tick) * kControlPeriod_s;
     if (t_s > arguments->to_s) return false;
+    const bool compares = player->replay && player->in_step;
     std::optional<ReplayDifference> found;
-    if (player->replay) found = player->replay->check(recorded);
+    if (compares) found = player->replay->check(recorded);
     if (t_s < arguments->from_s) return true;
-    ++compared;
+    compared += compares;
+    ++drawn;
     if (player->observer) player->observer->add(recorded);
     if (found && !difference) difference = std::move(found);
     // A picture wants the rest too.
     return (!difference && player->replay) || player->observer;
   };
-  const RecordingContents contents = read_recording(arguments->file, begin, tick);
+  visitor.lost = [&](std::uint64_t first, std::optional<std::uint64_t> last) {
+    player->in_step = false;
+    fmt::print("LOST by damage: tick {} ({}) to {}\n", first, seconds(first),
+               last ? fmt::format("{} ({})", *last, seconds(*last)) : "the end");
+  };
+  visitor.state = [&](const ReplayState& state) {
+    if (player->in_step || !player->replay) return;
+    player->replay->restore(state);
+    player->in_step = true;
+  };
+  const RecordingContents contents = read_recording(arguments->file, visitor);
 
-  if (player && player->observer) {
-    const RunRecord record = player->observer->take_record();
-    const std::string dir = arguments->plot_dir + "/";
-    prepare_folder(arguments->plot_dir, "--plot");
-    write_csv(record, dir + "run.csv");
-    draw_run_plot(record, dir + "run.png");
-    if (record.has_truth()) draw_run_strip(record, dir + "strip.png");
-    fmt::print("wrote {0}run.csv, {0}run.png{1}\n", dir,
-               record.has_truth() ? fmt::format(", {}strip.png", dir) : "");
+  if (player->observer && drawn > 0) write_plots(*player, arguments->plot_dir);
+  if (!contents.complete && contents.damage.empty()) {
+    fmt::print("the recording was cut: it is read up to its last chunk\n");
   }
-  if (!contents.complete) fmt::print("the recording was cut: it is read up to its last chunk\n");
-  if (player && !player->replay) {
+  if (!player->replay) {
     throw InputError(fmt::format(
         "{}: begins at tick {} without the state of controller and network there, because ticks "
         "before it were lost: it cannot be replayed",
         arguments->file, contents.info.first_tick));
   }
   if (difference) {
-    fmt::print("DIFFERS at tick {} ({:.5f} s): {}\n", difference->tick,
-               static_cast<double>(difference->tick) * kControlPeriod_s, difference->what);
+    fmt::print("DIFFERS at tick {} ({}): {}\n", difference->tick, seconds(difference->tick),
+               difference->what);
     return kExitRobotFailed;
   }
-  fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared,
-             player ? player->replay->policy_steps() : 0);
+  if (compared == 0) {
+    fmt::print("NOTHING COMPARED: the recording has {}\n",
+               contents.ticks == 0 ? "no ticks"
+                                   : fmt::format("none to compare in this range, it ends at {}",
+                                                 seconds(last_tick)));
+    if (contents.damage.empty()) return kExitRobotFailed;
+  } else {
+    fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared,
+               player->replay->policy_steps());
+  }
+  if (!contents.damage.empty()) throw InputError(contents.damage);
   return kExitOk;
 }
 

@@ -28,7 +28,8 @@ int run(int argc, char** argv) {
   std::string config_file, robot_file;
   std::vector<std::string> assignments;
   bool resume = false;
-  CLI::App app{"Trains a policy from random weights on randomised deformable ground."};
+  CLI::App app{"Trains a policy from random weights on randomised deformable ground.",
+               "sandrunner-train"};
   app.add_option("--out", options.out,
                  "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png")
       ->required()
@@ -44,11 +45,16 @@ int run(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "worker threads; the weights do not depend on them")
       ->check(CLI::Range(1, 256))
+      ->type_name("N")
       ->capture_default_str();
   app.add_option("--seed", options.seed, "seed of the weights and environments")
+      ->type_name("N")
       ->capture_default_str();
   app.add_flag("--resume", resume, "continue from the checkpoint in --out");
-  app.set_version_flag("--version", std::string("sandrunner-train ") + SANDRUNNER_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  sandrunner-train --out runs/a --seed 2\n"
+      "  sandrunner-train --out runs/a --resume");
   if (!parse_command_line(app, argc, argv)) return kExitOk;
   ConfigTree tree;
   tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");

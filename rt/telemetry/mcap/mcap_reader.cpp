@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 
 namespace sandrunner {
 namespace {
@@ -37,6 +38,23 @@ bool is_skipped(std::uint8_t opcode) {
   return opcode == kMcapMessageIndex || opcode == kMcapChunkIndex ||
          opcode == kMcapAttachmentIndex || opcode == kMcapStatistics ||
          opcode == kMcapMetadataIndex || opcode == kMcapSummaryOffset || opcode > kMcapDataEnd;
+}
+
+/// A zstd chunk's record up to its compressed bytes: type, length, time span (16 bytes), size, CRC
+/// (4), "zstd" and the length of what follows (8).
+constexpr std::size_t kChunkHeadBytes = kMcapRecordHeadBytes + 16 + 8 + 4 + (4 + 4) + 8;
+
+/// Whether these bytes can be such a head: its two lengths fit each other.
+bool is_chunk_head(std::span<const std::byte> bytes) {
+  constexpr std::array<std::byte, 8> kZstd = {std::byte{4},   std::byte{0},   std::byte{0},
+                                              std::byte{0},   std::byte{'z'}, std::byte{'s'},
+                                              std::byte{'t'}, std::byte{'d'}};
+  if (static_cast<std::uint8_t>(bytes[0]) != kMcapChunk) return false;
+  if (std::memcmp(&bytes[kMcapRecordHeadBytes + 28], kZstd.data(), kZstd.size()) != 0) return false;
+  std::uint64_t length = 0, stored = 0;
+  std::memcpy(&length, &bytes[1], sizeof length);
+  std::memcpy(&stored, &bytes[kChunkHeadBytes - sizeof stored], sizeof stored);
+  return length <= kMaxRecordBytes && length == kChunkHeadBytes - kMcapRecordHeadBytes + stored;
 }
 
 }  // namespace
@@ -91,6 +109,7 @@ class McapReader::Fields {
 };
 
 McapReader::McapReader(const std::string& path) : stream_(file_), name_(path) {
+  require_regular_file(path, "an MCAP file");
   errno = 0;
   file_.open(path, std::ios::binary);
   if (!file_) {
@@ -121,6 +140,31 @@ const McapMessage* McapReader::next() {
     if (chunk_at_ < chunk_.size() ? take_from_chunk() : take_from_file()) return &message_;
   }
   return nullptr;
+}
+
+bool McapReader::skip_damage() {
+  if (summary_start_ != 0) return false;
+  stream_.clear();
+  // Pieces overlap by the head of a chunk less one byte, so that none is missed between two.
+  constexpr std::size_t kOverlap = kChunkHeadBytes - 1;
+  Bytes piece(kOverlap + kPieceBytes);
+  std::uint64_t begin = record_offset_ + 1;
+  while (true) {
+    stream_.seekg(static_cast<std::streamoff>(begin));
+    stream_.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+    const auto got = static_cast<std::size_t>(stream_.gcount());
+    stream_.clear();
+    if (got < kChunkHeadBytes) return false;
+    for (std::size_t at = 0; at + kChunkHeadBytes <= got; ++at) {
+      if (!is_chunk_head(std::span(piece).subspan(at, kChunkHeadBytes))) continue;
+      offset_ = begin + at;
+      stream_.seekg(static_cast<std::streamoff>(offset_));
+      ended_ = false;
+      damaged_ = true;
+      return true;
+    }
+    begin += got - kOverlap;
+  }
 }
 
 /// Fills `to` from the file; false at its end.
@@ -343,7 +387,8 @@ void McapReader::take_metadata(Fields fields) {
 }
 
 void McapReader::take_data_end(Fields fields, std::uint32_t data_crc) {
-  check_crc("data section", data_crc, fields.number<std::uint32_t>());
+  // What was skipped is missing in it.
+  check_crc("data section", data_crc, damaged_ ? 0 : fields.number<std::uint32_t>());
   summary_start_ = offset_;
   crc_ = 0;
 }

@@ -41,6 +41,11 @@ class McapReader {
   /// Throws InputError; calls after that return nullptr.
   const McapMessage* next();
 
+  /// After an InputError of `next`, or at the end of a file that is not complete: goes on behind
+  /// the damage, with the next chunk whose head is in order. False if there is none, or the damage
+  /// is behind the data; then all stays as it is.
+  bool skip_damage();
+
   /// After the end: whether the file is whole, not truncated.
   bool complete() const noexcept { return complete_; }
 
@@ -84,6 +89,7 @@ class McapReader {
   std::uint64_t summary_start_ = 0;  ///< 0: before it
   bool ended_ = false;
   bool complete_ = false;
+  bool damaged_ = false;  ///< some was skipped
 
   Bytes record_;              ///< body of the current record
   Bytes chunk_;               ///< current chunk, uncompressed

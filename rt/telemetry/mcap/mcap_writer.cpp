@@ -157,7 +157,7 @@ std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view enc
     put(record, data);
   });
   put_bytes(schema_records_, record.data(), record.size());
-  append_to_chunk(record);
+  write_declaration(record);
   return id;
 }
 
@@ -183,14 +183,12 @@ std::uint16_t McapWriter::add_channel(std::uint16_t schema_id, std::string_view 
     put(record, metadata);
   });
   put_bytes(channel_records_, record.data(), record.size());
-  append_to_chunk(record);
+  write_declaration(record);
   return id;
 }
 
-void McapWriter::append_to_chunk(const Bytes& record) {
-  if (fd_ < 0) return;
-  put_bytes(chunk_, record.data(), record.size());
-  if (chunk_.size() >= kChunkBytes) flush();
+void McapWriter::write_declaration(const Bytes& record) {
+  if (fd_ >= 0) write_out(record);
 }
 
 void McapWriter::write_message(const McapMessage& message) {

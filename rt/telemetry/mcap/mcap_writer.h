@@ -17,6 +17,8 @@ namespace sandrunner {
 /// attachments, metadata, and at the end a summary to seek by. For one ordinary thread: it
 /// allocates, compresses and writes.
 ///
+/// Schemas and channels stand outside of the chunks, so that no damaged chunk takes them along.
+///
 /// What was handed over is in the file (in the hands of the kernel) after `flush()`, after about
 /// 1 MiB of messages, and after each attachment and metadata record. If the process is killed after
 /// that, it is not lost: such a truncated file is read up to its last whole chunk.
@@ -81,7 +83,7 @@ class McapWriter {
     void operator()(void* context) const noexcept;
   };
 
-  void append_to_chunk(const Bytes& record);
+  void write_declaration(const Bytes& record);
   void write_out(std::span<const std::byte> bytes);
   void give_up() noexcept;
 

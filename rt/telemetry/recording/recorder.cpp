@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "rt/core/floating_point.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
 
 namespace sandrunner {
@@ -14,11 +15,13 @@ constexpr std::size_t kQueuedBatches = 200;  // two seconds
 }  // namespace
 
 Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits,
-                   bool wait)
+                   bool wait, const ControllerConfig* config, const Policy* policy)
     : path_(path),
       limits_(limits),
       info_(std::move(info)),
-      queue_(kBatchTicks, kQueuedBatches, wait) {
+      queue_(kBatchTicks, kQueuedBatches, wait),
+      policy_(policy ? std::optional<Policy>(*policy) : std::nullopt) {
+  if (config) replay_.emplace(*config, start_mode_of(info_), policy_ ? &*policy_ : nullptr);
   McapWriter::try_path(path_);
   thread_ = std::thread([this] { work(); });
 }
@@ -36,35 +39,48 @@ RecordingResult Recorder::close() {
 }
 
 void Recorder::work() {
+  flush_denormals_to_zero();  // as where the ticks came from
   while (const std::optional<TickQueue::Batch> batch = queue_.take()) {
     if (stopped_) continue;
     try {
       write(*batch);
     } catch (const std::exception& error) {  // also a lack of memory: the run itself goes on
-      stop(error.what());
+      stop(error.what(), true);
     }
   }
   try {
     if (writer_) writer_->close();
   } catch (const std::exception& error) {
-    stop(error.what());
+    stop(error.what(), true);
   }
 }
 
 void Recorder::write(const TickQueue::Batch& batch) {
   if (!writer_) writer_.emplace(path_, info_);
+  if (replay_ && writer_->bytes_written() != bytes_at_state_) write_state();
   writer_->write(batch);
+  for (const TickRecord& tick : batch) {
+    if (replay_ && replay_->check(tick)) replay_.reset();
+  }
   result_.ticks += batch.size();
-  if (writer_->bytes_written() > limits_.bytes) stop("its size reached the limit");
+  if (writer_->bytes_written() > limits_.bytes) stop("its size reached the limit", false);
   const std::uint64_t first = batch.front().input.sensors.tick;
   if (static_cast<double>(first) * kControlPeriod_s > limits_.time_s) {
-    stop("its duration reached the limit");
+    stop("its duration reached the limit", false);
   }
 }
 
-void Recorder::stop(const std::string& reason) {
+// The first message of ticks in a chunk comes behind it: bytes are written when a chunk ends.
+void Recorder::write_state() {
+  const ReplayState state = replay_->state();
+  writer_->write_state(state.next_tick, replay_state_bytes(state));
+  bytes_at_state_ = writer_->bytes_written();
+}
+
+void Recorder::stop(const std::string& reason, bool failed) {
   if (stopped_) return;
   stopped_ = true;
+  result_.failed = failed;
   result_.stopped_because = reason;
   try {
     if (writer_) writer_->close();

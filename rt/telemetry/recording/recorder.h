@@ -6,6 +6,9 @@
 #include <string>
 #include <thread>
 
+#include "policy/policy.h"
+#include "rt/core/controller.h"
+#include "rt/loop/replay.h"
 #include "rt/telemetry/recording/recording_writer.h"
 #include "rt/telemetry/recording/tick_queue.h"
 
@@ -22,9 +25,13 @@ struct RecordingResult {
   std::uint64_t dropped = 0;  ///< ticks that came faster than they could be written
   std::uint64_t bytes = 0;
   std::string stopped_because;  ///< a limit or a full disk; empty: the recording is complete
+  bool failed = false;          ///< it was the disk or a lack of memory, not a limit
 };
 
 /// Writes every tick of a run into a file (recording_writer.h) in a thread of its own.
+///
+/// Given the controller's settings, it runs a replay beside the run, and each chunk of the file
+/// begins with the state from which it can be replayed: a damaged chunk costs no other.
 ///
 /// A disk that fills up, a limit or a lack of memory ends the recording, not the run. A process
 /// that is killed loses at most the last second. The file is created with the first tick: a run
@@ -32,8 +39,10 @@ struct RecordingResult {
 class Recorder {
  public:
   /// `wait`: while the queue is full, add() waits (in lockstep, where that hurts nobody) instead of
-  /// dropping and counting the newest ticks. Throws InputError if the file cannot be written.
-  Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits, bool wait);
+  /// dropping and counting the newest ticks. `policy` is copied; null if the run has none. Throws
+  /// InputError if the file cannot be written.
+  Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits, bool wait,
+           const ControllerConfig* config = nullptr, const Policy* policy = nullptr);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -49,14 +58,18 @@ class Recorder {
  private:
   void work();
   void write(const TickQueue::Batch& batch);
-  void stop(const std::string& reason);
+  void write_state();
+  void stop(const std::string& reason, bool failed);
 
   const std::string path_;
   const RecordingLimits limits_;
   RecordingInfo info_;  // from the first tick on, only the thread that writes uses it
   TickQueue queue_;
   // Only the thread that writes uses what follows.
+  std::optional<Policy> policy_;
+  std::optional<Replay> replay_;  // before the next tick; nothing once ticks are missing
   std::optional<RecordingWriter> writer_;
+  std::uint64_t bytes_at_state_ = 0;  // of the file, when the last state was written
   bool stopped_ = false;
   RecordingResult result_;
   std::thread thread_;

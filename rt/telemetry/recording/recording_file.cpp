@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <charconv>
 #include <cstring>
+#include <set>
+#include <utility>
 
 #include "rt/base/errors.h"
 #include "rt/loop/tick_fields.h"
@@ -14,83 +16,181 @@
 namespace sandrunner {
 namespace {
 
-RecordingInfo info_of(const std::string& path, const McapReader& reader) {
-  RecordingInfo info;
-  const McapMetadata* run = nullptr;
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw InputError(fmt::format("{}: {}", path, what));
+}
+
+const McapMetadata& run_metadata(const std::string& path, const McapReader& reader) {
   for (const McapMetadata& metadata : reader.metadata()) {
-    if (metadata.name == kRunMetadata) run = &metadata;
+    if (metadata.name == kRunMetadata) return metadata;
   }
-  if (!run)
-    throw InputError(fmt::format("{}: found no metadata '{}', expected one of our recordings", path,
-                                 kRunMetadata));
-  const auto value = [&](const char* key) {
-    const auto found = run->values.find(key);
-    if (found == run->values.end()) {
-      throw InputError(fmt::format("{}: metadata '{}' lacks '{}'", path, kRunMetadata, key));
+  fail(path, fmt::format("found no metadata '{}', expected one of our recordings", kRunMetadata));
+}
+
+RecordingInfo info_of(const std::string& path, const McapReader& reader) {
+  const McapMetadata& run = run_metadata(path, reader);
+  const auto text = [&](const char* key) {
+    const auto found = run.values.find(key);
+    if (found == run.values.end()) {
+      fail(path, fmt::format("metadata '{}' lacks '{}'", kRunMetadata, key));
     }
     return found->second;
   };
-  info.build = value("build");
-  info.start_mode = value("start_mode");
-  info.clock = value("clock");
-  info.start_time_ns = std::strtoll(value("start_time_ns").c_str(), nullptr, 10);
-  // Recordings from before there were black boxes all begin at tick 0.
-  if (const auto first = run->values.find("first_tick"); first != run->values.end()) {
-    info.first_tick = std::strtoull(first->second.c_str(), nullptr, 10);
-  }
+  const auto one_of = [&](const char* key, const char* a, const char* b) {
+    const std::string value = text(key);
+    if (value != a && value != b) {
+      fail(path, fmt::format("metadata '{}': {} is '{}', expected {} or {}", kRunMetadata, key,
+                             value, a, b));
+    }
+    return value;
+  };
+  const auto number = [&](const char* key, auto& value) {
+    const std::string digits = text(key);
+    const char* const end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, value);
+    if (error != std::errc() || stop != end) {
+      fail(path, fmt::format("metadata '{}': {} is '{}', expected a whole number", kRunMetadata,
+                             key, digits));
+    }
+  };
+  RecordingInfo info;
+  info.build = text("build");
+  info.start_mode = one_of("start_mode", "passive", "walk");
+  info.clock = one_of("clock", "lockstep", "realtime");
+  number("start_time_ns", info.start_time_ns);
+  number("first_tick", info.first_tick);
+
+  std::set<std::string> names;
   for (const McapAttachment& attachment : reader.attachments()) {
+    if (!names.insert(attachment.name).second) {
+      fail(path, fmt::format("found the attachment '{}' twice", attachment.name));
+    }
     if (attachment.name == kConfigAttachment) info.config = attachment.data;
     if (attachment.name == kPolicyAttachment) info.policy = attachment.data;
+    if (attachment.name == kRobotMapAttachment) info.robot_map = attachment.data;
     if (attachment.name == kRobotAttachment) info.robot.urdf = attachment.data;
     if (attachment.name == kStateAttachment) info.state = attachment.data;
   }
   return info;
 }
 
-}  // namespace
+// Goes through the messages of a recording and hands on what they hold.
+class RecordingReader {
+ public:
+  RecordingReader(const std::string& path, const RecordingVisitor& visitor)
+      : path_(path), visitor_(visitor), reader_(path) {}
 
-RecordingContents read_recording(const std::string& path,
-                                 const std::function<void(const RecordingInfo&)>& begin,
-                                 const std::function<bool(const TickRecord&)>& tick) {
-  McapReader reader(path);
-  RecordingContents contents;
-  bool begun = false, wanted = true;
-  std::uint64_t last_batch = 0;
-  const auto start = [&] {
-    begun = true;
-    contents.info = info_of(path, reader);
-    if (begin) begin(contents.info);
-  };
-  while (const McapMessage* message = reader.next()) {
-    const McapChannel& channel = reader.channels().at(message->channel_id);
-    const bool is_ticks = channel.topic == kTicksTopic;
-    if (is_ticks && reader.schemas().at(channel.schema_id).data != tick_idl()) {
-      throw InputError(
-          fmt::format("{}: found ticks in the layout of build '{}', expected this build's", path,
-                      info_of(path, reader).build));
+  RecordingContents read() {
+    while (wanted_) {
+      if (const McapMessage* message = next()) {
+        take(*message);
+      } else if (!lost_ || !reader_.skip_damage()) {
+        break;
+      }
     }
-    if (!begun) start();
-    if (!is_ticks) continue;
-    CdrReader cdr(message->data);
+    if (!begun_) begin();
+    contents_.complete = !wanted_ || reader_.complete();
+    if (lost_ && wanted_ && visitor_.lost) visitor_.lost(next_tick_, std::nullopt);
+    return std::move(contents_);
+  }
+
+ private:
+  /// The next message; null at the end, and at damage, which is noted.
+  const McapMessage* next() {
+    try {
+      const McapMessage* const message = reader_.next();
+      // A cut file has no chunk behind its end; one in which a length is wrong has.
+      if (!message && begun_ && !reader_.complete() && reader_.skip_damage()) {
+        note_damage(fmt::format("{}: found a record that is longer than the file", path_));
+        return next();
+      }
+      return message;
+    } catch (const InputError& error) {
+      if (!begun_) throw;
+      note_damage(error.what());
+      return nullptr;
+    }
+  }
+
+  void note_damage(const std::string& what) {
+    if (contents_.damage.empty()) contents_.damage = what;
+    lost_ = true;
+  }
+
+  void begin() {
+    contents_.info = info_of(path_, reader_);
+    begun_ = true;
+    next_tick_ = contents_.info.first_tick;
+    if (visitor_.begin) visitor_.begin(contents_.info);
+  }
+
+  void take(const McapMessage& message) {
+    const McapChannel& channel = reader_.channels().at(message.channel_id);
+    const bool is_ticks = channel.topic == kTicksTopic;
+    if (is_ticks) check_layout(channel);
+    if (!begun_) begin();
+    CdrReader cdr(message.data);
+    if (is_ticks) take_ticks(cdr);
+    if (channel.topic == kStatesTopic && visitor_.state) take_state(cdr);
+  }
+
+  void check_layout(const McapChannel& channel) const {
+    const auto schema = reader_.schemas().find(channel.schema_id);
+    if (schema == reader_.schemas().end()) {
+      fail(path_, fmt::format("the channel of {} has no schema", kTicksTopic));
+    }
+    if (schema->second.data == tick_idl()) return;
+    fail(path_, fmt::format("found ticks in the layout of build '{}', expected this build's",
+                            info_of(path_, reader_).build));
+  }
+
+  void take_ticks(CdrReader& cdr) {
     const auto batch = cdr.number<std::uint64_t>();
     const auto count = cdr.number<std::uint32_t>();
     const std::span<const std::byte> bytes = cdr.block(count * sizeof(TickRecord), 8);
-    if (cdr.failed() || cdr.left() != 0 || batch != last_batch + 1) {
-      throw InputError(
-          fmt::format("{}: batch {} of ticks is damaged or missing", path, last_batch + 1));
+    if (cdr.failed() || cdr.left() != 0 || batch <= last_batch_) {
+      fail(path_, fmt::format("batch {} of ticks is damaged", last_batch_ + 1));
     }
-    last_batch = batch;
-    for (std::uint32_t i = 0; i < count && wanted; ++i) {
+    if (batch != last_batch_ + 1 && !lost_) {
+      note_damage(fmt::format("{}: batch {} of ticks is missing", path_, last_batch_ + 1));
+    }
+    last_batch_ = batch;
+    for (std::uint32_t i = 0; i < count && wanted_; ++i) {
       TickRecord record;
       std::memcpy(&record, bytes.data() + i * sizeof record, sizeof record);
-      ++contents.ticks;
-      wanted = tick(record);
+      const std::uint64_t tick = record.input.sensors.tick;
+      // Not every damage costs ticks.
+      if (std::exchange(lost_, false) && tick > next_tick_ && visitor_.lost) {
+        visitor_.lost(next_tick_, tick - 1);
+      }
+      if (state_ && visitor_.state) visitor_.state(*state_);
+      state_.reset();
+      next_tick_ = tick + 1;
+      ++contents_.ticks;
+      wanted_ = !visitor_.tick || visitor_.tick(record);
     }
-    if (!wanted) return contents.complete = true, contents;
   }
-  if (!begun) start();
-  contents.complete = reader.complete();
-  return contents;
+
+  void take_state(CdrReader& cdr) {
+    const std::span<const std::byte> bytes = cdr.block(cdr.number<std::uint32_t>(), 1);
+    state_.emplace(read_replay_state({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                                     fmt::format("{}: a state behind tick {}", path_, next_tick_)));
+  }
+
+  const std::string& path_;
+  const RecordingVisitor& visitor_;
+  McapReader reader_;
+  RecordingContents contents_;
+  bool begun_ = false, wanted_ = true;
+  bool lost_ = false;                 ///< damage since the last tick
+  std::optional<ReplayState> state_;  ///< before the next tick; told behind what was lost
+  std::uint64_t last_batch_ = 0, next_tick_ = 0;
+};
+
+}  // namespace
+
+RecordingContents read_recording(const std::string& path, const RecordingVisitor& visitor) {
+  return RecordingReader(path, visitor).read();
 }
 
 }  // namespace sandrunner

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "rt/loop/replay.h"
 #include "rt/telemetry/recording/recording_writer.h"
 
 namespace sandrunner {
@@ -12,14 +14,22 @@ namespace sandrunner {
 struct RecordingContents {
   RecordingInfo info;
   bool complete = false;  ///< false: truncated, and read up to its last whole chunk
+  std::string damage;     ///< the first that was found, one line; empty: none
   std::uint64_t ticks = 0;
 };
 
-/// Reads a recording from its start. `tick` is called for each tick, in order, until it returns
-/// false; `begin`, if given, once before the first. Throws InputError if the file is not one of our
-/// recordings or is damaged.
-RecordingContents read_recording(const std::string& path,
-                                 const std::function<void(const RecordingInfo&)>& begin,
-                                 const std::function<bool(const TickRecord&)>& tick);
+/// What takes the content of a recording, in order; each may be empty.
+struct RecordingVisitor {
+  std::function<void(const RecordingInfo&)> begin;  ///< once, before everything else
+  std::function<bool(const TickRecord&)> tick;      ///< false: enough
+  /// Damage cost the ticks from the first to the second; nothing in its place: all to the end.
+  std::function<void(std::uint64_t, std::optional<std::uint64_t>)> lost;
+  std::function<void(const ReplayState&)> state;  ///< before the tick that follows
+};
+
+/// Reads a recording from its start. Damage behind the beginning costs the ticks of its chunk: it
+/// is noted, and reading goes on with the next one. Throws InputError if the file is not one of our
+/// recordings, or its beginning is damaged.
+RecordingContents read_recording(const std::string& path, const RecordingVisitor& visitor);
 
 }  // namespace sandrunner

@@ -14,6 +14,8 @@ namespace sandrunner {
 namespace {
 
 constexpr std::size_t kBatchTicks = 40;  // in a message
+constexpr const char* kStateIdl =
+    "module sandrunner {\n  struct ReplayState {\n    sequence<octet> bytes;\n  };\n};\n";
 constexpr const char* kEventIdl =
     "module sandrunner {\n  struct Event {\n    unsigned long long tick;\n    string kind;\n"
     "    string text;\n  };\n};\n";
@@ -65,12 +67,14 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
   };
   attach(kConfigAttachment, "application/toml", info.config);
   attach(kPolicyAttachment, "application/octet-stream", info.policy);
+  attach(kRobotMapAttachment, "application/toml", info.robot_map);
   attach(kRobotAttachment, "application/xml", info.robot.urdf);
   attach(kStateAttachment, "application/octet-stream", info.state);
   const auto own = [&](const char* topic, const char* name, const std::string& idl) {
     return file_.add_channel(file_.add_schema(name, "omgidl", idl), topic, "cdr", qos());
   };
   channels_.ticks = own(kTicksTopic, "sandrunner::TickRecordBatch", tick_idl());
+  channels_.states = own(kStatesTopic, "sandrunner::ReplayState", kStateIdl);
   channels_.events = own(kEventsTopic, "sandrunner::Event", kEventIdl);
   const auto ros = [&](const RosTopic& topic) {
     return file_.add_channel(file_.add_schema(topic.schema, "ros2msg", topic.text), topic.topic,
@@ -88,6 +92,17 @@ void RecordingWriter::write(std::span<const TickRecord> ticks) {
     write_batch(ticks.first(count));
     ticks = ticks.subspan(count);
   }
+}
+
+void RecordingWriter::write_state(std::uint64_t next_tick, const std::string& state) {
+  CdrWriter cdr;
+  cdr.number(static_cast<std::uint32_t>(state.size()));
+  cdr.block(std::as_bytes(std::span(state)), 1);
+  file_.write_message({.channel_id = channels_.states,
+                       .sequence = static_cast<std::uint32_t>(++states_),
+                       .log_time_ns = time_ns(next_tick),
+                       .publish_time_ns = time_ns(next_tick),
+                       .data = cdr.bytes()});
 }
 
 void RecordingWriter::write_batch(std::span<const TickRecord> batch) {

@@ -19,6 +19,7 @@ struct RecordingInfo {
   std::string clock;               ///< "lockstep" or "realtime"
   std::string config;              ///< the settings in effect, TOML
   std::string policy;              ///< the whole policy file; empty: none
+  std::string robot_map;           ///< the robot's map (sim/robot/README.md)
   RobotDescription robot;          ///< of a recording that was read, only the URDF
   std::int64_t start_time_ns = 0;  ///< wall clock at tick 0, since 1970
   /// Where the recording begins: at 0, the start of the run, or later. Then it is replayed from
@@ -42,6 +43,9 @@ class RecordingWriter {
   /// The next ticks, in order. Throws InputError once if the disk is full; what was written until
   /// then is readable. If the process is killed later, at most the last half second is lost.
   void write(std::span<const TickRecord> ticks);
+  /// The state before the next tick (replay_state_bytes()), from which a replay can go on if what
+  /// is before it in the file was lost.
+  void write_state(std::uint64_t next_tick, const std::string& state);
   /// Finishes the file. Throws InputError.
   void close() { file_.close(); }
 
@@ -56,19 +60,22 @@ class RecordingWriter {
   const RobotDescription robot_;
   McapWriter file_;
   struct Channels {
-    std::uint16_t ticks = 0, events = 0, joint_states = 0, imu = 0, odometry = 0, transforms = 0;
+    std::uint16_t ticks = 0, states = 0, events = 0, joint_states = 0, imu = 0, odometry = 0,
+                  transforms = 0;
   } channels_;
   Odometry odometry_;
-  std::uint64_t batches_ = 0, events_ = 0, last_flush_tick_ = 0;
+  std::uint64_t batches_ = 0, states_ = 0, events_ = 0, last_flush_tick_ = 0;
   bool in_the_middle_, has_last_ = false;
   std::uint64_t last_mode_ = 0, last_faults_ = 0, last_request_ = 0;
 };
 
 inline constexpr const char* kTicksTopic = "/sandrunner/ticks";
+inline constexpr const char* kStatesTopic = "/sandrunner/states";
 inline constexpr const char* kEventsTopic = "/sandrunner/events";
 /// Attachments and metadata of a recording.
 inline constexpr const char* kConfigAttachment = "config.toml";
 inline constexpr const char* kPolicyAttachment = "policy.safetensors";
+inline constexpr const char* kRobotMapAttachment = "robot.toml";
 inline constexpr const char* kRobotAttachment = "robot.urdf";
 inline constexpr const char* kStateAttachment = "state.bin";
 inline constexpr const char* kRunMetadata = "run";

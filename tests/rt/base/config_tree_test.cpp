@@ -288,5 +288,41 @@ TEST(ConfigTreeTest, FilesThatCannotBeUsedAreNamedWithTheLine) {
   EXPECT_EQ(error_of([&] { config.add_file(folder); }).find(folder.string()), 0U);
 }
 
+TEST(ConfigTreeTest, KeysOfTooManyPartsAreRefused) {
+  std::string key = "a";
+  for (int i = 1; i < 40'000; ++i) key += ".a";
+  const std::string cause = "a key has more than 32 parts";
+  EXPECT_EQ(error_of([&] { from("b = 1\n" + key + " = 1\n"); }), "a.toml:2: " + cause);
+  EXPECT_EQ(error_of([&] { from("[" + key + "]\n"); }), "a.toml:1: " + cause);
+  EXPECT_EQ(error_of([&] { from("t = {b = 1, " + key + " = 1}"); }), "a.toml:1: " + cause);
+  EXPECT_EQ(error_of([&] { from("s = \"\"\"\n\"\"\"\n'x'." + key + " = 1"); }),
+            "a.toml:3: " + cause);
+  EXPECT_NE(error_of([&] { ConfigTree().set(key + "=1"); }).find(cause), std::string::npos);
+}
+
+TEST(ConfigTreeTest, ValuesNestedTooDeepAreRefused) {
+  const std::string cause = "values are nested more than 32 deep";
+  EXPECT_EQ(error_of([&] { from("a = [1]\nb = " + std::string(33, '[')); }), "a.toml:2: " + cause);
+  std::string tables;
+  for (int i = 0; i < 33; ++i) tables += "{a = ";
+  EXPECT_EQ(error_of([&] { from("b = " + tables); }), "a.toml:1: " + cause);
+  from("b = " + std::string(32, '[') + std::string(32, ']'));
+}
+
+TEST(ConfigTreeTest, DotsThatJoinNoKeysAreNotCounted) {
+  const std::string dots(100, '.');
+  ConfigTree config = from("# " + dots + "\ns = \"\\\"" + dots + "\"\nl = '" + dots +
+                           "'\nt = \"\"\"\n\"" + dots + "\"\"\"\nv = [" +
+                           [] {
+                             std::string numbers;
+                             for (int i = 0; i < 100; ++i) numbers += "1.5, ";
+                             return numbers;
+                           }() +
+                           "]\n");
+  EXPECT_EQ(config.text("s", ""), "\"" + dots);
+  EXPECT_EQ(config.text("l", ""), dots);
+  EXPECT_EQ(config.numbers("v", {}, 100, 0.0, 2.0).size(), 100u);
+}
+
 }  // namespace
 }  // namespace sandrunner

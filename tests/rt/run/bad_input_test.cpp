@@ -44,6 +44,25 @@ TEST_F(BadInputTest, OptionsAreRefusedBeforeAnyWork) {
   expect_refused("--seed x", "x");
 }
 
+TEST_F(BadInputTest, EmptyValuesAreRefused) {
+  for (const char* option : {"--policy", "--robot", "--terrain", "--command", "--dds-security",
+                             "--config", "--set", "--record", "--seed"}) {
+    expect_refused(std::string(option) + " ''", std::string(option) + ": found an empty value");
+  }
+  ProgramTest::expect_refused("--out ''", "--out: found an empty value");
+  for (const char* option : {"--duration", "--start", "--clock"}) {
+    expect_refused(std::string(option) + " ''", option);
+  }
+}
+
+TEST_F(BadInputTest, WhatWasProbablyMeantIsSaid) {
+  expect_refused("--terain rigid", "'--terain', did you mean '--terrain'?");
+  expect_refused("--dds_security=x", "did you mean '--dds-security'?");
+  expect_refused("rt-rpeort", "did you mean 'rt-report'?");
+  expect_refused("--terrain dry-snad", "did you mean 'dry-sand'?");
+  expect_refused("--set controller.walk.kp=3", "did you mean 'controller.walk.kp_nmprad'?");
+}
+
 TEST_F(BadInputTest, SeedsOutOfRangeAreRefused) {
   expect_refused("--seed -1", "-1");
   expect_refused("--seed 99999999999999999999", "99999999999999999999");
@@ -81,14 +100,16 @@ TEST_F(BadInputTest, SettingsAreRefusedWithTheirKey) {
   expect_refused("--set sim.sensor_delay_ticks=0.5", "found 0.5");
   expect_refused("--config absent.toml", "absent.toml: cannot be read");
   expect_refused("--config .", "cannot be read");
+  expect_refused("--config /dev/zero", "/dev/zero: cannot be read (not a regular file)");
   write("unknown.toml", "[controller]\nspeed = 1\n");
   expect_refused("--config unknown.toml", "unknown.toml:2: unknown key 'controller.speed'");
 }
 
 TEST_F(BadInputTest, DamagedPoliciesAreRefused) {
   const std::string bytes = read_file(folder_.path("good"));
-  expect_refused("--policy absent", "'absent': no such file");
-  expect_refused("--policy .", "'.': not a regular file");
+  expect_refused("--policy absent",
+                 "absent: cannot be read (No such file or directory), expected a policy file");
+  expect_refused("--policy .", ".: cannot be read (not a regular file)");
   for (const std::size_t size : {0u, 7u, 1000u, 300000u}) {
     write("truncated", bytes.substr(0, size));
     expect_refused("--policy truncated", "'truncated': ");
@@ -136,6 +157,8 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
   expect_refused("--robot map.toml", "map.toml:65: unknown key 'wheels.radius_m'");
   expect_refused("--robot absent.toml", "absent.toml: cannot be read");
+  expect_refused("--robot /dev/null",
+                 "/dev/null: cannot be read (not a regular file), expected the map of a robot");
   write("map.toml", map.substr(0, map.find("[gains]")));
   expect_refused("--robot map.toml", "map.toml: 'gains.stand_kp_nmprad' is missing");
   expect_refused("--robot " + write_small_robot(folder_),

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "policy/policy_file.h"
+#include "rt/base/build.h"
 #include "sim/robot/robot_model.h"
 #include "tests/policy/random_policy.h"
 #include "tests/support/program_test.h"
@@ -54,6 +55,18 @@ TEST_F(CommandLineTest, HelpNamesEveryOption) {
   }
 }
 
+TEST_F(CommandLineTest, HelpSpeaksToPeople) {
+  run("--help");
+  for (const char* marker : {"TEXT", "FLOAT", "UINT", "REQUIRED", "[]", "{"}) {
+    EXPECT_EQ(output().find(marker), std::string::npos) << marker << "\n" << output();
+  }
+  EXPECT_NE(output().find("--seed N "), std::string::npos) << output();
+  EXPECT_NE(output().find("(default 20)"), std::string::npos) << output();
+  EXPECT_NE(output().find("\nExamples:\n  sandrunner --"), std::string::npos) << output();
+  std::istringstream lines(output());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+}
+
 TEST_F(CommandLineTest, RobotMayLieInAFileOfAnyName) {
   const sim::Robot robot = sim::load_robot(write_small_robot(folder_));
   PolicyFile file = random_policy_file();
@@ -69,7 +82,7 @@ TEST_F(CommandLineTest, RobotMayLieInAFileOfAnyName) {
 
 TEST_F(CommandLineTest, VersionIsOneLine) {
   EXPECT_EQ(run("--version"), 0);
-  EXPECT_EQ(output(), "sandrunner " SANDRUNNER_VERSION "\n");
+  EXPECT_EQ(output(), "sandrunner " + build_name() + "\n");
 }
 
 TEST_F(CommandLineTest, WithoutArgumentsTheRobotEndsOnItsFeet) {
@@ -114,10 +127,11 @@ TEST_F(CommandLineTest, SummaryHasEveryKey) {
                                          "seed",
                                          "joint_limit_steps",
                                          "speed_limit_steps"};
-  std::set<std::string> keys = {
-      "survived",  "fall_time_s", "fall_reason",       "command",           "policy",
-      "terrain",   "version",     "interrupted",       "mean_velocity_mps", "sinkage_mm",
-      "estimator", "state_hash",  "cost_of_transport", "fault_joints",      "gate_ticks"};
+  std::set<std::string> keys = {"survived",  "fall_time_s", "fall_reason",       "command",
+                                "policy",    "terrain",     "version",           "commit",
+                                "clock",     "interrupted", "mean_velocity_mps", "sinkage_mm",
+                                "estimator", "state_hash",  "cost_of_transport", "fault_joints",
+                                "gate_ticks"};
   keys.insert(numbers.begin(), numbers.end());
   std::set<std::string> found;
   for (const auto& [key, value] : j.items()) found.insert(key);
@@ -128,6 +142,8 @@ TEST_F(CommandLineTest, SummaryHasEveryKey) {
   EXPECT_EQ(j.at("policy"), "random");
   EXPECT_EQ(j.at("terrain"), "dry-sand");
   EXPECT_EQ(j.at("version"), SANDRUNNER_VERSION);
+  EXPECT_EQ(j.at("commit"), build_commit());
+  EXPECT_EQ(j.at("clock"), "lockstep");
   EXPECT_EQ(j.at("seed"), 0);
   EXPECT_EQ(j.at("interrupted"), false);
   EXPECT_EQ(j.at("survived"), code == 0);

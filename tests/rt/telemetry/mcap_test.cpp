@@ -100,6 +100,33 @@ TEST(McapTest, FlippedBitInsideAChunkIsFound) {
   EXPECT_GT(by_chunk, 490);
 }
 
+TEST(McapTest, DamageIsSkippedToTheNextChunk) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kPerChunk = 50;
+  const std::string bytes = sample_bytes(folder, 200, kPerChunk);
+  const auto chunks = records_of_type(bytes, 0x06);
+  std::mt19937 random(4);
+  for (int i = 0; i < 200; ++i) {
+    const std::size_t chosen = random() % chunks.size();
+    std::string damaged = bytes;
+    // Also in its length, where the next record cannot be found by it.
+    damaged[chunks[chosen].first + 1 + random() % (chunks[chosen].second - 1)] ^=
+        static_cast<char>(1U << (random() % 8));
+    std::istringstream stream(damaged);
+    McapReader reader(stream, "some.mcap");
+    std::size_t read = 0;
+    for (bool more = true; more;) {
+      try {
+        while (reader.next()) ++read;
+        more = !reader.complete() && reader.skip_damage();
+      } catch (const InputError&) {
+        more = reader.skip_damage();
+      }
+    }
+    EXPECT_GE(read, 200 - kPerChunk) << i;
+  }
+}
+
 TEST(McapTest, MutatedFilesEndInAnErrorOrAsCutAndNeverGiveWrongMessages) {
   const TemporaryFolder folder;
   const std::string sample = sample_bytes(folder, 60, 12);

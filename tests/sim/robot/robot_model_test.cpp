@@ -218,6 +218,59 @@ TEST(RobotModelTest, RefusesImpossibleMasses) {
                  "LH_HIP");
 }
 
+TEST(RobotModelTest, RefusesAnInertiaThatNoBodyHas) {
+  const std::string urdf = shipped_urdf();
+  const std::string base_inertia =
+      "ixx=\"0.09099956\" ixy=\"0.00086574\" ixz=\"0.00061281\" iyy=\"0.31985024\" "
+      "iyz=\"-0.00010439\" izz=\"0.38017107\"";
+  const auto with = [&](const std::string& xx, const std::string& yy, const std::string& zz) {
+    return edited(
+        urdf, "link name=\"base\"", base_inertia,
+        "ixx=\"" + xx + "\" ixy=\"0\" ixz=\"0\" iyy=\"" + yy + "\" iyz=\"0\" izz=\"" + zz + "\"");
+  };
+  // Positive definite all of them.
+  expect_refused(with("10", "0.001", "0.001"), "'base' has an inertia that no body can have");
+  expect_refused(with("0.1", "0.1", "0.21"), "'base' has an inertia that no body can have");
+  // A thin plate, and one whose figures are rounded.
+  EXPECT_EQ(refusal(with("0.1", "0.2", "0.3")), "(accepted)");
+  EXPECT_EQ(refusal(with("0.1", "0.2", "0.3001")), "(accepted)");
+}
+
+TEST(RobotModelTest, RefusesAMovingLinkWithNextToNoMass) {
+  const std::string urdf = shipped_urdf();
+  expect_refused(
+      edited(urdf, "link name=\"LH_HIP\"", "mass value=\"1.29077719\"", "mass value=\"1e-9\""),
+      "'LH_HIP' has mass 1e-09 kg, expected at least 0.001");
+  // A foot is part of its shank.
+  EXPECT_EQ(refusal(edited(urdf, "link name=\"LF_FOOT\"", "mass value=\"0.06096633\"",
+                           "mass value=\"1e-9\"")),
+            "(accepted)");
+}
+
+TEST(RobotModelTest, RefusesElementsNestedTooDeepOrTooMany) {
+  const auto repeated = [](const std::string& text, int times) {
+    std::string all;
+    for (int i = 0; i < times; ++i) all += text;
+    return all;
+  };
+  const std::string deep = repeated("<a>", 200'000);
+  expect_refused(edited(shipped_urdf(), "</robot>", "</robot>", deep), "nested more than 32 deep");
+  expect_refused("<robot name=\"x\">" + deep, "nested more than 32 deep");
+  expect_refused(edited(shipped_urdf(), "</robot>", "</robot>", repeated("<a/>", 20'000)),
+                 "more than 10000 elements");
+  // What stands in a comment is no element.
+  EXPECT_EQ(refusal(edited(shipped_urdf(), "</robot>", "</robot>", "<!--" + deep + "--></robot>")),
+            "(accepted)");
+}
+
+TEST(RobotModelTest, TakesBlanksAroundValuesAndDynamicsWithoutAttributesOfAnyLength) {
+  const std::string blanks(50'000, ' ');
+  std::string urdf = edited(shipped_urdf(), "link name=\"RF_THIGH\"", "\"1.96391657\"",
+                            "\"" + blanks + "1.96391657" + blanks + "\"");
+  urdf = edited(urdf, "joint name=\"LF_HAA\"", "<axis", "<dynamics " + blanks + "/><axis");
+  EXPECT_EQ(refusal(urdf), "(accepted)");
+}
+
 TEST(RobotModelTest, RefusesNumbersThatAreNotFinite) {
   const std::string urdf = shipped_urdf();
   for (const std::string& bad :

@@ -76,7 +76,7 @@ TEST_F(PolicyCommandTest, BadInputIsOneLineAndExitCodeTwo) {
   expect_refused("import weights", "--out");
   expect_refused("info", "FILE");
   expect_refused("info weights weights", "not expected");
-  expect_refused("info absent", "'absent': no such file");
+  expect_refused("info absent", "absent: cannot be read (No such file or directory), expected a policy file");
   expect_refused("info garbage", "'garbage': 7 bytes are too few");
   expect_refused("info weights", "not a policy file");
   expect_refused("import garbage --out policy", "'garbage': ");

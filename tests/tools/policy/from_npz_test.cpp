@@ -96,5 +96,10 @@ TEST_F(FromNpzTest, BadOptionsAndFilesAreOneLineAndNoFile) {
   expect_refused("--map names.txt", "policy.npz: not an npz of arrays");
 }
 
+TEST_F(FromNpzTest, WithoutNumpyOneLineSaysWhatToInstall) {
+  // -S: Python without the folders that packages are installed to.
+  ProgramTest::expect_refused("-S " + convert(""), "from_npz.py: needs numpy");
+}
+
 }  // namespace
 }  // namespace sandrunner

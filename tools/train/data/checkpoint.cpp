@@ -6,11 +6,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 
 namespace sandrunner::learner {
@@ -112,10 +111,7 @@ void save_checkpoint(const Checkpoint& checkpoint, const std::string& path) {
 }
 
 Checkpoint load_checkpoint(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot open checkpoint", path));
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (file.bad()) throw InputError(fmt::format("{}: cannot read checkpoint", path));
+  const std::string bytes = read_input_file(path, "a training checkpoint");
 
   Header header{};
   if (bytes.size() < sizeof(header) + sizeof(std::uint64_t)) {

@@ -137,14 +137,15 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
 
     std::set<Mode> modes;
     std::uint64_t commands = 0, last_command = 0, skipped = 0;
-    const RecordingContents contents =
-        read_recording(dir + "/run.mcap", {}, [&](const TickRecord& tick) {
-          modes.insert(tick.output.mode);
-          skipped += tick.skipped;
-          if (tick.input.command.tick != last_command) ++commands;
-          last_command = tick.input.command.tick;
-          return true;
-        });
+    RecordingVisitor visitor;
+    visitor.tick = [&](const TickRecord& tick) {
+      modes.insert(tick.output.mode);
+      skipped += tick.skipped;
+      if (tick.input.command.tick != last_command) ++commands;
+      last_command = tick.input.command.tick;
+      return true;
+    };
+    const RecordingContents contents = read_recording(dir + "/run.mcap", visitor);
     EXPECT_TRUE(contents.complete);
     EXPECT_TRUE(modes.count(Mode::kStand) == 1 && modes.count(Mode::kWalk) == 1);
     EXPECT_EQ(modes.count(Mode::kFault), to_fault ? 1u : 0u);

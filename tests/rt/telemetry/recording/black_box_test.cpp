@@ -33,6 +33,7 @@ class BlackBoxTest : public RecordingProgramTest {
     info_.clock = "lockstep";
     info_.config = config_.effective;
     info_.policy = shipped_policy_text();
+    info_.robot_map = config_.robot.map;
     info_.robot = config_.robot.description;
     info_.start_time_ns = 1'700'000'000'000'000'000;
     command_.velocity.vx_mps = 1.0;
@@ -66,7 +67,7 @@ class BlackBoxTest : public RecordingProgramTest {
   RecordingContents read(const std::string& file, std::uint64_t& last_tick) const {
     std::uint64_t next = 0;
     bool first = true;
-    RecordingContents contents = read_recording(file, {}, [&](const TickRecord& record) {
+    RecordingContents contents = read_ticks(file, [&](const TickRecord& record) {
       if (first) next = record.input.sensors.tick;
       first = false;
       EXPECT_EQ(record.input.sensors.tick, next);
@@ -321,9 +322,7 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   const BlackBoxResult result = box_->close();
   EXPECT_FALSE(result.difference) << result.difference->what;
   ASSERT_EQ(result.files.size(), 1u);
-  EXPECT_GT(
-      read_recording(result.files[0].path, {}, [](const auto&) { return true; }).info.first_tick,
-      0u);
+  EXPECT_GT(read_ticks(result.files[0].path).info.first_tick, 0u);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, result.files[0].path), 0) << output();
 }
 

@@ -24,24 +24,32 @@ inline std::size_t word_named(const std::string& name) {
   return word;
 }
 
+/// Reads a recording for its ticks; `tick` as RecordingVisitor's.
+inline RecordingContents read_ticks(const std::string& path,
+                                    std::function<bool(const TickRecord&)> tick = {}) {
+  RecordingVisitor visitor;
+  visitor.tick = std::move(tick);
+  return read_recording(path, visitor);
+}
+
 /// The recording again, all checksums right, with other facts or ticks.
 inline void rewrite(const std::string& from, const std::string& to,
                     const std::function<void(RecordingInfo&)>& change_info,
                     const std::function<void(TickRecord&)>& change_tick) {
   std::unique_ptr<Recorder> recorder;
-  read_recording(
-      from,
-      [&](const RecordingInfo& found) {
-        RecordingInfo info = found;
-        if (change_info) change_info(info);
-        recorder = std::make_unique<Recorder>(to, info, RecordingLimits{}, true);
-      },
-      [&](const TickRecord& found) {
-        TickRecord record = found;
-        if (change_tick) change_tick(record);
-        recorder->add(record);
-        return true;
-      });
+  RecordingVisitor visitor;
+  visitor.begin = [&](const RecordingInfo& found) {
+    RecordingInfo info = found;
+    if (change_info) change_info(info);
+    recorder = std::make_unique<Recorder>(to, info, RecordingLimits{}, true);
+  };
+  visitor.tick = [&](const TickRecord& found) {
+    TickRecord record = found;
+    if (change_tick) change_tick(record);
+    recorder->add(record);
+    return true;
+  };
+  read_recording(from, visitor);
   recorder->close();
 }
 

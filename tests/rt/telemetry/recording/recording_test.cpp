@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "rt/base/errors.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
 #include "rt/telemetry/recording/cdr.h"
 #include "rt/telemetry/recording/recording_file.h"
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/example_tick.h"
+#include "tests/rt/telemetry/mcap_content.h"
 #include "tests/rt/telemetry/recording/recording_program.h"
 #include "tests/support/small_robot.h"
 
@@ -34,8 +36,8 @@ class RecordingTest : public RecordingProgramTest {
 TEST_F(RecordingTest, HoldsEveryTickAndReplaysBitForBit) {
   record();
   std::uint64_t next = 0;
-  const RecordingContents contents = read_recording(
-      path(), {}, [&](const TickRecord& record) { return record.input.sensors.tick == next++; });
+  const RecordingContents contents = read_ticks(
+      path(), [&](const TickRecord& record) { return record.input.sensors.tick == next++; });
   EXPECT_TRUE(contents.complete);
   EXPECT_EQ(contents.ticks, 2000u);
   EXPECT_EQ(next, 2000u);
@@ -90,6 +92,88 @@ TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
   EXPECT_NE(content["/tf"].find("trunk"), std::string::npos);
 }
 
+TEST_F(RecordingTest, ReplaysWithTheRobotThatItCarries) {
+  std::string map;
+  {
+    const TemporaryFolder robot;
+    map = write_small_robot(robot);
+    PolicyFile policy = random_policy_file();
+    policy.spec.joint_names = sim::load_robot(map).description.joint_names;
+    write_policy_file(robot.path("small.safetensors"), policy);
+    run(SANDRUNNER_PROGRAM, "--start walk --duration 0.1 --robot " + map + " --policy " +
+                                robot.path("small.safetensors") + " --record " + folder_.path(""));
+    // Another robot beside it, under the same name, changes nothing.
+    std::filesystem::remove(robot.path("small.urdf"));
+    write_file(map, "no map");
+    EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
+  }
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --plot " + folder_.path("plots")), 0) << output();
+  EXPECT_NE(output().find("every bit agrees"), std::string::npos) << output();
+}
+
+TEST_F(RecordingTest, ARobotThatIsNotAttachedWholeIsRefused) {
+  record();
+  const std::string broken = folder_.path("broken.mcap");
+  const auto expect_refused = [&](const std::function<void(RecordingInfo&)>& change,
+                                  const std::string& cause) {
+    rewrite(path(), broken, change, {});
+    EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2) << output();
+    EXPECT_NE(output().find("sandrunner-replay: " + broken + ": " + cause), std::string::npos)
+        << output();
+  };
+  expect_refused([](RecordingInfo& info) { info.robot_map.clear(); },
+                 "has no attachment 'robot.toml'");
+  expect_refused([](RecordingInfo& info) { info.robot.urdf.clear(); },
+                 "has no attachment 'robot.urdf'");
+  expect_refused([](RecordingInfo& info) { info.robot_map = "name = 'x'"; },
+                 "robot.toml: 'urdf' is missing");
+  expect_refused([](RecordingInfo& info) { info.robot.urdf = small_robot_urdf(); },
+                 "robot.urdf: has no link 'base'");
+}
+
+TEST_F(RecordingTest, FactsThatCannotBeAreRefused) {
+  record();
+  const std::string broken = folder_.path("broken.mcap");
+  rewrite(path(), broken, [](RecordingInfo& info) { info.clock = "4000"; }, {});
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2);
+  EXPECT_NE(output().find("clock is '4000', expected lockstep or realtime"), std::string::npos)
+      << output();
+  rewrite(path(), broken, [](RecordingInfo& info) { info.start_mode = "fly"; }, {});
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2);
+  const auto write_one = [&](const std::string& first_tick, std::uint16_t schema) {
+    McapWriter writer(broken);
+    writer.write_metadata({kRunMetadata,
+                           {{"build", "another"},
+                            {"start_mode", "walk"},
+                            {"clock", "lockstep"},
+                            {"start_time_ns", "0"},
+                            {"first_tick", first_tick}}});
+    writer.write_message({.channel_id = writer.add_channel(schema, kTicksTopic, "cdr", {}),
+                          .sequence = 1,
+                          .log_time_ns = 0,
+                          .publish_time_ns = 0,
+                          .data = CdrWriter().bytes()});
+    writer.close();
+    EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2) << output();
+  };
+  write_one("0", 0);
+  EXPECT_EQ(output(),
+            "sandrunner-replay: " + broken + ": the channel of /sandrunner/ticks has no schema\n");
+  EXPECT_THROW(read_ticks(broken), InputError);
+  {
+    McapWriter writer(broken);
+    writer.write_metadata({kRunMetadata,
+                           {{"build", "another"},
+                            {"start_mode", "walk"},
+                            {"clock", "lockstep"},
+                            {"start_time_ns", "0"},
+                            {"first_tick", "x"}}});
+    writer.close();
+  }
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2);
+  EXPECT_NE(output().find("first_tick is 'x', expected a whole number"), std::string::npos);
+}
+
 TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
   record();
   const std::size_t word = word_named("command_position_rad[4]");
@@ -136,7 +220,7 @@ TEST_F(RecordingTest, CutRecordingReadsUpToItsLastWholeChunk) {
   write_file(folder_.path("cut.mcap"), whole.substr(0, whole.size() - whole.size() / 4));
   std::uint64_t ticks = 0;
   const RecordingContents contents =
-      read_recording(folder_.path("cut.mcap"), {}, [&](const TickRecord& tick) {
+      read_ticks(folder_.path("cut.mcap"), [&](const TickRecord& tick) {
         EXPECT_EQ(tick.input.sensors.tick, ticks);
         ++ticks;
         return true;
@@ -146,14 +230,74 @@ TEST_F(RecordingTest, CutRecordingReadsUpToItsLastWholeChunk) {
   EXPECT_LT(ticks, 2000u);
 }
 
+/// Places and sizes of the chunks in a file.
+std::vector<std::pair<std::size_t, std::size_t>> chunks_of(const std::string& bytes) {
+  return records_of_type(bytes, 0x06);
+}
+
+TEST_F(RecordingTest, DamagedChunkCostsItsOwnSpanOnly) {
+  ASSERT_EQ(
+      run(SANDRUNNER_PROGRAM, "--start walk --duration 1 --record '" + folder_.path("") + "'"), 0);
+  const std::string whole = read_file(path());
+  const auto chunks = chunks_of(whole);
+  ASSERT_GT(chunks.size(), 4u);
+  const std::string damaged = folder_.path("damaged.mcap");
+  // In its compressed bytes, and in its length: then where the next record begins is not known.
+  for (const std::size_t at : {chunks[2].first + 200, chunks[2].first + 3}) {
+    std::string bytes = whole;
+    bytes[at] ^= 0x10;
+    write_file(damaged, bytes);
+    EXPECT_EQ(run(SANDRUNNER_REPLAY, damaged + " --plot '" + folder_.path("plots") + "'"), 2);
+    std::smatch span;
+    const std::string text = output();
+    ASSERT_TRUE(
+        std::regex_search(text, span, std::regex("LOST by damage: tick (\\d+) .* to (\\d+) ")))
+        << text;
+    const int lost = std::stoi(span[2]) - std::stoi(span[1]) + 1;
+    EXPECT_GT(lost, 40);
+    EXPECT_LT(lost, 2200);  // half a second, the most that a chunk holds
+    EXPECT_NE(text.find(std::to_string(4000 - lost) + " ticks and "), std::string::npos) << text;
+    EXPECT_NE(text.find("every bit agrees\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("sandrunner-replay: " + damaged), std::string::npos) << text;
+    EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
+    std::filesystem::remove_all(folder_.path("plots"));
+  }
+}
+
+TEST_F(RecordingTest, DamagedLastChunkIsSaidToBeLostToTheEnd) {
+  record();
+  std::string bytes = read_file(path());
+  bytes[chunks_of(bytes).back().first + 200] ^= 0x10;
+  write_file(path(), bytes);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 2);
+  EXPECT_NE(output().find(" to the end\n"), std::string::npos) << output();
+}
+
+TEST_F(RecordingTest, NothingComparedIsNoSuccess) {
+  record();
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --from 100"), 1);
+  EXPECT_EQ(output(),
+            "NOTHING COMPARED: the recording has none to compare in this range, it ends at 0.49975 "
+            "s\n");
+  const std::string bytes = read_file(path());
+  write_file(path(), bytes.substr(0, chunks_of(bytes)[0].first + 100));
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --plot '" + folder_.path("plots") + "'"), 1);
+  EXPECT_EQ(output(),
+            "the recording was cut: it is read up to its last chunk\n"
+            "NOTHING COMPARED: the recording has no ticks\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("plots")));
+}
+
 TEST_F(RecordingTest, FullDiskEndsTheRecordingAndNotTheRun) {
   EXPECT_EQ(run_on_full_disk(SANDRUNNER_PROGRAM,
                              "--start walk --duration 1 --record '" + folder_.path("") + "'"),
-            0);
+            2);
+  EXPECT_NE(output().find("sandrunner: --record: the recording is cut: "), std::string::npos)
+      << output();
   EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
   EXPECT_NE(output().find("STOPPED"), std::string::npos) << output();
   // What was written can be read.
-  EXPECT_FALSE(read_recording(path(), {}, [](const TickRecord&) { return true; }).complete);
+  EXPECT_FALSE(read_ticks(path()).complete);
 }
 
 TEST_F(RecordingTest, RunThatIsRefusedLeavesTheRecordingOfTheRunBefore) {
@@ -174,7 +318,7 @@ TEST_F(RecordingTest, RunThatIsRefusedLeavesTheRecordingOfTheRunBefore) {
 TEST_F(RecordingTest, LimitOfTimeEndsTheRecording) {
   record("--set recording.limit_s=0.2");
   EXPECT_NE(output().find("its duration reached the limit"), std::string::npos) << output();
-  const auto contents = read_recording(path(), {}, [](const TickRecord&) { return true; });
+  const auto contents = read_ticks(path());
   EXPECT_TRUE(contents.complete);
   EXPECT_NEAR(static_cast<double>(contents.ticks), 800.0, 80.0);
 }
@@ -235,7 +379,8 @@ TEST_F(RecordingTest, TicksInAnotherLayoutAreRefusedInOneLine) {
                            {{"build", "another"},
                             {"start_mode", "walk"},
                             {"clock", "lockstep"},
-                            {"start_time_ns", "0"}}});
+                            {"start_time_ns", "0"},
+                            {"first_tick", "0"}}});
     const std::uint16_t schema =
         writer.add_schema("sandrunner::TickBatch", "omgidl", "module sandrunner {};");
     writer.write_message({.channel_id = writer.add_channel(schema, kTicksTopic, "cdr", {}),

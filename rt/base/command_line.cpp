@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/base/command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "rt/base/build.h"
+#include "rt/base/errors.h"
+#include "rt/base/likely_meant.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr std::size_t kColumn = 26, kWidth = 100;
+
+/// `text` in lines of at most `width` characters, broken at blanks.
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string lines;
+  while (text.size() > width) {
+    const std::size_t blank = text.rfind(' ', width);
+    if (blank == std::string_view::npos) break;
+    lines.append(text.substr(0, blank)) += '\n';
+    text.remove_prefix(blank + 1);
+  }
+  return lines.append(text);
+}
+
+/// Help for people: the kind of a value as the program calls it, defaults behind the text, lines
+/// that fit a terminal.
+class HelpFormat : public CLI::Formatter {
+ public:
+  HelpFormat() { column_width(kColumn); }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    // CLI11 puts its own description of what is checked behind a colon.
+    const std::string type = option->get_type_name();
+    return type.empty() || option->get_positional() ? "" : " " + type.substr(0, type.find(':'));
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    std::string text = option->get_description();
+    const std::string value = option->get_default_str();
+    const bool has_default = !value.empty() && value != "[]" && !option->get_required();
+    if (has_default) text += fmt::format(" (default {})", value);
+    if (option->get_required() && !option->get_positional()) text += " (required)";
+    return wrapped(text, kWidth - kColumn);
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream out;
+    CLI::detail::format_help(out, command->get_name(),
+                             wrapped(command->get_description(), kWidth - kColumn), kColumn);
+    return out.str();
+  }
+  std::string make_description(const CLI::App* app) const override {
+    return wrapped(app->get_description(), kWidth) + "\n";
+  }
+};
+
+/// Names of the options and subcommands of `app` and of all below it.
+void collect_names(CLI::App& app, std::vector<std::string>& names) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (!option->get_positional()) names.push_back(option->get_name());
+  }
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+    collect_names(*command, names);
+  }
+}
+
+[[noreturn]] void fail_for_unexpected(CLI::App& app, const std::vector<std::string>& unexpected) {
+  const auto option = std::find_if(unexpected.begin(), unexpected.end(),
+                                   [](const std::string& word) { return word.starts_with("-"); });
+  const std::string word = option == unexpected.end() ? unexpected.front() : *option;
+  std::vector<std::string> names;
+  collect_names(app, names);
+  throw InputError(fmt::format("command line: unexpected '{}'{}", word,
+                               did_you_mean(word.substr(0, word.find('=')), names)));
+}
+
+void set_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
+  app.formatter(format);
+  app.get_help_ptr()->description("print this help");
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    set_format(*command, format);
+  }
+}
+
+void reject_empty_values(CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) {
+        throw InputError(
+            fmt::format("{}: found an empty value, expected one (is a variable of the shell not "
+                        "set?)",
+                        option->get_name()));
+      }
+    }
+  }
+  for (CLI::App* command : app.get_subcommands()) reject_empty_values(*command);
+}
+
+}  // namespace
+
+bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+  app.set_version_flag("--version", app.get_name() + " " + build_name(),
+                       "print version, commit and compiler");
+  set_format(app, std::make_shared<HelpFormat>());
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {
+    app.exit(done);
+    return false;
+  } catch (const CLI::ExtrasError&) {
+    fail_for_unexpected(app, app.remaining(true));
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("command line: {}", error.what()));
+  }
+  reject_empty_values(app);
+  return true;
+}
+
+}  // namespace sandrunner
