@@ -31,7 +31,8 @@ Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
     : ros_hz_(static_cast<std::uint64_t>(config.ros_hz)),
       inbox_(inbox),
       ros_(participant, robot),
-      diagnostics_(robot) {
+      diagnostics_(robot),
+      odometry_(robot) {
   if (config.ticks) batches_.emplace(participant);
 }
 

@@ -44,6 +44,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
     : start_time_ns_(info.start_time_ns),
       robot_(info.robot),
       file_(path),
+      odometry_(info.robot),
       diagnostics_(info.robot),
       in_the_middle_(info.first_tick > 0) {
   file_.write_metadata({kRunMetadata,

@@ -102,18 +102,6 @@ TEST(TelemetryTest, OdometryAndTfIntegrateTheEstimatedVelocityInTheWorld) {
   EXPECT_EQ(tf_y_m, y_m);
 }
 
-TEST(TelemetryTest, OutsideWalkOldEstimatesDoNotMoveTheRobot) {
-  Odometry odometry;
-  for (std::uint64_t tick = 0; tick < 4000; ++tick) {
-    TickRecord record = example_tick(tick);
-    record.output.mode = Mode::kStand;
-    odometry.add(record);
-  }
-  EXPECT_EQ(odometry.position_m(), Vector3{});
-  EXPECT_EQ(odometry.velocity_mps(), Vector3{});
-  EXPECT_EQ(odometry.pose_covariance()[0], 0.0);
-}
-
 TEST(TelemetryTest, TheTransformsLeadFromOdomToTheFeetAndFixedOnesReachAPeerThatComesLater) {
   Published setup;
   const auto tf = setup.peer.reader("rt/tf", tf2_msgs_msg_dds__TFMessage__desc);

@@ -66,7 +66,7 @@ const checks = {
     near(m.pose.pose.position.z, 0.45, "z");
     near(m.twist.twist.linear.x, 0.8, "vx");
     near(m.twist.twist.angular.z, 0.3, "yaw rate");
-    near(m.twist.covariance[35], 1e-3, "covariance of the yaw rate");
+    near(m.twist.covariance[35], 9e-4, "covariance of the yaw rate");
   }],
   "rt/tf": ["tf2_msgs/TFMessage", (m) => {
     assert.equal(m.transforms.length, 3);
