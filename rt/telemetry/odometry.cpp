@@ -1,59 +1,172 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/telemetry/odometry.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "rt/telemetry/rotation.h"
+
 namespace sandrunner {
 namespace {
 
-/// World x and y of a vector in the body frame.
-std::array<double, 2> horizontal(const std::array<double, 4>& q, const Vector3& v) noexcept {
-  const auto [w, x, y, z] = q;
-  return {(1.0 - 2.0 * (y * y + z * z)) * v[0] + 2.0 * (x * y - w * z) * v[1] +
-              2.0 * (x * z + w * y) * v[2],
-          2.0 * (x * y + w * z) * v[0] + (1.0 - 2.0 * (x * x + z * z)) * v[1] +
-              2.0 * (y * z - w * x) * v[2]};
+// Standard deviations of the errors, assumed and compared with the simulator's truth in
+// odometry_test.cpp.
+constexpr double kNetworkVelocity_mps = 0.2;
+constexpr double kStillVelocity_mps = 0.03;
+constexpr double kNetworkHeight_m = 0.05;
+constexpr double kJointsHeight_m = 0.04;   // the feet sink into sand
+constexpr double kUnknownHeight_m = 0.15;  // the lowest part need not touch the ground
+constexpr double kTilt_rad = 0.01;
+constexpr double kTurn_radps = 0.03;
+/// Time over which an error of the velocity stays the same.
+constexpr double kVelocityErrorTime_s = 1.0;
+/// Speed of a robot that stands up or falls.
+constexpr double kUnknownSpeed_mps = 0.5;
+/// Drift of the IMU's yaw, rad per square root of a second.
+constexpr double kYawWalk_radprts = 0.002;
+
+// Still is a robot of which nothing has moved for this long: no joint turns faster than this, no
+// axis of the body, and the accelerometer, smoothed, shows gravity only.
+constexpr std::uint64_t kStill_ticks = kControlHz / 4;
+constexpr double kStillJoint_radps = 0.2;
+constexpr double kStillTurn_radps = 0.1;
+constexpr double kStillAcceleration_mps2 = 0.5;
+constexpr double kAccelerationTime_s = 0.05;
+
+// How the height follows what is measured: with this time constant, but not faster than this.
+constexpr double kHeightTime_s = 0.1;
+constexpr double kHeightSpeed_mps = 1.0;
+
+double length(const Vector3& v) noexcept { return std::hypot(v[0], v[1], v[2]); }
+
+bool all_finite(const auto& values) noexcept {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+void set_diagonal(std::array<double, 36>& covariance, std::size_t first, const Vector3& variances) {
+  for (std::size_t i = 0; i < 3; ++i) covariance[7 * (first + i)] = variances[i];
 }
 
 }  // namespace
+
+Odometry::Odometry(const RobotDescription& robot) {
+  const auto index_of = [this](const std::string& name) {
+    const auto found = std::ranges::find(links_, name, [](const Link& l) { return l.frame.name; });
+    return found == links_.end() ? -1 : static_cast<int>(found - links_.begin());
+  };
+  for (const RobotFrame& frame : robot.frames) links_.push_back({index_of(frame.parent), frame});
+  for (const OutlinePoint& point : robot.outline) {
+    outline_.push_back({index_of(point.frame), point.centre_m, point.radius_m});
+  }
+  poses_.resize(links_.size());
+}
 
 void Odometry::add(const TickRecord& tick) noexcept {
   const SensorFrame& sensors = tick.input.sensors;
   const double dt_s =
       has_last_ ? static_cast<double>(sensors.tick - last_tick_) * kControlPeriod_s : 0.0;
-  has_last_ = true;
+  if (!has_last_) restless_tick_ = sensors.tick;
   last_tick_ = sensors.tick;
-  orientation_wxyz_ = sensors.imu.orientation_wxyz;
+  if (all_finite(sensors.imu.orientation_wxyz)) orientation_wxyz_ = sensors.imu.orientation_wxyz;
   angular_velocity_radps_ = sensors.imu.angular_velocity_radps;
   yaw_variance_rad2_ += kYawWalk_radprts * kYawWalk_radprts * dt_s;
 
-  walking_ = tick.output.mode == Mode::kWalk;
+  if (moves(sensors, dt_s)) restless_tick_ = sensors.tick;
+  source_ = source_of(tick);
+  const StateEstimate& estimate = tick.input.policy.estimate;
+  velocity_mps_ = source_ == Source::kNetwork ? estimate.velocity_mps : Vector3{};
+  const Vector3 velocity_mps = rotated(orientation_wxyz_, velocity_mps_);
+  position_m_[0] += velocity_mps[0] * dt_s;
+  position_m_[1] += velocity_mps[1] * dt_s;
+  const double error_mps = source_ == Source::kNetwork ? kNetworkVelocity_mps
+                           : source_ == Source::kStill ? 0.0
+                                                       : kUnknownSpeed_mps;
+  horizontal_variance_m2_ += error_mps * error_mps * kVelocityErrorTime_s * dt_s;
+  follow_height(source_ == Source::kNetwork ? estimate.body_height_m
+                                            : height_by_joints_m(sensors.joints.position_rad),
+                dt_s);
+  has_last_ = true;
+}
+
+bool Odometry::moves(const SensorFrame& sensors, double dt_s) noexcept {
+  const double excess_mps2 = length(sensors.imu.linear_acceleration_mps2) - kGravity_mps2;
+  if (std::isfinite(excess_mps2)) {
+    acceleration_mps2_ +=
+        (excess_mps2 - acceleration_mps2_) * std::min(dt_s / kAccelerationTime_s, 1.0);
+  }
+  const bool joints_rest = std::ranges::all_of(
+      sensors.joints.velocity_radps,
+      [](double speed_radps) { return std::fabs(speed_radps) <= kStillJoint_radps; });
+  return !(joints_rest && length(sensors.imu.angular_velocity_radps) <= kStillTurn_radps &&
+           std::fabs(acceleration_mps2_) <= kStillAcceleration_mps2);
+}
+
+Odometry::Source Odometry::source_of(const TickRecord& tick) const noexcept {
   const PolicyOutput& policy = tick.input.policy;
-  const bool estimated =
-      walking_ && policy.sequence != 0 && policy.episode == tick.output.policy_input.episode;
-  velocity_mps_ = estimated ? policy.estimate.velocity_mps : Vector3{};
-  if (!estimated) return;
-  const auto [vx_mps, vy_mps] = horizontal(orientation_wxyz_, velocity_mps_);
-  position_m_[0] += vx_mps * dt_s;
-  position_m_[1] += vy_mps * dt_s;
-  position_m_[2] = policy.estimate.body_height_m;
-  horizontal_variance_m2_ += kVelocityError_mps * kVelocityError_mps * kVelocityErrorTime_s * dt_s;
+  if (tick.output.mode == Mode::kWalk && policy.sequence != 0 &&
+      policy.episode == tick.output.policy_input.episode &&
+      all_finite(policy.estimate.velocity_mps)) {
+    return Source::kNetwork;
+  }
+  return last_tick_ - restless_tick_ >= kStill_ticks ? Source::kStill : Source::kNone;
+}
+
+double Odometry::height_by_joints_m(const JointArray<double>& position_rad) noexcept {
+  const auto pose_of = [this](int link) {
+    return link < 0 ? Pose{.position_m = {}, .rotation_wxyz = orientation_wxyz_}
+                    : poses_[static_cast<std::size_t>(link)];
+  };
+  const auto in_world = [](const Pose& pose, const Vector3& v) {
+    const Vector3 turned_v = rotated(pose.rotation_wxyz, v);
+    return Vector3{pose.position_m[0] + turned_v[0], pose.position_m[1] + turned_v[1],
+                   pose.position_m[2] + turned_v[2]};
+  };
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const RobotFrame& frame = links_[i].frame;
+    const Pose parent = pose_of(links_[i].parent);
+    const double angle_rad =
+        frame.joint < 0 ? 0.0 : position_rad[static_cast<std::size_t>(frame.joint)];
+    poses_[i] = {in_world(parent, frame.translation_m),
+                 product(parent.rotation_wxyz, turned(frame.rotation_wxyz, frame.axis, angle_rad))};
+  }
+  double lowest_m = std::numeric_limits<double>::infinity();
+  for (const Point& point : outline_) {
+    const double z_m = in_world(pose_of(point.link), point.centre_m)[2] - point.radius_m;
+    // Not std::min(): a joint that measures NaN is to be seen in the result.
+    if (!(z_m >= lowest_m)) lowest_m = z_m;
+  }
+  return -lowest_m;
+}
+
+void Odometry::follow_height(double height_m, double dt_s) noexcept {
+  if (!std::isfinite(height_m)) return;
+  const double error_m = height_m - position_m_[2];
+  const double most_m = has_last_ ? kHeightSpeed_mps * dt_s : std::fabs(error_m);
+  const double step_m = has_last_ ? error_m * std::min(dt_s / kHeightTime_s, 1.0) : error_m;
+  position_m_[2] += std::clamp(step_m, -most_m, most_m);
 }
 
 std::array<double, 36> Odometry::pose_covariance() const noexcept {
-  constexpr double kTilt_rad2 = 1e-4;
-  constexpr double kUnknown = 1e6;  // so large that it means: not known
+  const double height_m = source_ == Source::kNetwork ? kNetworkHeight_m
+                          : source_ == Source::kStill ? kJointsHeight_m
+                                                      : kUnknownHeight_m;
   std::array<double, 36> covariance{};
-  covariance[0] = covariance[7] = horizontal_variance_m2_;
-  covariance[14] = walking_ ? kVelocityError_mps * kVelocityError_mps : kUnknown;
-  covariance[21] = covariance[28] = kTilt_rad2;
-  covariance[35] = yaw_variance_rad2_;
+  set_diagonal(covariance, 0,
+               {horizontal_variance_m2_, horizontal_variance_m2_, height_m * height_m});
+  set_diagonal(covariance, 3, {kTilt_rad * kTilt_rad, kTilt_rad * kTilt_rad, yaw_variance_rad2_});
   return covariance;
 }
 
 std::array<double, 36> Odometry::twist_covariance() const noexcept {
-  constexpr double kTurn_radps2 = 1e-3;
+  const double velocity = source_ == Source::kNetwork ? kNetworkVelocity_mps * kNetworkVelocity_mps
+                          : source_ == Source::kStill ? kStillVelocity_mps * kStillVelocity_mps
+                                                      : kUnknownVariance;
+  constexpr double kTurn = kTurn_radps * kTurn_radps;
   std::array<double, 36> covariance{};
-  for (int i : {0, 7, 14}) covariance[i] = kVelocityError_mps * kVelocityError_mps;
-  for (int i : {21, 28, 35}) covariance[i] = kTurn_radps2;
+  set_diagonal(covariance, 0, {velocity, velocity, velocity});
+  set_diagonal(covariance, 3, {kTurn, kTurn, kTurn});
   return covariance;
 }
 

@@ -3,21 +3,28 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
+#include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
 
 namespace sandrunner {
 
-/// Dead reckoning from the network's estimate of the base velocity and the IMU's attitude. Starts
-/// at the origin. Without an estimate (outside Walk) the robot is assumed to stay where it is.
+/// Dead reckoning in a frame that never jumps (REP 105's "odom"). It starts above the origin.
+///
+/// In Walk, the velocity is the network's estimate. A robot of which no joint and no axis moves is
+/// taken to stand or lie still. All else (standing up, falling, being let down) is not known: the
+/// position stays, and the covariances say so. The attitude is the IMU's. The height is that above
+/// the ground below: the network's estimate in Walk, else how far the robot's lowest part is below
+/// the base, by its joints; one blends into the other.
 class Odometry {
  public:
+  explicit Odometry(const RobotDescription& robot);
+
   /// Every tick, in order. The velocity of a tick also holds for slots missed before it.
   void add(const TickRecord& tick) noexcept;
 
-  const Vector3& position_m() const noexcept {
-    return position_m_;
-  }  ///< z: estimated height of the body
+  const Vector3& position_m() const noexcept { return position_m_; }
   const std::array<double, 4>& orientation_wxyz() const noexcept { return orientation_wxyz_; }
   const Vector3& velocity_mps() const noexcept { return velocity_mps_; }  ///< body frame
   const Vector3& angular_velocity_radps() const noexcept { return angular_velocity_radps_; }
@@ -28,8 +35,34 @@ class Odometry {
   std::array<double, 36> twist_covariance() const noexcept;
 
  private:
-  bool has_last_ = false, walking_ = false;
-  std::uint64_t last_tick_ = 0;
+  /// Where the velocity comes from.
+  enum class Source { kNone, kStill, kNetwork };
+  struct Link {
+    int parent = -1;  // index of a link before it; -1: the base frame
+    RobotFrame frame;
+  };
+  struct Point {
+    int link = -1;  // likewise
+    Vector3 centre_m{};
+    double radius_m = 0.0;
+  };
+  struct Pose {
+    Vector3 position_m{};
+    std::array<double, 4> rotation_wxyz{1.0, 0.0, 0.0, 0.0};
+  };
+
+  bool moves(const SensorFrame& sensors, double dt_s) noexcept;
+  Source source_of(const TickRecord& tick) const noexcept;
+  double height_by_joints_m(const JointArray<double>& position_rad) noexcept;
+  void follow_height(double height_m, double dt_s) noexcept;
+
+  std::vector<Link> links_;
+  std::vector<Point> outline_;
+  std::vector<Pose> poses_;  // of the links, in the base frame: room for a computation
+  bool has_last_ = false;
+  std::uint64_t last_tick_ = 0, restless_tick_ = 0;
+  double acceleration_mps2_ = 0.0;  // the IMU's less gravity, smoothed
+  Source source_ = Source::kNone;
   Vector3 position_m_{};
   std::array<double, 4> orientation_wxyz_{1.0, 0.0, 0.0, 0.0};
   Vector3 velocity_mps_{};
@@ -37,10 +70,7 @@ class Odometry {
   double horizontal_variance_m2_ = 0.0, yaw_variance_rad2_ = 0.0;
 };
 
-/// Assumed errors: of the estimated velocity (standard deviation, correlated over a second), and
-/// the drift of the IMU's yaw (random walk).
-inline constexpr double kVelocityError_mps = 0.1;
-inline constexpr double kVelocityErrorTime_s = 1.0;
-inline constexpr double kYawWalk_radprts = 0.002;  ///< rad per square root of a second
+/// A variance so large that it means: not known.
+inline constexpr double kUnknownVariance = 1e6;
 
 }  // namespace sandrunner

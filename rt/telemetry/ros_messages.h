@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
@@ -13,7 +15,7 @@
 
 namespace sandrunner {
 
-/// Frame in which the odometry starts at the origin.
+/// Frame in which the odometry starts above the origin.
 inline constexpr const char* kOdometryFrame = "odom";
 
 /// std_msgs/Header.
@@ -52,14 +54,31 @@ struct OdometryMessage {
   std::array<double, 36> twist_covariance;
 };
 
+/// diagnostic_msgs/DiagnosticArray with one status.
+struct DiagnosticsMessage {
+  enum Level : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 };  // DiagnosticStatus
+
+  RosHeader header;
+  Level level = kOk;
+  std::string name, message, hardware_id;
+  std::vector<std::pair<std::string, std::string>> values;
+
+  /// Adds something that somebody should look at.
+  void warn(const std::string& what);
+};
+
 JointStateMessage joint_state_message(const TickRecord& tick, const RobotDescription& robot,
                                       std::int64_t stamp_ns);
 ImuMessage imu_message(const TickRecord& tick, const RobotDescription& robot,
                        std::int64_t stamp_ns);
-/// The base link in the frame "odom".
-TransformMessage transform_message(const Odometry& odometry, const RobotDescription& robot,
-                                   std::int64_t stamp_ns);
 OdometryMessage odometry_message(const Odometry& odometry, const RobotDescription& robot,
                                  std::int64_t stamp_ns);
+/// For /tf: the base in the frame "odom", and every link that a joint turns.
+std::vector<TransformMessage> moving_transforms(const TickRecord& tick, const Odometry& odometry,
+                                                const RobotDescription& robot,
+                                                std::int64_t stamp_ns);
+/// For /tf_static: every other link.
+std::vector<TransformMessage> fixed_transforms(const RobotDescription& robot,
+                                               std::int64_t stamp_ns);
 
 }  // namespace sandrunner

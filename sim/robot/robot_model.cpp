@@ -12,6 +12,7 @@
 #include "rt/core/gate_config.h"
 #include "sim/robot/clearance.h"
 #include "sim/robot/embedded.h"
+#include "sim/robot/ros_description.h"
 #include "sim/robot/urdf_reader.h"
 
 namespace sandrunner::sim {
@@ -235,7 +236,6 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   robot.map = map_text;
   map.text("urdf");
   const Names names = read_names(map);
-  robot.description.base_link = names.base;
   robot.description.leg_names = names.legs;
   read_figures(map, robot);
   const double nominal_height_m = map.number_or(0.0, "pose.nominal_height_m", 0.0, 5.0);
@@ -248,6 +248,11 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   }
   for (int l = 0; l < kNumLegs; ++l) read_leg(urdf, names, l, robot);
   urdf.reject_other_masses();
+  std::array<LegLinks, kNumLegs> leg_links;
+  for (int l = 0; l < kNumLegs; ++l) {
+    leg_links[l] = {with_leg(names.links[2], names.legs[l]), with_leg(names.foot, names.legs[l])};
+  }
+  describe_for_ros(urdf, names.base, leg_links, robot);
   check_pose(map, "pose.nominal_rad", robot.nominal_rad, robot);
   check_pose(map, "pose.lying_rad", robot.lying_rad, robot);
   check_pose(map, "pose.fold_rad", all_legs(robot.fold_rad), robot);

@@ -34,6 +34,8 @@ class UrdfReader {
   const urdf::Cylinder* cylinder(const std::string& link_name) const;
   const urdf::Sphere* sphere(const std::string& link_name) const;
 
+  /// All of it.
+  const urdf::ModelInterface& model() const { return *urdf_; }
   std::size_t moving_joints() const;
   /// Fails for a mass that no body() has asked for: left out, the robot would be too light.
   void reject_other_masses() const;

@@ -51,7 +51,7 @@ void CommandWriter::send(const VelocityCommand& command) {
     dds_write(writer_, &twist);
     return;
   }
-  char frame[] = "base";
+  char frame[] = "base_link";
   geometry_msgs_msg_dds__TwistStamped_ stamped{};
   stamped.header.stamp = ros_time(
       std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count());

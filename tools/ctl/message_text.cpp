@@ -7,7 +7,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/core/mode_machine.h"
-#include "rt/telemetry/dds/diagnostics.h"
+#include "rt/telemetry/diagnostics.h"
 
 namespace sandrunner::ctl {
 namespace {

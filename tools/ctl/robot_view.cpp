@@ -8,7 +8,7 @@
 #include "rt/base/errors.h"
 #include "rt/base/quantile.h"
 #include "rt/core/messages.h"
-#include "rt/telemetry/dds/diagnostics.h"
+#include "rt/telemetry/diagnostics.h"
 #include "tools/ctl/message_text.h"
 
 namespace sandrunner::ctl {
@@ -70,6 +70,7 @@ void RobotView::add(const diagnostic_msgs_msg_dds__DiagnosticArray_& array, std:
     const auto& status = array.status._buffer[i];
     if (std::string(status.name) != "sandrunner") continue;
     count(kDiagnostics, now_ns);
+    robot_ = one_line(status.hardware_id ? status.hardware_id : "");
     diagnostics_.clear();
     for (std::uint32_t k = 0; k < status.values._length; ++k) {
       const auto& pair = status.values._buffer[k];
@@ -131,6 +132,7 @@ std::string RobotView::screen(std::int64_t now_ns) const {
   const auto row = [&](const char* name, const std::string& text) {
     out += fmt::format("{:<14} {}\n", name, text);
   };
+  row("robot", robot_);
   row("mode", mode(now_ns));
   row("faults", faults(now_ns));
   row("of joints", value("fault_joints"));

@@ -55,6 +55,7 @@ class RobotView {
   std::string command(std::int64_t now_ns) const;
   std::string recent(std::size_t part) const;  // quantiles of late, control or write
 
+  std::string robot_ = "-";      // which one it is, by the diagnostics
   sandrunner_TickState tick_{};  // latest
   std::int64_t last_tick_ns_ = 0;
   std::uint64_t sequence_number_ = 0;  // latest; 0: none yet

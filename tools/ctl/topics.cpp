@@ -18,7 +18,7 @@ std::string text_of(const void* message) {
 }
 
 constexpr int kDepth = 100;
-const std::array<Topic, 10> kTopics = {{
+const std::array<Topic, 11> kTopics = {{
     {"rt/joint_states", &sensor_msgs_msg_dds__JointState__desc, kDepth, false, false,
      text_of<sensor_msgs_msg_dds__JointState_>},
     {"rt/imu/data", &sensor_msgs_msg_dds__Imu__desc, kDepth, false, false,
@@ -26,6 +26,8 @@ const std::array<Topic, 10> kTopics = {{
     {"rt/odom", &nav_msgs_msg_dds__Odometry__desc, kDepth, false, false,
      text_of<nav_msgs_msg_dds__Odometry_>},
     {"rt/tf", &tf2_msgs_msg_dds__TFMessage__desc, kDepth, false, false,
+     text_of<tf2_msgs_msg_dds__TFMessage_>},
+    {"rt/tf_static", &tf2_msgs_msg_dds__TFMessage__desc, 1, true, true,
      text_of<tf2_msgs_msg_dds__TFMessage_>},
     {"rt/robot_description", &std_msgs_msg_dds__String__desc, 1, true, true,
      text_of<std_msgs_msg_dds__String_>},

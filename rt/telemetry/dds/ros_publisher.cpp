@@ -2,10 +2,10 @@
 #include "rt/telemetry/dds/ros_publisher.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/ros_time.h"
-#include "rt/telemetry/ros_messages.h"
 
 namespace sandrunner {
 namespace {
@@ -60,12 +60,30 @@ bool write(dds_entity_t writer, const OdometryMessage& m) {
   return dds_write(writer, &message) >= 0;
 }
 
-bool write(dds_entity_t writer, const TransformMessage& m) {
-  geometry_msgs_msg_dds__TransformStamped_ transform{
-      .header = header(m.header),
-      .child_frame_id = text(m.child_frame.c_str()),
-      .transform = {vector3(m.translation), quaternion(m.rotation_wxyz)}};
-  const tf2_msgs_msg_dds__TFMessage_ message{{1, 1, &transform, false}};
+bool write(dds_entity_t writer, const std::vector<TransformMessage>& m) {
+  std::vector<geometry_msgs_msg_dds__TransformStamped_> transforms;
+  for (const TransformMessage& t : m) {
+    transforms.push_back({.header = header(t.header),
+                          .child_frame_id = text(t.child_frame.c_str()),
+                          .transform = {vector3(t.translation), quaternion(t.rotation_wxyz)}});
+  }
+  const auto size = static_cast<std::uint32_t>(transforms.size());
+  const tf2_msgs_msg_dds__TFMessage_ message{{size, size, transforms.data(), false}};
+  return dds_write(writer, &message) >= 0;
+}
+
+bool write(dds_entity_t writer, const DiagnosticsMessage& m) {
+  std::vector<diagnostic_msgs_msg_dds__KeyValue_> pairs;
+  for (const auto& [key, value] : m.values) {
+    pairs.push_back({text(key.c_str()), text(value.c_str())});
+  }
+  const auto size = static_cast<std::uint32_t>(pairs.size());
+  diagnostic_msgs_msg_dds__DiagnosticStatus_ status{.level = m.level,
+                                                    .name = text(m.name.c_str()),
+                                                    .message = text(m.message.c_str()),
+                                                    .hardware_id = text(m.hardware_id.c_str()),
+                                                    .values = {size, size, pairs.data(), false}};
+  const diagnostic_msgs_msg_dds__DiagnosticArray_ message{header(m.header), {1, 1, &status, false}};
   return dds_write(writer, &message) >= 0;
 }
 
@@ -77,11 +95,18 @@ RosPublisher::RosPublisher(const DdsParticipant& participant, const RobotDescrip
           participant.writer("rt/joint_states", sensor_msgs_msg_dds__JointState__desc, kDepth)),
       imu_(participant.writer("rt/imu/data", sensor_msgs_msg_dds__Imu__desc, kDepth)),
       odometry_(participant.writer("rt/odom", nav_msgs_msg_dds__Odometry__desc, kDepth)),
-      transform_(participant.writer("rt/tf", tf2_msgs_msg_dds__TFMessage__desc, kDepth)) {
+      transforms_(participant.writer("rt/tf", tf2_msgs_msg_dds__TFMessage__desc, kDepth)),
+      diagnostics_(participant.writer("rt/diagnostics",
+                                      diagnostic_msgs_msg_dds__DiagnosticArray__desc, kDepth)) {
   const dds_entity_t description =
       participant.writer("rt/robot_description", std_msgs_msg_dds__String__desc, 1, true);
-  const std_msgs_msg_dds__String_ urdf{text(robot.urdf.c_str())};
+  const std_msgs_msg_dds__String_ urdf{text(robot.ros_urdf.c_str())};
   check_dds(dds_write(description, &urdf), "rt/robot_description");
+  // Holds at all times, whatever its stamp.
+  const dds_entity_t fixed =
+      participant.writer("rt/tf_static", tf2_msgs_msg_dds__TFMessage__desc, 1, true);
+  check_dds(write(fixed, fixed_transforms(robot, 0)) ? DDS_RETCODE_OK : DDS_RETCODE_ERROR,
+            "rt/tf_static");
 }
 
 int RosPublisher::publish(const TickRecord& tick, const Odometry& odometry, std::int64_t stamp_ns) {
@@ -89,8 +114,12 @@ int RosPublisher::publish(const TickRecord& tick, const Odometry& odometry, std:
   failed += write(joint_states_, joint_state_message(tick, robot_, stamp_ns)) ? 0 : 1;
   failed += write(imu_, imu_message(tick, robot_, stamp_ns)) ? 0 : 1;
   failed += write(odometry_, odometry_message(odometry, robot_, stamp_ns)) ? 0 : 1;
-  failed += write(transform_, transform_message(odometry, robot_, stamp_ns)) ? 0 : 1;
+  failed += write(transforms_, moving_transforms(tick, odometry, robot_, stamp_ns)) ? 0 : 1;
   return failed;
+}
+
+bool RosPublisher::publish(const DiagnosticsMessage& message) {
+  return write(diagnostics_, message);
 }
 
 }  // namespace sandrunner

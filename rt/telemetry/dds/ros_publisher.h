@@ -7,11 +7,12 @@
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/participant.h"
 #include "rt/telemetry/odometry.h"
+#include "rt/telemetry/ros_messages.h"
 
 namespace sandrunner {
 
-/// Publishes the robot's state in ROS 2's messages: rt/joint_states, rt/imu/data, rt/odom, rt/tf
-/// (odom to base link), and once rt/robot_description.
+/// Publishes the robot's state in ROS 2's messages: rt/joint_states, rt/imu/data, rt/odom, rt/tf,
+/// rt/diagnostics, and once rt/robot_description and rt/tf_static.
 class RosPublisher {
  public:
   /// Throws InputError.
@@ -19,10 +20,12 @@ class RosPublisher {
 
   /// `stamp_ns` since 1970. Returns how many of the four messages could not be written.
   int publish(const TickRecord& tick, const Odometry& odometry, std::int64_t stamp_ns);
+  /// False: it could not be written.
+  bool publish(const DiagnosticsMessage& message);
 
  private:
   const RobotDescription robot_;
-  const dds_entity_t joint_states_, imu_, odometry_, transform_;
+  const dds_entity_t joint_states_, imu_, odometry_, transforms_, diagnostics_;
 };
 
 }  // namespace sandrunner

@@ -7,9 +7,9 @@
 #include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/command_inbox.h"
-#include "rt/telemetry/dds/diagnostics.h"
 #include "rt/telemetry/dds/ros_publisher.h"
 #include "rt/telemetry/dds/tick_batches.h"
+#include "rt/telemetry/diagnostics.h"
 #include "rt/telemetry/odometry.h"
 
 namespace sandrunner {

@@ -50,6 +50,8 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
     : start_time_ns_(info.start_time_ns),
       robot_(info.robot),
       file_(path),
+      odometry_(info.robot),
+      diagnostics_(info.robot),
       in_the_middle_(info.first_tick > 0) {
   file_.write_metadata({kRunMetadata,
                         {{"build", info.build},
@@ -83,7 +85,20 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
   channels_.joint_states = ros(joint_state_topic());
   channels_.imu = ros(imu_topic());
   channels_.odometry = ros(odometry_topic());
-  channels_.transforms = ros(transform_topic());
+  channels_.transforms = ros(transforms_topic());
+  channels_.diagnostics = ros(diagnostics_topic());
+  // What ROS 2 gives to whoever comes later; here it comes first.
+  const std::uint64_t begin_ns = time_ns(info.first_tick);
+  const auto once = [&](const RosTopic& topic, const CdrWriter& content) {
+    file_.write_message({.channel_id = ros(topic),
+                         .sequence = 1,
+                         .log_time_ns = begin_ns,
+                         .publish_time_ns = begin_ns,
+                         .data = content.bytes()});
+  };
+  once(robot_description_topic(), cdr(robot_.ros_urdf));
+  once(fixed_transforms_topic(),
+       cdr(fixed_transforms(robot_, static_cast<std::int64_t>(begin_ns))));
 }
 
 void RecordingWriter::write(std::span<const TickRecord> ticks) {
@@ -122,6 +137,7 @@ void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
 
   for (const TickRecord& tick : batch) {
     odometry_.add(tick);
+    diagnostics_.add(tick);
     write_events(tick);
     const std::uint64_t number = tick.input.sensors.tick;
     if (number % kTicksPerPolicyStep != 0) continue;
@@ -130,7 +146,10 @@ void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
     message(channels_.joint_states, sequence, number, cdr(joint_state_message(tick, robot_, now)));
     message(channels_.imu, sequence, number, cdr(imu_message(tick, robot_, now)));
     message(channels_.odometry, sequence, number, cdr(odometry_message(odometry_, robot_, now)));
-    message(channels_.transforms, sequence, number, cdr(transform_message(odometry_, robot_, now)));
+    message(channels_.transforms, sequence, number,
+            cdr(moving_transforms(tick, odometry_, robot_, now)));
+    if (number % kControlHz != 0) continue;
+    message(channels_.diagnostics, number / kControlHz, number, cdr(diagnostics_.message(now)));
   }
   if (first - last_flush_tick_ >= kControlHz / 2) {
     file_.flush();

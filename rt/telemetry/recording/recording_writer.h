@@ -7,6 +7,7 @@
 
 #include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
+#include "rt/telemetry/diagnostics.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
 #include "rt/telemetry/odometry.h"
 
@@ -61,9 +62,10 @@ class RecordingWriter {
   McapWriter file_;
   struct Channels {
     std::uint16_t ticks = 0, states = 0, events = 0, joint_states = 0, imu = 0, odometry = 0,
-                  transforms = 0;
+                  transforms = 0, diagnostics = 0;
   } channels_;
   Odometry odometry_;
+  Diagnostics diagnostics_;
   std::uint64_t batches_ = 0, states_ = 0, events_ = 0, last_flush_tick_ = 0;
   bool in_the_middle_, has_last_ = false;
   std::uint64_t last_mode_ = 0, last_faults_ = 0, last_request_ = 0;

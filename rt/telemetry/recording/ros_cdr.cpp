@@ -79,7 +79,7 @@ RosTopic odometry_topic() {
                   {"geometry_msgs/Vector3", kVector3}})};
 }
 
-RosTopic transform_topic() {
+RosTopic transforms_topic() {
   return {"/tf", "tf2_msgs/msg/TFMessage",
           with_parts("geometry_msgs/TransformStamped[] transforms\n",
                      {{"geometry_msgs/TransformStamped",
@@ -89,6 +89,27 @@ RosTopic transform_topic() {
                       {"geometry_msgs/Transform", "Vector3 translation\nQuaternion rotation\n"},
                       {"geometry_msgs/Vector3", kVector3},
                       {"geometry_msgs/Quaternion", kQuaternion}})};
+}
+
+RosTopic fixed_transforms_topic() {
+  RosTopic topic = transforms_topic();
+  topic.topic = "/tf_static";
+  return topic;
+}
+
+RosTopic robot_description_topic() {
+  return {"/robot_description", "std_msgs/msg/String", "string data\n"};
+}
+
+RosTopic diagnostics_topic() {
+  return {"/diagnostics", "diagnostic_msgs/msg/DiagnosticArray",
+          with_parts("std_msgs/Header header\nDiagnosticStatus[] status\n",
+                     {{"std_msgs/Header", kHeader},
+                      {"builtin_interfaces/Time", kTime},
+                      {"diagnostic_msgs/DiagnosticStatus",
+                       "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\nbyte level\n"
+                       "string name\nstring message\nstring hardware_id\nKeyValue[] values\n"},
+                      {"diagnostic_msgs/KeyValue", "string key\nstring value\n"}})};
 }
 
 CdrWriter cdr(const JointStateMessage& message) {
@@ -119,10 +140,26 @@ CdrWriter cdr(const OdometryMessage& message) {
   return out;
 }
 
-CdrWriter cdr(const TransformMessage& message) {
+CdrWriter cdr(const std::vector<TransformMessage>& transforms) {
   CdrWriter out;
-  out.number(std::uint32_t{1});
-  put(out, message);
+  out.number(static_cast<std::uint32_t>(transforms.size()));
+  for (const TransformMessage& transform : transforms) put(out, transform);
+  return out;
+}
+
+CdrWriter cdr(const DiagnosticsMessage& message) {
+  CdrWriter out;
+  put(out, message.header);
+  out.number(std::uint32_t{1}).number(static_cast<std::uint8_t>(message.level));
+  out.text(message.name).text(message.message).text(message.hardware_id);
+  out.number(static_cast<std::uint32_t>(message.values.size()));
+  for (const auto& [key, value] : message.values) out.text(key).text(value);
+  return out;
+}
+
+CdrWriter cdr(const std::string& text) {
+  CdrWriter out;
+  out.text(text);
   return out;
 }
 

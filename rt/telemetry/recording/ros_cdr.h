@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "rt/telemetry/recording/cdr.h"
 #include "rt/telemetry/ros_messages.h"
@@ -19,12 +20,17 @@ struct RosTopic {
 RosTopic joint_state_topic();
 RosTopic imu_topic();
 RosTopic odometry_topic();
-RosTopic transform_topic();
+RosTopic transforms_topic();         ///< "/tf"
+RosTopic fixed_transforms_topic();   ///< "/tf_static"
+RosTopic robot_description_topic();  ///< a std_msgs/String
+RosTopic diagnostics_topic();
 
 CdrWriter cdr(const JointStateMessage& message);
 CdrWriter cdr(const ImuMessage& message);
 CdrWriter cdr(const OdometryMessage& message);
-/// A tf2_msgs/TFMessage with this transform only.
-CdrWriter cdr(const TransformMessage& message);
+CdrWriter cdr(const std::vector<TransformMessage>& transforms);
+CdrWriter cdr(const DiagnosticsMessage& message);
+/// A std_msgs/String.
+CdrWriter cdr(const std::string& text);
 
 }  // namespace sandrunner

@@ -11,12 +11,27 @@ namespace sandrunner {
 
 /// A robot with names of its own.
 inline RobotDescription example_robot() {
-  return {.name = "example",
-          .base_link = "trunk",
-          .leg_names = {"FL", "FR", "RL", "RR"},
-          .joint_names = {"FL_hip", "FL_thigh", "FL_calf", "FR_hip", "FR_thigh", "FR_calf",
-                          "RL_hip", "RL_thigh", "RL_calf", "RR_hip", "RR_thigh", "RR_calf"},
-          .urdf = "<robot\nname=\"example\"/>"};
+  return {
+      .name = "example",
+      .leg_names = {"FL", "FR", "RL", "RR"},
+      .joint_names = {"FL_hip", "FL_thigh", "FL_calf", "FR_hip", "FR_thigh", "FR_calf", "RL_hip",
+                      "RL_thigh", "RL_calf", "RR_hip", "RR_thigh", "RR_calf"},
+      .urdf = "<robot/>",
+      .base_frame = "base_link",
+      .ros_urdf = "<robot\nname=\"example\"/>",
+      .frames = {{.name = "trunk", .parent = "base_link"},
+                 {.name = "FL_hip_link",
+                  .parent = "trunk",
+                  .translation_m = {0.3, 0.1, 0.0},
+                  .joint = 0,
+                  .axis = {1.0, 0.0, 0.0}},
+                 {.name = "FL_thigh_link",
+                  .parent = "FL_hip_link",
+                  .translation_m = {0.0, 0.05, -0.01},
+                  .joint = 1,
+                  .axis = {0.0, 1.0, 0.0}},
+                 {.name = "FL_foot", .parent = "FL_thigh_link", .translation_m = {0.0, 0.0, -0.4}}},
+      .outline = {{.frame = "FL_foot", .radius_m = 0.02}}};
 }
 
 inline constexpr std::int64_t kExampleStart_ns = 1'700'000'000'900'000'000;

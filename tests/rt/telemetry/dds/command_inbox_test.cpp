@@ -217,7 +217,7 @@ TEST(CommandInboxTest, TwistStampedIsTakenIfTheConfigSaysSo) {
   Peer peer(config);
   const auto writer = peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__TwistStamped__desc);
   geometry_msgs_msg_dds__TwistStamped_ twist{};
-  char frame[] = "base";
+  char frame[] = "base_link";
   twist.header.frame_id = frame;
   twist.header.stamp.sec = 1;  // long ago, which is ignored
   twist.twist.linear.x = 0.5;

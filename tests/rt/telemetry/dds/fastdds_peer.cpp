@@ -99,6 +99,9 @@ void run(int domain, double vx_mps, double duration_s) {
   Received<std_msgs::msg::dds_::String_PubSubType> description(
       participant, subscriber, "rt/robot_description", "std_msgs::msg::dds_::String_", true);
 
+  Received<tf2_msgs::msg::dds_::TFMessage_PubSubType> tf_static(
+      participant, subscriber, "rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_", true);
+
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
   qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = dds::VOLATILE_DURABILITY_QOS;
@@ -125,6 +128,7 @@ void run(int domain, double vx_mps, double duration_s) {
     tf.take();
     diagnostics.take();
     description.take();
+    tf_static.take();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 
@@ -157,6 +161,10 @@ void run(int domain, double vx_mps, double duration_s) {
   for (const auto& s : diagnostics.last.status()) {
     std::printf(" %s level %d message %s", s.name().c_str(), s.level(), s.message().c_str());
     for (const auto& v : s.values()) std::printf(" %s=%s", v.key().c_str(), v.value().c_str());
+  }
+  std::printf("\ntf_static %d", tf_static.count);
+  for (const auto& t : tf_static.last.transforms()) {
+    std::printf(" %s %s", t.header().frame_id().c_str(), t.child_frame_id().c_str());
   }
   std::printf("\nrobot_description %d %s\n", description.count, description.last.data().c_str());
 }

@@ -49,7 +49,7 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   const auto has = [&](const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
   };
-  has(example_robot().urdf);
+  has(example_robot().ros_urdf);
   // The stamp says which tick it is; the last joint's position says the same.
   const auto at = text.find("joint_states ");
   int count = 0;
@@ -57,7 +57,7 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   ASSERT_EQ(std::sscanf(text.c_str() + at, "joint_states %d stamp %lf", &count, &stamp_s), 2);
   const double tick = (stamp_s - 1'700'000'000.9) * kControlHz;
   std::ostringstream joints;
-  joints << "frame trunk names 12";
+  joints << "frame base_link names 12";
   for (int j = 0; j < kNumJoints; ++j) {
     char values[100];
     std::snprintf(values, sizeof values, " %s %.6f %d.000000 %d.000000",
@@ -67,10 +67,11 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   }
   has(joints.str());
   has(" wxyz 0.707107 0.000000 0.000000 0.707107 gyro 0.100 0.200 0.300 acc 0.400 0.500 9.800\n");
-  has(" frames odom trunk y ");
+  has(" frames odom base_link y ");
   has(" z 0.450 vx 0.800 yaw_variance 0.0000");
-  has(" odom trunk y ");
-  has(" w 0.707107\n");
+  has(" odom base_link y ");
+  has(" w 0.707107 trunk FL_hip_link y 0.100000 ");
+  has("\ntf_static 1 base_link trunk FL_thigh_link FL_foot\n");
   has(" sandrunner level 0 message walk mode=walk faults=none ");
 }
 

@@ -204,16 +204,17 @@ TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
             1);
   EXPECT_EQ(take<sensor_msgs_msg_dds__JointState_>(joints,
                                                    [&](const auto& m) {
-                                                     EXPECT_STREQ(m.header.frame_id, "trunk");
+                                                     EXPECT_STREQ(m.header.frame_id, "base_link");
                                                      EXPECT_STREQ(m.name._buffer[0], "fl_roll");
                                                      EXPECT_STREQ(m.name._buffer[11], "rr_knee");
                                                    }),
             1);
-  EXPECT_EQ(
-      take<tf2_msgs_msg_dds__TFMessage_>(
-          transforms,
-          [&](const auto& m) { EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "trunk"); }),
-      1);
+  EXPECT_EQ(take<tf2_msgs_msg_dds__TFMessage_>(
+                transforms,
+                [&](const auto& m) {
+                  EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "base_link");
+                }),
+            1);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "tests/rt/telemetry/dds/support.h"
@@ -35,7 +36,7 @@ TEST(TelemetryTest, JointStatesHaveTheRobotsNamesValuesStampsAndTheRateThatWasAs
       reader, [&](const sensor_msgs_msg_dds__JointState_& m) {
         const std::uint64_t tick = 40 * static_cast<std::uint64_t>(++n);
         const std::int64_t stamp_ns = kExampleStart_ns + static_cast<std::int64_t>(tick) * 250'000;
-        EXPECT_STREQ(m.header.frame_id, "trunk");
+        EXPECT_STREQ(m.header.frame_id, "base_link");
         EXPECT_EQ(m.header.stamp.sec, stamp_ns / 1'000'000'000);
         EXPECT_EQ(m.header.stamp.nanosec, stamp_ns % 1'000'000'000);
         ASSERT_EQ(m.name._length, 12u);
@@ -58,7 +59,7 @@ TEST(TelemetryTest, ImuIsWhatTheSensorSaid) {
   setup.publish(41);
   const auto count =
       take<sensor_msgs_msg_dds__Imu_>(reader, [](const sensor_msgs_msg_dds__Imu_& m) {
-        EXPECT_STREQ(m.header.frame_id, "trunk");
+        EXPECT_STREQ(m.header.frame_id, "base_link");
         EXPECT_EQ(m.orientation.w, 0.70710678118654752);
         EXPECT_EQ(m.orientation.x, 0.0);
         EXPECT_EQ(m.orientation.z, 0.70710678118654752);
@@ -78,7 +79,7 @@ TEST(TelemetryTest, OdometryAndTfIntegrateTheEstimatedVelocityInTheWorld) {
   const auto count =
       take<nav_msgs_msg_dds__Odometry_>(odom, [&](const nav_msgs_msg_dds__Odometry_& m) {
         EXPECT_STREQ(m.header.frame_id, "odom");
-        EXPECT_STREQ(m.child_frame_id, "trunk");
+        EXPECT_STREQ(m.child_frame_id, "base_link");
         EXPECT_GT(m.pose.covariance[0], last_variance_m2);
         EXPECT_GT(m.pose.covariance[35], 0.0);
         last_variance_m2 = m.pose.covariance[0];
@@ -92,25 +93,41 @@ TEST(TelemetryTest, OdometryAndTfIntegrateTheEstimatedVelocityInTheWorld) {
   EXPECT_NEAR(y_m, 1.6, 1e-6);
   double tf_y_m = 0.0;
   take<tf2_msgs_msg_dds__TFMessage_>(tf, [&](const tf2_msgs_msg_dds__TFMessage_& m) {
-    ASSERT_EQ(m.transforms._length, 1u);
+    ASSERT_EQ(m.transforms._length, 3u);  // and the two links that a joint turns
     EXPECT_STREQ(m.transforms._buffer[0].header.frame_id, "odom");
-    EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "trunk");
+    EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "base_link");
     tf_y_m = m.transforms._buffer[0].transform.translation.y;
     EXPECT_EQ(m.transforms._buffer[0].transform.rotation.w, 0.70710678118654752);
   });
   EXPECT_EQ(tf_y_m, y_m);
 }
 
-TEST(TelemetryTest, OutsideWalkOldEstimatesDoNotMoveTheRobot) {
-  Odometry odometry;
-  for (std::uint64_t tick = 0; tick < 4000; ++tick) {
-    TickRecord record = example_tick(tick);
-    record.output.mode = Mode::kStand;
-    odometry.add(record);
-  }
-  EXPECT_EQ(odometry.position_m(), Vector3{});
-  EXPECT_EQ(odometry.velocity_mps(), Vector3{});
-  EXPECT_EQ(odometry.pose_covariance()[0], 0.0);
+TEST(TelemetryTest, TheTransformsLeadFromOdomToTheFeetAndFixedOnesReachAPeerThatComesLater) {
+  Published setup;
+  const auto tf = setup.peer.reader("rt/tf", tf2_msgs_msg_dds__TFMessage__desc);
+  setup.publish(41);
+  const auto fixed = setup.peer.reader("rt/tf_static", tf2_msgs_msg_dds__TFMessage__desc, true);
+  std::map<std::string, std::string> parents;
+  std::map<std::string, geometry_msgs_msg_dds__Transform_> transforms;
+  const auto add = [&](const tf2_msgs_msg_dds__TFMessage_& m) {
+    for (std::uint32_t i = 0; i < m.transforms._length; ++i) {
+      const auto& t = m.transforms._buffer[i];
+      EXPECT_TRUE(parents.emplace(t.child_frame_id, t.header.frame_id).second);
+      transforms[t.child_frame_id] = t.transform;
+    }
+  };
+  take<tf2_msgs_msg_dds__TFMessage_>(tf, add);
+  EXPECT_TRUE(wait_until([&] { return take<tf2_msgs_msg_dds__TFMessage_>(fixed, add) > 0; }));
+  EXPECT_EQ(parents, (std::map<std::string, std::string>{{"base_link", "odom"},
+                                                         {"trunk", "base_link"},
+                                                         {"FL_hip_link", "trunk"},
+                                                         {"FL_thigh_link", "FL_hip_link"},
+                                                         {"FL_foot", "FL_thigh_link"}}));
+  const double thigh_rad = 0.1 + 1e-6 * 40;  // of the joint about y, in tick 40
+  EXPECT_EQ(transforms["FL_thigh_link"].translation.y, 0.05);
+  EXPECT_EQ(transforms["FL_thigh_link"].rotation.y, std::sin(thigh_rad / 2));
+  EXPECT_EQ(transforms["FL_thigh_link"].rotation.w, std::cos(thigh_rad / 2));
+  EXPECT_EQ(transforms["FL_foot"].translation.z, -0.4);
 }
 
 TEST(TelemetryTest, TheDescriptionReachesAPeerThatComesLater) {
@@ -123,7 +140,7 @@ TEST(TelemetryTest, TheDescriptionReachesAPeerThatComesLater) {
     return take<std_msgs_msg_dds__String_>(
                reader, [&](const std_msgs_msg_dds__String_& m) { text = m.data; }) > 0;
   }));
-  EXPECT_EQ(text, example_robot().urdf);
+  EXPECT_EQ(text, example_robot().ros_urdf);
 }
 
 TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsTimesAndTheGatesCounters) {
@@ -153,6 +170,8 @@ TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsTimesAndTheGatesCoun
         ASSERT_EQ(m.status._length, 1u);
         const auto& status = m.status._buffer[0];
         levels.push_back(status.level);
+        EXPECT_EQ(status.hardware_id, hardware_id(example_robot()));
+        EXPECT_EQ(std::string(status.hardware_id).rfind("example@", 0), 0u);
         for (std::uint32_t i = 0; i < status.values._length; ++i) {
           values[status.values._buffer[i].key] = status.values._buffer[i].value;
         }

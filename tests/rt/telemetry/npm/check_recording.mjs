@@ -17,6 +17,9 @@ const expectedTopics = {
   "/imu/data": ["sensor_msgs/msg/Imu", "ros2msg", batches],
   "/odom": ["nav_msgs/msg/Odometry", "ros2msg", batches],
   "/tf": ["tf2_msgs/msg/TFMessage", "ros2msg", batches],
+  "/tf_static": ["tf2_msgs/msg/TFMessage", "ros2msg", 1],
+  "/robot_description": ["std_msgs/msg/String", "ros2msg", 1],
+  "/diagnostics": ["diagnostic_msgs/msg/DiagnosticArray", "ros2msg", Math.ceil(ticks / 4000)],
 };
 
 // 64-bit words of a tick by the schema that the file brings along.

@@ -89,7 +89,7 @@ TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
       EXPECT_NE(content["/joint_states"].find(std::string(leg) + joint), std::string::npos);
     }
   }
-  EXPECT_NE(content["/tf"].find("trunk"), std::string::npos);
+  EXPECT_NE(content["/tf"].find("base_link"), std::string::npos);
 }
 
 TEST_F(RecordingTest, ReplaysWithTheRobotThatItCarries) {
