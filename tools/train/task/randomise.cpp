@@ -36,8 +36,9 @@ double Task::normal(int env, Env& e) const {
 
 void Task::new_command(int env, Env& e) const {
   const CommandSettings& c = config_.command;
-  const double vx = uniform(env, e) < c.forward_share ? uniform(env, e, 0.0, curriculum_.speed_mps)
-                                                      : uniform(env, e, -1.0, 1.0);
+  const double vx = uniform(env, e) < c.forward_share
+                        ? uniform(env, e, 0.0, curriculum_.speed_mps)
+                        : uniform(env, e, -c.backward_mps, c.backward_mps);
   double vy = uniform(env, e, -c.lateral_mps, c.lateral_mps);
   if (uniform(env, e) >= c.lateral_share) vy = 0.0;
   double wz = uniform(env, e, -c.yaw_radps, c.yaw_radps);
@@ -167,11 +168,13 @@ void Task::hard_reset(int env, Env& e) {
   e.air_s = e.stance_s = {};
   e.unloaded_steps = {};
   e.drift = {};
+  // Some start exactly as a robot that has stood up: their first step has to break the symmetry.
+  const double off = uniform(env, e) < s.reset_nominal_share ? 0.0 : 1.0;
   sim::RobotState<float> state;
   sim::RigidState<float>& x = state.rigid;
   for (int j = 0; j < kNumJoints; ++j) {
     x.q[j] = static_cast<float>(robot_.nominal_rad[j] +
-                                uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
+                                off * uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
     e.drive.target_before[j] = e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]);
   }
   const auto draw = [&](double width) {
@@ -183,16 +186,16 @@ void Task::hard_reset(int env, Env& e) {
   const float height = sim::surface_at(e.terrain, x.position.x, x.position.y).height;
   x.position.z =
       static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
-  const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
+  const sim::Vec3<float> tilt{draw(off * s.reset_tilt_rad), draw(off * s.reset_tilt_rad), 0.0f};
   x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
   // Any heading: in small steps, which keep the series of `integrate` accurate.
   const float yaw = draw(kHalfTurn_rad);
   for (int i = 0; i < 8; ++i) {
     x.orientation = sim::integrate(x.orientation, sim::Vec3<float>{0.0f, 0.0f, yaw / 8.0f});
   }
-  x.velocity = {draw(s.reset_speed_mps), draw(s.reset_speed_mps), draw(s.reset_speed_mps)};
-  x.angular_velocity = {draw(s.reset_rate_radps), draw(s.reset_rate_radps),
-                        draw(s.reset_rate_radps)};
+  const double speed = off * s.reset_speed_mps, rate = off * s.reset_rate_radps;
+  x.velocity = {draw(speed), draw(speed), draw(speed)};
+  x.angular_velocity = {draw(rate), draw(rate), draw(rate)};
   // With a fresh report: the critic sees nothing of the robot that fell.
   sim::BatchRobot<float> fresh = batch_.robot(env);
   fresh.state = state;

@@ -106,7 +106,7 @@ class Task {
                   const sim::BatchReport<float>& report, float* out) const;
 
   // task.cpp: a step.
-  void set_targets(int env, const float* action);
+  void set_targets(int env, const float* modes);
   StepOutcome follow(Env& e, const sim::RobotState<float>& state,
                      const sim::BatchReport<float>& report,
                      const sim::BatchSums<float>& sums) const;
