@@ -8,12 +8,10 @@
 
 namespace sandrunner::train {
 
-/// What the network in training answers in: its output 3 m + j moves joint j of all legs in mode m,
-/// by the signs of kLegModes. An orthogonal change of coordinates, then a gain per mode: noise is
-/// equal in all outputs, so a gain decides how far a mode is explored, and how fast it is learnt.
-inline constexpr std::array<const char*, kNumLegs> kLegModeNames = {"pronk", "bound", "pace",
-                                                                    "trot"};
-/// Row: leg, column: mode.
+/// The coordinates in which the network answers while it is trained: its output 3 m + j moves joint
+/// j of all legs in mode m; row: leg, column: mode (pronk, bound, pace, trot). Orthogonal. The
+/// action's noise is alike in all outputs, so a gain on a mode decides how far it is explored and
+/// how fast it is learnt.
 inline constexpr std::array<std::array<float, kNumLegs>, kNumLegs> kLegModes = {{
     {0.5f, 0.5f, 0.5f, 0.5f},
     {0.5f, 0.5f, -0.5f, -0.5f},

@@ -34,14 +34,20 @@ double Task::normal(int env, Env& e) const {
   return sim::random_normal(seed_, static_cast<std::uint64_t>(env) + (1ull << 32), e.draws++);
 }
 
+CommandRange Task::command_range() const {
+  const CommandSettings& c = config_.command;
+  return {curriculum_.speed_mps, c.backward_mps, c.lateral_mps, c.yaw_radps};
+}
+
 void Task::new_command(int env, Env& e) const {
   const CommandSettings& c = config_.command;
+  const CommandRange r = command_range();
   const double vx = uniform(env, e) < c.forward_share
-                        ? uniform(env, e, 0.0, curriculum_.speed_mps)
-                        : uniform(env, e, -c.backward_mps, c.backward_mps);
-  double vy = uniform(env, e, -c.lateral_mps, c.lateral_mps);
+                        ? uniform(env, e, 0.0, r.forward_mps)
+                        : uniform(env, e, -r.backward_mps, r.backward_mps);
+  double vy = uniform(env, e, -r.lateral_mps, r.lateral_mps);
   if (uniform(env, e) >= c.lateral_share) vy = 0.0;
-  double wz = uniform(env, e, -c.yaw_radps, c.yaw_radps);
+  double wz = uniform(env, e, -r.yaw_radps, r.yaw_radps);
   if (uniform(env, e) >= c.yaw_share) wz = 0.0;
   e.command = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
   e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1],
@@ -50,7 +56,7 @@ void Task::new_command(int env, Env& e) const {
   if (rest < c.zero_share) {
     e.command = {};
   } else if (rest < c.zero_share + c.in_place_share) {
-    e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -c.yaw_radps, c.yaw_radps))};
+    e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -r.yaw_radps, r.yaw_radps))};
   }
   e.command_steps_left =
       static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));

@@ -146,6 +146,21 @@ struct CostRamp {
   double prior = 0.0;   ///< 1 to exactly 0: of the prior
 };
 
+/// Those after so many transitions.
+inline CostRamp cost_ramp_at(const RewardSettings& r, double transitions) {
+  const auto passed = [&](double start, double end) {  // 0 to exactly 1
+    return std::clamp((transitions - start) / std::max(end - start, 1.0), 0.0, 1.0);
+  };
+  const double rise = std::min(transitions / r.cost_ramp_transitions, 1.0);
+  const double late = passed(r.cost_end_start_transitions, r.cost_end_transitions);
+  return {
+      .all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late,
+      .energy = 1.0 + (r.energy_end - 1.0) * late,
+      .late = late,
+      .prior = 1.0 - passed(r.prior_start_transitions, r.prior_end_transitions),
+  };
+}
+
 /// One term of the reward, for a step.
 struct RewardTerm {
   const char* name;  ///< column reward_<name> of the learning curve

@@ -40,7 +40,7 @@ Task::Task(const TaskConfig& config, const sim::Robot& robot, const TaskShape& s
       envs_(static_cast<std::size_t>(shape.envs)),
       sums_(static_cast<std::size_t>(shape.envs / shape.block_envs)),
       curriculum_{config.command.speed_start_mps, 0.0},
-      cost_ramp_{.all = config.reward.cost_ramp_start, .prior = 1.0},
+      cost_ramp_(cost_ramp_at(config.reward, 0.0)),
       tilt_end_cos_(std::cos(config.episode.tilt_end_deg * std::numbers::pi / 180.0)) {
   for (int env = 0; env < shape.envs; ++env) {
     Env& e = envs_[static_cast<std::size_t>(env)];
@@ -176,7 +176,7 @@ WindowStats Task::end_window(double transitions) {
   }
   const WindowStats w = all.means();
   advance_curriculum(w);
-  advance_costs(transitions);
+  cost_ramp_ = cost_ramp_at(config_.reward, transitions);
   return w;
 }
 
@@ -189,19 +189,6 @@ void Task::advance_curriculum(const WindowStats& w) {
   if (w.kernel[1] > g.gate_kernel && w.falls[1] < g.gate_falls) {
     curriculum_.ground = std::min(curriculum_.ground + g.open_step, 1.0);
   }
-}
-
-void Task::advance_costs(double transitions) {
-  const RewardSettings& r = config_.reward;
-  const auto passed = [&](double start, double end) {  // 0 to 1
-    return std::clamp((transitions - start) / std::max(end - start, 1.0), 0.0, 1.0);
-  };
-  const double rise = std::min(transitions / r.cost_ramp_transitions, 1.0);
-  const double late = passed(r.cost_end_start_transitions, r.cost_end_transitions);
-  cost_ramp_.all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late;
-  cost_ramp_.energy = 1.0 + (r.energy_end - 1.0) * late;
-  cost_ramp_.late = late;
-  cost_ramp_.prior = 1.0 - passed(r.prior_start_transitions, r.prior_end_transitions);
 }
 
 void Task::save(learner::Checkpoint& checkpoint) const {
