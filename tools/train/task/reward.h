@@ -30,6 +30,7 @@ struct RewardSettings {
   double cost_end_transitions = 0;        ///< transitions at which it has
   double energy_end = 0;                  ///< factor of the energy besides, at the end
   double base_vertical_end = 0;           ///< factor of base_vertical besides, at the end
+  double speed_excess_end = 0;            ///< factor of speed_excess besides, at the end
   double height_end_m = 0;                ///< height_m at the end
   double prior_start_transitions = 0;     ///< transitions from which the prior fades ...
   double prior_end_transitions = 0;       ///< ... and at which it is gone
@@ -90,6 +91,7 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"cost_end_transitions", &RewardSettings::cost_end_transitions, 0.0, 1e12},
     {"energy_end", &RewardSettings::energy_end, 0.0, kNoLimit},
     {"base_vertical_end", &RewardSettings::base_vertical_end, 0.0, kNoLimit},
+    {"speed_excess_end", &RewardSettings::speed_excess_end, 0.0, kNoLimit},
     {"height_end_m", &RewardSettings::height_end_m, 0.0, kNoLimit},
     {"prior_start_transitions", &RewardSettings::prior_start_transitions, 0.0, 1e12},
     {"prior_end_transitions", &RewardSettings::prior_end_transitions, 0.0, 1e12},
@@ -144,6 +146,9 @@ struct CostRamp {
   double energy = 1.0;  ///< of that of energy, besides
   double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
   double prior = 0.0;   ///< 1 to exactly 0: of the prior
+
+  /// 1, and in the end `end`.
+  double grown(double end) const { return 1.0 + (end - 1.0) * late; }
 };
 
 /// Those after so many transitions.
@@ -249,8 +254,9 @@ inline double joint_speed_charged(const StepOutcome& s, const RewardSettings& r,
   return r.joint_speed * s.speed_squared;
 }
 
-inline double speed_excess_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
-  return r.speed_excess * s.speed_excess;
+inline double speed_excess_charged(const StepOutcome& s, const RewardSettings& r,
+                                   const CostRamp& ramp) {
+  return r.speed_excess * ramp.grown(r.speed_excess_end) * s.speed_excess;
 }
 
 inline double slip_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
@@ -303,7 +309,7 @@ inline double orientation_charged(const StepOutcome& s, const RewardSettings& r,
 
 inline double base_vertical_charged(const StepOutcome& s, const RewardSettings& r,
                                     const CostRamp& ramp) {
-  return r.base_vertical * (1.0 + (r.base_vertical_end - 1.0) * ramp.late) * s.vz * s.vz;
+  return r.base_vertical * ramp.grown(r.base_vertical_end) * s.vz * s.vz;
 }
 
 inline double base_roll_pitch_charged(const StepOutcome& s, const RewardSettings& r,
