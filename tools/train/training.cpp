@@ -16,6 +16,7 @@
 #include "rt/base/build.h"
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
+#include "tools/train/task/leg_modes.h"
 
 namespace sandrunner::train {
 namespace {
@@ -255,6 +256,11 @@ PolicyFile Training::policy_file() const {
     for (const learner::PolicyTensor& from : tensors) {
       if (from.name == to.name) *to.values = from.values;
     }
+  }
+  // The robot's network answers in joints.
+  for (std::vector<float>* rows : {&p.actor.back().weight, &p.actor.back().bias}) {
+    const std::vector<float> modes = *rows;
+    joints_from_modes(policy.mode_gain, modes.data(), modes.size() / kNumJoints, rows->data());
   }
   file.golden = make_golden_example(p);
   return file;

@@ -106,7 +106,9 @@ learner::Symmetry Task::symmetry() {
   add(s.observation, {-1, 1, -1});      // angular velocity
   add_legs(s.observation, {-1, 1, 1});  // joint positions less nominal, and velocities
   add_legs(s.observation, {-1, 1, 1});
-  add_legs(s.action, {-1, 1, 1});
+  // Modes of the legs: pronk and bound are their own images, pace and trot begin with the other
+  // side.
+  for (const float side : {1.0f, 1.0f, -1.0f, -1.0f}) add(s.action, {-side, side, side});
   return s;
 }
 

@@ -34,13 +34,20 @@ double Task::normal(int env, Env& e) const {
   return sim::random_normal(seed_, static_cast<std::uint64_t>(env) + (1ull << 32), e.draws++);
 }
 
+CommandRange Task::command_range() const {
+  const CommandSettings& c = config_.command;
+  return {curriculum_.speed_mps, c.backward_mps, c.lateral_mps, c.yaw_radps};
+}
+
 void Task::new_command(int env, Env& e) const {
   const CommandSettings& c = config_.command;
-  const double vx = uniform(env, e) < c.forward_share ? uniform(env, e, 0.0, curriculum_.speed_mps)
-                                                      : uniform(env, e, -1.0, 1.0);
-  double vy = uniform(env, e, -c.lateral_mps, c.lateral_mps);
+  const CommandRange r = command_range();
+  const double vx = uniform(env, e) < c.forward_share
+                        ? uniform(env, e, 0.0, r.forward_mps)
+                        : uniform(env, e, -r.backward_mps, r.backward_mps);
+  double vy = uniform(env, e, -r.lateral_mps, r.lateral_mps);
   if (uniform(env, e) >= c.lateral_share) vy = 0.0;
-  double wz = uniform(env, e, -c.yaw_radps, c.yaw_radps);
+  double wz = uniform(env, e, -r.yaw_radps, r.yaw_radps);
   if (uniform(env, e) >= c.yaw_share) wz = 0.0;
   e.command = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
   e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1],
@@ -49,7 +56,7 @@ void Task::new_command(int env, Env& e) const {
   if (rest < c.zero_share) {
     e.command = {};
   } else if (rest < c.zero_share + c.in_place_share) {
-    e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -c.yaw_radps, c.yaw_radps))};
+    e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -r.yaw_radps, r.yaw_radps))};
   }
   e.command_steps_left =
       static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
@@ -167,11 +174,13 @@ void Task::hard_reset(int env, Env& e) {
   e.air_s = e.stance_s = {};
   e.unloaded_steps = {};
   e.drift = {};
+  // Some start exactly as a robot that has stood up: their first step has to break the symmetry.
+  const double off = uniform(env, e) < s.reset_nominal_share ? 0.0 : 1.0;
   sim::RobotState<float> state;
   sim::RigidState<float>& x = state.rigid;
   for (int j = 0; j < kNumJoints; ++j) {
     x.q[j] = static_cast<float>(robot_.nominal_rad[j] +
-                                uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
+                                off * uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
     e.drive.target_before[j] = e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]);
   }
   const auto draw = [&](double width) {
@@ -183,16 +192,16 @@ void Task::hard_reset(int env, Env& e) {
   const float height = sim::surface_at(e.terrain, x.position.x, x.position.y).height;
   x.position.z =
       static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
-  const sim::Vec3<float> tilt{draw(s.reset_tilt_rad), draw(s.reset_tilt_rad), 0.0f};
+  const sim::Vec3<float> tilt{draw(off * s.reset_tilt_rad), draw(off * s.reset_tilt_rad), 0.0f};
   x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
   // Any heading: in small steps, which keep the series of `integrate` accurate.
   const float yaw = draw(kHalfTurn_rad);
   for (int i = 0; i < 8; ++i) {
     x.orientation = sim::integrate(x.orientation, sim::Vec3<float>{0.0f, 0.0f, yaw / 8.0f});
   }
-  x.velocity = {draw(s.reset_speed_mps), draw(s.reset_speed_mps), draw(s.reset_speed_mps)};
-  x.angular_velocity = {draw(s.reset_rate_radps), draw(s.reset_rate_radps),
-                        draw(s.reset_rate_radps)};
+  const double speed = off * s.reset_speed_mps, rate = off * s.reset_rate_radps;
+  x.velocity = {draw(speed), draw(speed), draw(speed)};
+  x.angular_velocity = {draw(rate), draw(rate), draw(rate)};
   // With a fresh report: the critic sees nothing of the robot that fell.
   sim::BatchRobot<float> fresh = batch_.robot(env);
   fresh.state = state;

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <iterator>
 
+#include "tools/train/task/gait_prior.h"
 #include "tools/train/task/settings.h"
 #include "tools/train/task/step_outcome.h"
 
@@ -28,6 +29,11 @@ struct RewardSettings {
   double cost_end_start_transitions = 0;  ///< transitions from which it rises to that
   double cost_end_transitions = 0;        ///< transitions at which it has
   double energy_end = 0;                  ///< factor of the energy besides, at the end
+  double base_vertical_end = 0;           ///< factor of base_vertical besides, at the end
+  double speed_excess_end = 0;            ///< factor of speed_excess besides, at the end
+  double height_end_m = 0;                ///< height_m at the end
+  double prior_start_transitions = 0;     ///< transitions from which the prior fades ...
+  double prior_end_transitions = 0;       ///< ... and at which it is gone
 
   double velocity_weight = 0;
   double velocity_width = 0;             ///< of the squared error, m^2/s^2
@@ -47,6 +53,9 @@ struct RewardSettings {
   double air_target_s = 0;           ///< longest swing and stance that are paid in full
   double air_longest_s = 0;          ///< a longer swing is not paid at all
   double stance_longest_s = 0;       ///< a longer stance is not paid at all
+  double diagonality = 0;            ///< prior
+  double paired_swing = 0;           ///< prior
+  double paired_swing_target_s = 0;  ///< longest swing of a pair that is paid in full
 
   double torque = 0;              ///< per N^2 m^2
   double power = 0;               ///< per W
@@ -81,6 +90,11 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"cost_end_start_transitions", &RewardSettings::cost_end_start_transitions, 0.0, 1e12},
     {"cost_end_transitions", &RewardSettings::cost_end_transitions, 0.0, 1e12},
     {"energy_end", &RewardSettings::energy_end, 0.0, kNoLimit},
+    {"base_vertical_end", &RewardSettings::base_vertical_end, 0.0, kNoLimit},
+    {"speed_excess_end", &RewardSettings::speed_excess_end, 0.0, kNoLimit},
+    {"height_end_m", &RewardSettings::height_end_m, 0.0, kNoLimit},
+    {"prior_start_transitions", &RewardSettings::prior_start_transitions, 0.0, 1e12},
+    {"prior_end_transitions", &RewardSettings::prior_end_transitions, 0.0, 1e12},
     {"velocity_weight", &RewardSettings::velocity_weight, 0.0, kNoLimit},
     {"velocity_width", &RewardSettings::velocity_width, 1e-6, 1e3},
     {"velocity_width_per_speed2", &RewardSettings::velocity_width_per_speed2, 0.0, kNoLimit},
@@ -100,6 +114,9 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"air_target_s", &RewardSettings::air_target_s, 1e-3, 10.0},
     {"air_longest_s", &RewardSettings::air_longest_s, 0.0, kNoLimit},
     {"stance_longest_s", &RewardSettings::stance_longest_s, 0.0, kNoLimit},
+    {"diagonality", &RewardSettings::diagonality, 0.0, kNoLimit},
+    {"paired_swing", &RewardSettings::paired_swing, 0.0, kNoLimit},
+    {"paired_swing_target_s", &RewardSettings::paired_swing_target_s, 1e-3, 10.0},
     {"torque", &RewardSettings::torque, 0.0, kNoLimit},
     {"power", &RewardSettings::power, 0.0, kNoLimit},
     {"energy_speed_mps", &RewardSettings::energy_speed_mps, 0.0, 1e3},
@@ -123,12 +140,31 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"clearance_m", &RewardSettings::clearance_m, 0.0, kNoLimit},
 };
 
-/// Factors of the costs, which grow during training.
+/// Factors that change during the training. As they stand here: the reward that remains.
 struct CostRamp {
   double all = 1.0;     ///< of every cost
   double energy = 1.0;  ///< of that of energy, besides
   double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
+  double prior = 0.0;   ///< 1 to exactly 0: of the prior
+
+  /// 1, and in the end `end`.
+  double grown(double end) const { return 1.0 + (end - 1.0) * late; }
 };
+
+/// Those after so many transitions.
+inline CostRamp cost_ramp_at(const RewardSettings& r, double transitions) {
+  const auto passed = [&](double start, double end) {  // 0 to exactly 1
+    return std::clamp((transitions - start) / std::max(end - start, 1.0), 0.0, 1.0);
+  };
+  const double rise = std::min(transitions / r.cost_ramp_transitions, 1.0);
+  const double late = passed(r.cost_end_start_transitions, r.cost_end_transitions);
+  return {
+      .all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late,
+      .energy = 1.0 + (r.energy_end - 1.0) * late,
+      .late = late,
+      .prior = 1.0 - passed(r.prior_start_transitions, r.prior_end_transitions),
+  };
+}
 
 /// One term of the reward, for a step.
 struct RewardTerm {
@@ -153,7 +189,7 @@ inline double progress_paid(const StepOutcome& s, const RewardSettings& r, const
 }
 
 inline double yaw_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
-  const double yaw_error = s.command[2] - s.yaw_rate;
+  const double yaw_error = s.command[2] - s.drift[2];  // a trot's swing is no error
   return r.yaw_weight * std::exp(-yaw_error * yaw_error / r.yaw_width);
 }
 
@@ -193,6 +229,16 @@ inline double air_paid(const StepOutcome& s, const RewardSettings& r, const Cost
   return r.air_weight * air;
 }
 
+inline double diagonality_paid(const StepOutcome& s, const RewardSettings& r,
+                               const CostRamp& ramp) {
+  return ramp.prior * r.diagonality * diagonality(s);
+}
+
+inline double paired_swing_paid(const StepOutcome& s, const RewardSettings& r,
+                                const CostRamp& ramp) {
+  return ramp.prior * r.paired_swing * paired_swing(s, r.paired_swing_target_s, r.air_longest_s);
+}
+
 // What is charged.
 
 /// Energy per distance, not per time: cost of transport counts at every speed. Going sideways or
@@ -208,8 +254,9 @@ inline double joint_speed_charged(const StepOutcome& s, const RewardSettings& r,
   return r.joint_speed * s.speed_squared;
 }
 
-inline double speed_excess_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
-  return r.speed_excess * s.speed_excess;
+inline double speed_excess_charged(const StepOutcome& s, const RewardSettings& r,
+                                   const CostRamp& ramp) {
+  return r.speed_excess * ramp.grown(r.speed_excess_end) * s.speed_excess;
 }
 
 inline double slip_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
@@ -261,8 +308,8 @@ inline double orientation_charged(const StepOutcome& s, const RewardSettings& r,
 }
 
 inline double base_vertical_charged(const StepOutcome& s, const RewardSettings& r,
-                                    const CostRamp&) {
-  return r.base_vertical * s.vz * s.vz;
+                                    const CostRamp& ramp) {
+  return r.base_vertical * ramp.grown(r.base_vertical_end) * s.vz * s.vz;
 }
 
 inline double base_roll_pitch_charged(const StepOutcome& s, const RewardSettings& r,
@@ -270,8 +317,9 @@ inline double base_roll_pitch_charged(const StepOutcome& s, const RewardSettings
   return r.base_roll_pitch * (std::fabs(s.roll_rate) + std::fabs(s.pitch_rate));
 }
 
-inline double height_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
-  const double low = std::max(r.height_m - s.body_height, 0.0);
+inline double height_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
+  const double height_m = r.height_m + (r.height_end_m - r.height_m) * ramp.late;
+  const double low = std::max(height_m - s.body_height, 0.0);
   return r.height * low * low;
 }
 
@@ -283,8 +331,14 @@ double clearance_charged(const StepOutcome& s, const RewardSettings& r, const Co
 }
 
 inline constexpr RewardTerm kPaid[] = {
-    {"velocity", velocity_paid, 0},         {"progress", progress_paid, 1}, {"yaw", yaw_paid, 2},
-    {"yaw_progress", yaw_progress_paid, 3}, {"precise", precise_paid, 4},   {"air", air_paid, 5},
+    {"velocity", velocity_paid, 0},
+    {"progress", progress_paid, 1},
+    {"yaw", yaw_paid, 2},
+    {"yaw_progress", yaw_progress_paid, 3},
+    {"precise", precise_paid, 4},
+    {"air", air_paid, 5},
+    {"diagonality", diagonality_paid, 6},
+    {"paired_swing", paired_swing_paid, 6},
 };
 
 inline constexpr RewardTerm kCharged[] = {

@@ -41,9 +41,10 @@ inline double command_speed2(const StepOutcome& s) {
 }
 
 /// How well the commanded velocity is kept: 1 exactly, towards 0 far from it. The curricula look at
-/// this too. Widths: of the squared error, m^2/s^2.
+/// this too. Sideways it is that of the last stride: a trot's swing is no error. Widths: of the
+/// squared error, m^2/s^2.
 inline float velocity_kernel(const StepOutcome& s, double width, double width_per_speed2) {
-  const double ex = s.command[0] - s.vx, ey = s.command[1] - s.vy;
+  const double ex = s.command[0] - s.vx, ey = s.command[1] - s.drift[1];
   return static_cast<float>(
       std::exp(-(ex * ex + ey * ey) / (width + width_per_speed2 * command_speed2(s))));
 }

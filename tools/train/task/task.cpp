@@ -8,6 +8,7 @@
 #include "estimator/heading.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/step/divergence.h"
+#include "tools/train/task/leg_modes.h"
 
 namespace sandrunner::train {
 namespace {
@@ -39,7 +40,7 @@ Task::Task(const TaskConfig& config, const sim::Robot& robot, const TaskShape& s
       envs_(static_cast<std::size_t>(shape.envs)),
       sums_(static_cast<std::size_t>(shape.envs / shape.block_envs)),
       curriculum_{config.command.speed_start_mps, 0.0},
-      cost_ramp_{.all = config.reward.cost_ramp_start},
+      cost_ramp_(cost_ramp_at(config.reward, 0.0)),
       tilt_end_cos_(std::cos(config.episode.tilt_end_deg * std::numbers::pi / 180.0)) {
   for (int env = 0; env < shape.envs; ++env) {
     Env& e = envs_[static_cast<std::size_t>(env)];
@@ -62,15 +63,16 @@ void Task::step(int block, int t, learner::Rollout& rollout) {
   }
 }
 
-void Task::set_targets(int env, const float* action) {
+void Task::set_targets(int env, const float* modes) {
   Env& e = envs_[static_cast<std::size_t>(env)];
   const auto clip = static_cast<float>(config_.policy.action_clip);
   const auto scale = static_cast<float>(config_.policy.action_scale_rad);
   e.action_2 = e.action_1;
   e.action_1 = e.action;
   e.drive.target_before = e.drive.target;
+  joints_from_modes(config_.policy.mode_gain, modes, 1, e.action.data());
   for (int j = 0; j < kNumJoints; ++j) {
-    e.action[j] = std::clamp(action[j], -clip, clip);
+    e.action[j] = std::clamp(e.action[j], -clip, clip);
     e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]) + scale * e.action[j];
   }
   batch_.set_drive(env, e.drive);
@@ -174,7 +176,7 @@ WindowStats Task::end_window(double transitions) {
   }
   const WindowStats w = all.means();
   advance_curriculum(w);
-  advance_costs(transitions);
+  cost_ramp_ = cost_ramp_at(config_.reward, transitions);
   return w;
 }
 
@@ -187,18 +189,6 @@ void Task::advance_curriculum(const WindowStats& w) {
   if (w.kernel[1] > g.gate_kernel && w.falls[1] < g.gate_falls) {
     curriculum_.ground = std::min(curriculum_.ground + g.open_step, 1.0);
   }
-}
-
-void Task::advance_costs(double transitions) {
-  const RewardSettings& r = config_.reward;
-  const double rise = std::min(transitions / r.cost_ramp_transitions, 1.0);
-  const double late =
-      std::clamp((transitions - r.cost_end_start_transitions) /
-                     std::max(r.cost_end_transitions - r.cost_end_start_transitions, 1.0),
-                 0.0, 1.0);
-  cost_ramp_.all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late;
-  cost_ramp_.energy = 1.0 + (r.energy_end - 1.0) * late;
-  cost_ramp_.late = late;
 }
 
 void Task::save(learner::Checkpoint& checkpoint) const {

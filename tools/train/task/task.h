@@ -22,6 +22,12 @@ struct Curriculum {
   double ground = 0.0;
 };
 
+/// What the robots are told to do, now: speeds either way but for forward and backward. They are
+/// told so from one moment to the next, whatever they were told before.
+struct CommandRange {
+  double forward_mps = 0, backward_mps = 0, lateral_mps = 0, yaw_radps = 0;
+};
+
 /// How many environments there are, and how many of them make a block, a multiple of 16.
 struct TaskShape {
   int envs = 0, block_envs = 0;
@@ -51,6 +57,7 @@ class Task {
   /// the costs. `transitions`: since the start of the training.
   WindowStats end_window(double transitions);
   const Curriculum& curriculum() const { return curriculum_; }
+  CommandRange command_range() const;
   /// 0 to 1: how far the costs have risen to their values at the end of the training.
   double late() const { return cost_ramp_.late; }
 
@@ -106,13 +113,12 @@ class Task {
                   const sim::BatchReport<float>& report, float* out) const;
 
   // task.cpp: a step.
-  void set_targets(int env, const float* action);
+  void set_targets(int env, const float* modes);
   StepOutcome follow(Env& e, const sim::RobotState<float>& state,
                      const sim::BatchReport<float>& report,
                      const sim::BatchSums<float>& sums) const;
   void end_step(int env, int t, learner::Rollout& rollout, WindowSums& window);
   void advance_curriculum(const WindowStats& window);
-  void advance_costs(double transitions);
 
   TaskConfig config_;
   std::uint64_t seed_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/train/task/task_config.h"
 
+#include <algorithm>
+
 #include "rt/core/messages.h"
 #include "tools/train/task/settings.h"
 
@@ -22,6 +24,7 @@ constexpr NumberSetting<E> kEpisode[] = {
     {"length_s", &E::length_s, 0.1, 1000.0},
     {"soft_reset_share", &E::soft_reset_share, 0.0, 1.0},
     {"soft_reset_new_ground", &E::soft_reset_new_ground, 0.0, 1.0},
+    {"reset_nominal_share", &E::reset_nominal_share, 0.0, 1.0},
     {"tilt_end_deg", &E::tilt_end_deg, 1.0, 90.0},
     {"reset_joint_rad", &E::reset_joint_rad, 0.0, kNoLimit},
     {"reset_tilt_rad", &E::reset_tilt_rad, 0.0, kNoLimit},
@@ -37,6 +40,7 @@ constexpr NumberSetting<C> kCommand[] = {
     {"speed_max_mps", &C::speed_max_mps, 0.0, kNoLimit},
     {"speed_step_mps", &C::speed_step_mps, 0.0, kNoLimit},
     {"forward_share", &C::forward_share, 0.0, 1.0},
+    {"backward_mps", &C::backward_mps, 0.0, kNoLimit},
     {"lateral_mps", &C::lateral_mps, 0.0, kNoLimit},
     {"lateral_share", &C::lateral_share, 0.0, 1.0},
     {"yaw_radps", &C::yaw_radps, 0.0, kNoLimit},
@@ -98,11 +102,11 @@ constexpr NumberSetting<N> kNoise[] = {
     {"level_high", &N::level_high, 0.0, 10.0},
 };
 
-std::array<double, 3> read_triple(ConfigTree& config, const std::string& key, double min,
-                                  double max) {
+template <std::size_t kSize>
+void read_array(ConfigTree& config, const std::string& key, double min, double max,
+                std::array<double, kSize>& values) {
   require_key(config, key);
-  const std::vector<double> read = config.numbers(key, {}, 3, min, max);
-  return {read[0], read[1], read[2]};
+  std::ranges::copy(config.numbers(key, {}, kSize, min, max), values.begin());
 }
 
 GroundSettings read_ground_settings(ConfigTree& config) {
@@ -128,8 +132,8 @@ GroundSettings read_ground_settings(ConfigTree& config) {
 RobotSettings read_robot_settings(ConfigTree& config) {
   RobotSettings r;
   read_numbers(config, "robot", kRobot, r);
-  r.base_com_m = read_triple(config, "robot.base_com_m", 0.0, 1.0);
-  r.latency_ticks = read_triple(config, "robot.latency_ticks", 0.0, kTicksPerPolicyStep);
+  read_array(config, "robot.base_com_m", 0.0, 1.0, r.base_com_m);
+  read_array(config, "robot.latency_ticks", 0.0, kTicksPerPolicyStep, r.latency_ticks);
   require_key(config, "robot.torque_speed_line");
   r.torque_speed_line = config.flag("robot.torque_speed_line", true);
   return r;
@@ -146,6 +150,7 @@ NoiseSettings read_noise_settings(ConfigTree& config) {
 TaskConfig read_task_config(ConfigTree& config) {
   TaskConfig c;
   read_numbers(config, "policy", kPolicy, c.policy);
+  read_array(config, "policy.mode_gain", 0.01, 100.0, c.policy.mode_gain);
   read_numbers(config, "episode", kEpisode, c.episode);
   read_numbers(config, "command", kCommand, c.command);
   require_order("command.speed_start_mps", c.command.speed_start_mps, "command.speed_max_mps",
@@ -156,6 +161,8 @@ TaskConfig read_task_config(ConfigTree& config) {
   read_numbers(config, "reward", kRewardSettings, c.reward);
   require_order("reward.cost_end_start_transitions", c.reward.cost_end_start_transitions,
                 "reward.cost_end_transitions", c.reward.cost_end_transitions);
+  require_order("reward.prior_start_transitions", c.reward.prior_start_transitions,
+                "reward.prior_end_transitions", c.reward.prior_end_transitions);
   return c;
 }
 

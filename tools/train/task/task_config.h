@@ -18,8 +18,9 @@ struct PolicySettings {
   double action_clip = 0;       ///< largest |action|
   double kp_nmprad = 0;
   double kd_nmsprad = 0;
-  double observation_clip = 0;  ///< largest |input of the network|
-  double body_height_m = 0;     ///< mean of the scale of the estimated body height
+  double observation_clip = 0;               ///< largest |input of the network|
+  double body_height_m = 0;                  ///< mean of the scale of the estimated body height
+  std::array<double, kNumLegs> mode_gain{};  ///< of HFE and KFE in each of the modes of leg_modes.h
 };
 
 /// Lengths, ends and starts of episodes, and pushes.
@@ -27,6 +28,7 @@ struct EpisodeSettings {
   double length_s = 0;
   double soft_reset_share = 0;       ///< of the timeouts: the robot goes on as it is
   double soft_reset_new_ground = 0;  ///< share of those that go on on other ground
+  double reset_nominal_share = 0;    ///< of the other starts: at rest in the nominal pose
   double tilt_end_deg = 0;           ///< tilt of the base that ends an episode
   double reset_joint_rad = 0;        ///< largest start |q - nominal|
   double reset_tilt_rad = 0;         ///< largest start |roll|, |pitch|
@@ -42,6 +44,7 @@ struct CommandSettings {
   double speed_max_mps = 0;     ///< and at its end
   double speed_step_mps = 0;    ///< rise of the top speed in a window that passes the gate
   double forward_share = 0;     ///< of the commands with vx between 0 and the top speed
+  double backward_mps = 0;      ///< largest |vx| of the others, which go either way
   double lateral_mps = 0;       ///< largest |vy|
   double lateral_share = 0;     ///< of the commands with vy
   double yaw_radps = 0;         ///< largest |yaw rate|

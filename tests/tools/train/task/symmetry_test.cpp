@@ -8,6 +8,7 @@
 #include "rt/core/floating_point.h"
 #include "sim/batch/batch.h"
 #include "sim/ground/terrain_description.h"
+#include "tools/train/task/leg_modes.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::train {
@@ -26,7 +27,8 @@ std::array<T, kSize> reflected(const Reflection& reflection, const std::array<T,
 
 // Mirror image of a state: left for right, y for -y.
 sim::RobotState<float> mirror_image(const sim::RobotState<float>& from) {
-  const Reflection joints = Task::symmetry().action;
+  const Reflection joints{{3, 4, 5, 0, 1, 2, 9, 10, 11, 6, 7, 8},
+                          {-1, 1, 1, -1, 1, 1, -1, 1, 1, -1, 1, 1}};
   sim::RobotState<float> to = from;
   sim::RigidState<float>& x = to.rigid;
   x.q = reflected(joints, from.rigid.q);
@@ -70,11 +72,12 @@ TEST_P(SymmetryTest, RobotInTheMirrorMovesLikeTheMirrorImage) {
 
   sim::RobotState<float> state;
   std::array<sim::BatchDrive<float>, 2> drive;
+  JointArray<float> answer;
   for (int j = 0; j < kNumJoints; ++j) {
     const auto wiggle = static_cast<float>(0.1 * std::sin(1.0 + 3.0 * j));
     state.rigid.q[j] = static_cast<float>(robot.nominal_rad[j]) + wiggle;
     state.rigid.qd[j] = 5.0f * wiggle;
-    drive[0].target[j] = static_cast<float>(robot.nominal_rad[j]) - wiggle;
+    answer[j] = -wiggle;
   }
   state.rigid.position = {0.0f, 0.0f, static_cast<float>(robot.nominal_height_m)};
   state.rigid.orientation = sim::integrate(sim::Quaternion<float>{}, {0.05f, -0.03f, 0.2f});
@@ -82,9 +85,15 @@ TEST_P(SymmetryTest, RobotInTheMirrorMovesLikeTheMirrorImage) {
   state.rigid.angular_velocity = {0.4f, -0.3f, 0.5f};
   drive[0].kp = 50.0f;
   drive[0].kd = 0.5f;
-  drive[0].target_before = drive[0].target;
   drive[1] = drive[0];
-  drive[1].target = drive[1].target_before = reflected(symmetry.action, drive[0].target);
+  for (const int i : {0, 1}) {
+    const auto modes = i == 0 ? answer : reflected(symmetry.action, answer);
+    joints_from_modes({0.6, 0.7, 0.9, 1.6}, modes.data(), 1, drive[i].target.data());
+    for (int j = 0; j < kNumJoints; ++j) {
+      drive[i].target[j] += static_cast<float>(robot.nominal_rad[j]);
+    }
+    drive[i].target_before = drive[i].target;
+  }
   for (int i = 0; i < 2; ++i) {
     batch.set_model(i, sim::convert_model<float>(robot.model));
     batch.set_terrain(i, terrain);
