@@ -108,8 +108,13 @@ std::string RobotView::faults(std::int64_t now_ns) const {
 
 std::string RobotView::command(std::int64_t now_ns) const {
   if (!has_tick(now_ns)) return "-";
-  return fmt::format("{:.2f} {:.2f} m/s {:.2f} rad/s", tick_.command[0], tick_.command[1],
-                     tick_.command[2]);
+  std::string text = fmt::format("{:.2f} {:.2f} m/s {:.2f} rad/s", tick_.command[0],
+                                 tick_.command[1], tick_.command[2]);
+  if (tick_.command_share < 1.0f) {
+    text += fmt::format(", held to {:.0f} %: more than the policy can follow",
+                        100.0 * static_cast<double>(tick_.command_share));
+  }
+  return text;
 }
 
 std::string RobotView::recent(std::size_t part) const {

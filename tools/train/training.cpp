@@ -216,6 +216,11 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   return r;
 }
 
+// In training commands change from one moment to the next; on a robot no faster than this, which
+// spares it the hardest of them.
+constexpr double kAcceleration_mps2 = 1.5;
+constexpr double kYawAcceleration_radps2 = 2.0;
+
 PolicyFile Training::policy_file() const {
   PolicyFile file;
   const PolicySettings& policy = config_.task.policy;
@@ -230,6 +235,14 @@ PolicyFile Training::policy_file() const {
   // One limit for all joints; where the robot's own are lower, they hold besides.
   spec.torque_limit_nm = *std::ranges::max_element(robot_.model.torque_limit_nm);
   spec.yaw_command_clip_mps2 = config_.task.command.centripetal_mps2;
+  const CommandRange commands = task_.command_range();
+  spec.envelope = {.forward_mps = commands.forward_mps,
+                   .backward_mps = commands.backward_mps,
+                   .lateral_mps = commands.lateral_mps,
+                   .yaw_radps = commands.yaw_radps,
+                   .acceleration_mps2 = kAcceleration_mps2,
+                   .yaw_acceleration_radps2 = kYawAcceleration_radps2};
+  spec.has_envelope = true;
   const InputScales& scales = task_.scales();
   for (int i = 0; i < kEstimateSize; ++i) {
     spec.estimate_mean[i] = scales.estimate_mean[i];

@@ -37,6 +37,7 @@ void fill(sandrunner_TickState& s, const TickRecord& tick) {
   copy(s.linear_acceleration_mps2, sensors.imu.linear_acceleration_mps2);
   const VelocityCommand& command = tick.output.policy_input.command;
   copy(s.command, {command.vx_mps, command.vy_mps, command.wz_radps});
+  s.command_share = static_cast<float>(tick.output.command_share);
   const PolicyOutput& policy = tick.input.policy;
   s.body_height_m = static_cast<float>(policy.estimate.body_height_m);
   copy(s.body_velocity_mps, policy.estimate.velocity_mps);

@@ -27,6 +27,7 @@ class BreakableRobot final : public RobotIo {
   void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
     simulator_.skip(ticks, held);
   }
+  void cut_drives() noexcept override { simulator_.cut_drives(); }
   void shut_down() noexcept override {}
   bool truth(RobotTruth& truth) const noexcept override { return simulator_.truth(truth); }
 
