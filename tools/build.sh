@@ -19,6 +19,6 @@ if [[ ! -f $build/build.ninja ]] || ! cached "CMAKE_HOME_DIRECTORY:INTERNAL=$roo
 elif [[ $what == all ]] && ! cached SANDRUNNER_ALL:BOOL=ON; then
   (cd "$root" && "${configure[@]}") >&2
 fi
-if [[ $(ninja -C "$build" -n "$what") != *"no work to do"* ]]; then
-  cmake --build "$build" --target "$what" >&2
-fi
+# What ninja says when nothing is to be done. Asked with -n, it does not know: it would look for new files first.
+idle='^ninja: no work to do\.$|Re-checking globbed directories\.\.\.$'
+cmake --build "$build" --target "$what" 2>&1 | { grep --line-buffered -vE "$idle" || true; } >&2

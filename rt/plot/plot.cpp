@@ -50,6 +50,7 @@ Range range_of(const Panel& panel) {
   }
   if (range.begin > range.end) return {0.0, 1.0};
   const double middle = 0.5 * (range.begin + range.end);
+  if (panel.from_zero) return {0.0, std::max(1.12 * range.end, panel.least_range)};
   const double width = std::max(1.12 * (range.end - range.begin), panel.least_range);
   return {middle - 0.5 * width, middle + 0.5 * width};
 }
@@ -86,25 +87,35 @@ void draw_series(const Canvas& canvas, const Series& series, const std::vector<d
   }
   const std::array<double, 2> dashes = {7.0, 4.0};
   cairo_set_dash(cr, dashes.data(), series.dashed ? 2 : 0, 0.0);
-  cairo_set_line_width(cr, series.dashed ? 1.9 : 1.5);
+  cairo_set_line_width(cr, series.dashed ? 1.9 : series.width_px);
   cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
   canvas.set_color(series.color);
   cairo_stroke(cr);
   cairo_set_dash(cr, nullptr, 0, 0.0);
+  for (std::size_t i = 0; series.markers && i < series.y.size(); ++i) {
+    if (!std::isfinite(series.y[i])) continue;
+    constexpr double kRadius_px = 4.0;
+    cairo_new_sub_path(cr);
+    cairo_arc(cr, map(x[i], x_range, box.left, box.left + box.width),
+              map(series.y[i], y_range, box.top + box.height, box.top), kRadius_px, 0.0,
+              2.0 * std::numbers::pi);
+    cairo_fill(cr);
+  }
 }
 
 void draw_legend(const Canvas& canvas, const Panel& panel, double right_px, double baseline_px) {
   constexpr double kSample_px = 26.0;
   double x_px = right_px;
   for (auto series = panel.series.rbegin(); series != panel.series.rend(); ++series) {
+    if (series->name.empty()) continue;
     canvas.text(x_px, baseline_px, series->name, kTextSize_px, 1.0);
     x_px -= canvas.text_width(series->name, kTextSize_px) + 7.0 + kSample_px;
     cairo_t* cr = canvas.cairo();
     const std::array<double, 2> dashes = {7.0, 4.0};
     cairo_set_dash(cr, dashes.data(), series->dashed ? 2 : 0, 0.0);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
-    cairo_set_line_width(cr, 3.0);
+    cairo_set_line_width(cr, 2.0 * series->width_px);
     canvas.set_color(series->color);
     cairo_move_to(cr, x_px, baseline_px - 5.0);
     cairo_line_to(cr, x_px + kSample_px, baseline_px - 5.0);

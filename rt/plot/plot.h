@@ -38,13 +38,16 @@ class Canvas {
   std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
 };
 
-/// One line. `y` has a value for every x of the figure; nan is a gap.
+/// One line, in the legend unless its name is empty. `y` has a value for every x of the figure; nan
+/// is a gap.
 struct Series {
   std::string name;
   Color color;
   std::vector<double> y;
   bool step = false;  ///< holds each value up to the next x
   bool dashed = false;
+  bool markers = false;   ///< a disc at each value
+  double width_px = 1.5;  ///< of the line
 };
 
 struct Panel {
@@ -52,6 +55,7 @@ struct Panel {
   std::string y_label;  ///< quantity and unit
   std::vector<Series> series;
   double least_range = 1e-3;  ///< of the y axis, so that noise about a constant is not magnified
+  bool from_zero = false;     ///< the y axis begins at 0
 };
 
 /// A shaded range of x. The label stands above the panels of the views that have no title.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/report/run_pictures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +24,12 @@ using plot::Color;
 constexpr Color kBlue{0.12, 0.42, 0.75};
 constexpr Color kOrange{0.90, 0.45, 0.05};
 constexpr Color kTeal{0.05, 0.60, 0.50};
-constexpr Color kPurple{0.60, 0.30, 0.68};
 constexpr Color kGray{0.45, 0.48, 0.52};
 constexpr Color kBlack = plot::kInk;
-constexpr std::array<Color, kNumLegs> kLegColors = {kBlue, kOrange, kTeal, kPurple};
+// Legs of a pair often move alike: left ones are wide and light, right ones narrow and dark on top.
+constexpr std::array<Color, kNumLegs> kLegColors = {
+    {{0.60, 0.79, 0.97}, {0.05, 0.30, 0.62}, {0.98, 0.76, 0.48}, {0.72, 0.30, 0.02}}};
+constexpr double kLeftLeg_px = 4.5;
 
 constexpr int kViews = 10;
 constexpr int kViewsPerRow = 5;
@@ -55,11 +60,64 @@ Walk walk_of(const RunRecord& record) {
           static_cast<std::size_t>(behind_last - samples.begin()) - 1};
 }
 
+/// A second worth a closer look.
+struct Detail {
+  std::string title;
+  double begin_s = 0.0, end_s = 0.0;
+  std::optional<VelocityCommand> command;  ///< if it is one all the time
+};
+
+double size_of(const VelocityCommand& c) {
+  return std::hypot(c.vx_mps, std::hypot(c.vy_mps, c.wz_radps));
+}
+
+bool same(const VelocityCommand& a, const VelocityCommand& b) {
+  return a.vx_mps == b.vx_mps && a.vy_mps == b.vy_mps && a.wz_radps == b.wz_radps;
+}
+
+/// The last second under the largest command that was held for one; the last of all if the walk did
+/// not end in Stand, or none was held. Nothing for a shorter walk.
+std::optional<Detail> detail_of(const RunRecord& record) {
+  constexpr double kDetail_s = 1.0;
+  const std::vector<RunSample>& samples = record.samples;
+  if (samples.empty()) return std::nullopt;
+  const Walk walk = walk_of(record);
+  const RunSample& last = samples[walk.last];
+  if (last.t_s - samples[walk.first].t_s <= kDetail_s) return std::nullopt;
+  Detail detail{fmt::format("last second of {}", mode_name(last.mode)), last.t_s - kDetail_s,
+                last.t_s, std::nullopt};
+  double largest = -1.0;
+  for (std::size_t i = walk.first, held = i; i <= walk.last; ++i) {
+    const VelocityCommand& command = samples[i].command;
+    if (!same(command, samples[held].command)) held = i;
+    if (samples[i].t_s - samples[held].t_s < kDetail_s || size_of(command) < largest) continue;
+    largest = size_of(command);
+    detail.command = command;
+    detail.begin_s = samples[i].t_s - kDetail_s;
+    detail.end_s = samples[i].t_s;
+  }
+  const bool ended_badly =
+      walk.last + 1 < samples.size() && samples[walk.last + 1].mode != Mode::kStand;
+  if (ended_badly || !detail.command) {
+    detail.begin_s = last.t_s - kDetail_s;
+    detail.end_s = last.t_s;
+  } else {
+    detail.title = "one second of steady gait";
+  }
+  return detail;
+}
+
+std::string command_text(const std::optional<VelocityCommand>& c) {
+  if (!c) return ", changing command";
+  return fmt::format(", command {:.3g}, {:.3g} m/s, {:.3g} rad/s", c->vx_mps, c->vy_mps,
+                     c->wz_radps);
+}
+
 /// A series of `value(sample)`.
 template <typename Value>
 plot::Series series(const RunRecord& record, const std::string& name, const Color& color,
                     const Value& value) {
-  plot::Series result{name, color, {}, false, false};
+  plot::Series result{name, color, {}};
   for (const RunSample& sample : record.samples) result.y.push_back(value(sample));
   return result;
 }
@@ -81,26 +139,37 @@ plot::Series estimate(const RunRecord& record, const Value& value) {
   });
 }
 
-plot::Panel torque_panel(const RunRecord& record, const std::string& title, std::size_t joint) {
-  plot::Panel panel{title, "N m", {}, 10.0};
+/// A series of `value(sample, leg)` for each leg, the left one of a pair before the right one.
+template <typename Value>
+std::vector<plot::Series> leg_series(const RunRecord& record, const Value& value) {
+  std::vector<plot::Series> all;
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    panel.series.push_back(
-        series(record, record.scene.leg_names[leg], kLegColors[leg],
-               [&](const RunSample& s) { return s.joint_torque_nm[kJointsPerLeg * leg + joint]; }));
+    all.push_back(series(record, record.scene.leg_names[leg], kLegColors[leg],
+                         [&](const RunSample& s) { return value(s, leg); }));
+    if (leg % 2 == 0) all.back().width_px = kLeftLeg_px;
   }
-  return panel;
+  return all;
+}
+
+plot::Panel torque_panel(const RunRecord& record, const std::string& title, std::size_t joint) {
+  return {title, "N m",
+          leg_series(record,
+                     [joint](const RunSample& s, std::size_t leg) {
+                       return s.joint_torque_nm[kJointsPerLeg * leg + joint];
+                     }),
+          10.0};
 }
 
 std::vector<plot::Panel> panels(const RunRecord& record) {
   const auto body_vx = [](const StateEstimate& e) { return e.velocity_mps[0]; };
   const auto height = [](const StateEstimate& e) { return e.body_height_m; };
-  plot::Panel sinkage{"Sinkage of the feet", "mm", {}, 10.0};
-  for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    sinkage.series.push_back(
-        series(record, record.scene.leg_names[leg], kLegColors[leg], [&](const RunSample& s) {
-          return s.has_truth ? 1000.0 * std::max(0.0, s.penetration_m[leg]) : kUnknown;
-        }));
-  }
+  const plot::Panel sinkage{
+      "Sinkage of the feet", "mm",
+      leg_series(record,
+                 [](const RunSample& s, std::size_t leg) {
+                   return s.has_truth ? 1000.0 * std::max(0.0, s.penetration_m[leg]) : kUnknown;
+                 }),
+      10.0};
   return {
       {"Speed, heading frame",
        "m/s",
@@ -165,14 +234,10 @@ void draw_run_plot(const RunRecord& record, const std::string& png_path) {
   figure.panels = panels(record);
   figure.spans = mode_spans(record);
   figure.views = {{"", 0.0, 1.0, 0.68}};
-  if (record.samples.size() > 1) {
-    const RunSample& first = record.samples[walk_of(record).first];
-    const RunSample& last = record.samples[walk_of(record).last];
-    figure.views[0] = {"", figure.x.front(), figure.x.back(), 0.68};
-    if (last.t_s - first.t_s > 1.0) {
-      const std::string title = std::string("last second of ") + mode_name(last.mode);
-      figure.views.push_back({title, last.t_s - 1.0, last.t_s, 0.32});
-    }
+  if (record.samples.size() > 1) figure.views[0] = {"", figure.x.front(), figure.x.back(), 0.68};
+  if (const std::optional<Detail> detail = detail_of(record)) {
+    figure.title += command_text(detail->command);
+    figure.views.push_back({detail->title, detail->begin_s, detail->end_s, 0.32});
   }
   plot::draw(figure, png_path);
 }
@@ -182,10 +247,12 @@ void draw_run_strip(const RunRecord& record, const std::string& png_path) {
   const plot::Canvas canvas(
       static_cast<int>(kGap_px + kViewsPerRow * (kSideViewWidth_px + kGap_px)),
       static_cast<int>(kHead_px + kRows * (kSideViewHeight_px + kGap_px)));
-  canvas.text(kGap_px + 2.0, 30.0, title_of(record), 20.0, 0.0, plot::kInk, true);
+  const std::optional<Detail> detail = detail_of(record);
+  const std::string title = title_of(record) + (detail ? command_text(detail->command) : "");
+  canvas.text(kGap_px + 2.0, 30.0, title, 20.0, 0.0, plot::kInk, true);
   canvas.text(kGap_px + kViewsPerRow * (kSideViewWidth_px + kGap_px) - kGap_px, 30.0,
-              "from the right side; far legs light; below: metres walked", 14.0, 1.0,
-              plot::kFaintInk);
+              "from the right, a little from behind; left legs light; below: metres walked", 14.0,
+              1.0, plot::kFaintInk);
   const std::vector<RunSample>& samples = record.samples;
   const Walk walk = walk_of(record);
   std::vector<double> distance_m(samples.size(), 0.0);

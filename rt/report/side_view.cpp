@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "rt/base/fixed_text.h"
 #include "rt/report/body_motion.h"
 
 namespace sandrunner {
@@ -20,14 +21,18 @@ using plot::Color;
 
 constexpr double kPixelsPerMeter = 262.0;
 constexpr double kBelowGround_m = 0.23;  ///< what is seen of the ground under the base
+// Of a robot that bounds, the left legs move as the right ones do: seen squarely from the side they
+// would hide behind them. So what lies to the left is drawn further to the front and up (an oblique
+// projection), by these shares of its distance.
+constexpr double kAheadPerLeft = 0.24, kUpPerLeft = 0.12;
 
 constexpr Color kSky{0.93, 0.955, 0.98};
 constexpr Color kNearLeg{0.10, 0.20, 0.33};
-constexpr Color kFarLeg{0.62, 0.71, 0.80};
+constexpr Color kFarLeg{0.47, 0.60, 0.74};
 constexpr Color kBody{0.93, 0.52, 0.13};
 constexpr Color kBodyEdge{0.60, 0.30, 0.05};
 
-/// One view: looks along the robot's left, at the base, forward to the right.
+/// One view: from the right, a little from behind and above, at the base, forward to the right.
 class SideView {
  public:
   SideView(const Canvas& canvas, const RunRecord& record, const RunSample& sample, double left_px,
@@ -62,7 +67,7 @@ class SideView {
   }
 
  private:
-  /// A point of the view: u forward of the base, v to its left, z up, in metres.
+  /// A point of the view: u to the right in the picture, z up in it, v to the robot's left, metres.
   struct ViewPoint {
     double u = 0.0, v = 0.0, z = 0.0;
   };
@@ -70,7 +75,9 @@ class SideView {
   ViewPoint view_point(const Vector3& p) const {
     const double dx = p[0] - sample_.base_position_m[0];
     const double dy = p[1] - sample_.base_position_m[1];
-    return {heading_[0] * dx + heading_[1] * dy, heading_[0] * dy - heading_[1] * dx, p[2]};
+    const double left = heading_[0] * dy - heading_[1] * dx;
+    return {heading_[0] * dx + heading_[1] * dy + kAheadPerLeft * left, left,
+            p[2] + kUpPerLeft * left};
   }
   double x_px(double u) const { return left_px_ + 0.5 * kSideViewWidth_px + kPixelsPerMeter * u; }
   double y_px(double z) const {
@@ -125,7 +132,8 @@ class SideView {
       double depth_m = 0.0;
       for (const Dent& dent : holes)
         depth_m = std::max(depth_m, dent.at(u, record_.scene.foot_radius_m));
-      cairo_line_to(cr, left_px_ + px, y_px(ground(u, lateral_m) - depth_m));
+      const double height_m = ground(u - kAheadPerLeft * lateral_m, lateral_m) - depth_m;
+      cairo_line_to(cr, left_px_ + px, y_px(height_m + kUpPerLeft * lateral_m));
     }
     cairo_path_t* surface = cairo_copy_path(cr);
     cairo_line_to(cr, left_px_ + kSideViewWidth_px + 2.0, top_px_ + kSideViewHeight_px + 2.0);
@@ -236,7 +244,7 @@ class SideView {
     canvas_.text(left_px_ + 10.0, top_px_ + 22.0, fmt::format("{:.2f} s", sample_.t_s), 15.0, 0.0,
                  plot::kInk, true);
     canvas_.text(left_px_ + kSideViewWidth_px - 10.0, top_px_ + 22.0,
-                 fmt::format("{:.2f} m/s", sample_.vx_mps), 15.0, 1.0);
+                 fixed_text(sample_.vx_mps, 2) + " m/s", 15.0, 1.0);
   }
 
   const Canvas& canvas_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rt/base/build.h"
+#include "rt/base/fixed_text.h"
 
 namespace sandrunner {
 
@@ -89,6 +90,9 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
   const auto row = [&](const std::string& name, const std::string& value) {
     t += fmt::format("  {:<26}{}\n", name, value);
   };
+  const auto of = [](const char* unit, double value, double commanded) {
+    return fmt::format("{:>6} {}   of {:>6}", fixed_text(value, 3), unit, fixed_text(commanded, 3));
+  };
   std::string end = r.interrupted ? "interrupted, ended in damping" : "finished on its feet";
   if (!r.survived) {
     end = "FAILED: " + r.fall_reason;
@@ -102,18 +106,15 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
                      info.command);
     if (f.motion) {
       const MotionFigures& m = *f.motion;
-      row("velocity x, commanded",
-          fmt::format("{:6.3f} m/s     of {:6.3f}", m.mean_velocity_mps[0], f.mean_command_mps[0]));
-      row("velocity y, commanded",
-          fmt::format("{:6.3f} m/s     of {:6.3f}", m.mean_velocity_mps[1], f.mean_command_mps[1]));
-      row("yaw rate, commanded", fmt::format("{:6.3f} rad/s   of {:6.3f}", m.mean_yaw_rate_radps,
-                                             f.mean_yaw_command_radps));
+      row("velocity x, commanded", of("m/s  ", m.mean_velocity_mps[0], f.mean_command_mps[0]));
+      row("velocity y, commanded", of("m/s  ", m.mean_velocity_mps[1], f.mean_command_mps[1]));
+      row("yaw rate, commanded", of("rad/s", m.mean_yaw_rate_radps, f.mean_yaw_command_radps));
       row("sinkage mean, max",
           fmt::format("{:6.1f} mm      {:6.1f}   ({} stances)", 1e3 * m.sinkage_mean_m,
                       1e3 * m.sinkage_max_m, m.stances));
       row("foot clearance (IQR)", fmt::format("{:6.1f} mm", 1e3 * m.foot_clearance_iqr_m));
     }
-    row("mechanical power", fmt::format("{:6.1f} W", f.mechanical_power_w));
+    row("mechanical power", fmt::format("{:>6} W", fixed_text(f.mechanical_power_w, 1)));
     row("torque squared", fmt::format("{:6.0f} N^2m^2", f.torque_squared_nm2));
     if (f.motion) {
       row("cost of transport", f.motion->cost_of_transport
@@ -126,8 +127,8 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
                       f.estimate->velocity_rmse_mps, 1e3 * f.estimate->body_height_rmse_m,
                       1e3 * f.estimate->foot_height_rmse_m));
     }
-    row("past joint stop, too fast",
-        fmt::format("{} and {} control steps", f.joint_limit_steps, f.speed_limit_steps));
+    row("a joint past its stop", fmt::format("{:6} control steps", f.joint_limit_steps));
+    row("a joint too fast", fmt::format("{:6} control steps", f.speed_limit_steps));
   }
   std::string counted;
   for (const GateCounterName& counter : kGateCounters) {

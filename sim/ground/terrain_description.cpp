@@ -18,6 +18,13 @@ namespace {
 const std::vector<std::string> kPresets = {"dry-sand",       "wet-sand", "grass",
                                            "athletic-track", "vinyl",    "rigid"};
 
+// As short as it converts back: 60, not 59.99999999999999.
+double degrees_of(double angle_rad) {
+  const double degrees = angle_rad * (180.0 / std::numbers::pi);
+  const double rounded = std::round(degrees * 1e9) / 1e9;
+  return rounded * (std::numbers::pi / 180.0) == angle_rad ? rounded : degrees;
+}
+
 // Reads the ground under `prefix` ("terrain." or, in a patch, ""); a key that is missing leaves
 // `p` as it is.
 void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) {
@@ -35,7 +42,7 @@ void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) 
   number("sigma_flat_npm3", p.sigma_flat_npm3, 1.0, 1e10);
   number("sigma_cone_npm3", p.sigma_cone_npm3, 1.0, 1e10);
   number("recruitment", p.recruitment, 0.01, 20.0);
-  double degrees = p.cone_angle_rad * (180.0 / std::numbers::pi);
+  double degrees = degrees_of(p.cone_angle_rad);
   number("cone_angle_deg", degrees, 5.0, 85.0);
   p.cone_angle_rad = degrees * (std::numbers::pi / 180.0);
   number("mass_scaling", p.mass_scaling, 0.0, 20.0);
@@ -47,7 +54,7 @@ void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) 
   number("stroke_damping_nspm", p.stroke_damping_nspm, 0.0, 1e3);
   number("stroke_depth_scaling", p.stroke_depth_scaling, 0.0, 10.0);
   number("crater_radius_m", p.crater_radius_m, 0.0, 1.0);
-  degrees = p.crater_angle_rad * (180.0 / std::numbers::pi);
+  degrees = degrees_of(p.crater_angle_rad);
   number("crater_angle_deg", degrees, 5.0, 85.0);
   p.crater_angle_rad = degrees * (std::numbers::pi / 180.0);
   number("stiffness_npm", p.stiffness_npm, 1.0, 1e6);

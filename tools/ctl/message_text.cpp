@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "rt/base/errors.h"
+#include "rt/base/fixed_text.h"
 #include "rt/core/mode_machine.h"
 #include "rt/telemetry/diagnostics.h"
 
@@ -20,11 +21,12 @@ std::string stamp(const builtin_interfaces_msg_dds__Time_& t) {
 
 template <typename V>  // Vector3_ and Point_
 std::string xyz(const V& v) {
-  return fmt::format("{:.3f} {:.3f} {:.3f}", v.x, v.y, v.z);
+  return fmt::format("{} {} {}", fixed_text(v.x, 3), fixed_text(v.y, 3), fixed_text(v.z, 3));
 }
 
 std::string wxyz(const geometry_msgs_msg_dds__Quaternion_& q) {
-  return fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", q.w, q.x, q.y, q.z);
+  return fmt::format("{} {} {} {}", fixed_text(q.w, 4), fixed_text(q.x, 4), fixed_text(q.y, 4),
+                     fixed_text(q.z, 4));
 }
 
 }  // namespace
@@ -40,8 +42,9 @@ std::string text(const sensor_msgs_msg_dds__JointState_& m) {
     return i < values._length ? values._buffer[i] : 0.0;
   };
   for (std::uint32_t i = 0; i < m.name._length; ++i) {
-    out += fmt::format("  {} {:.3f} {:.2f} {:.2f}", clean(m.name._buffer[i]), value(m.position, i),
-                       value(m.velocity, i), value(m.effort, i));
+    out +=
+        fmt::format("  {} {} {} {}", clean(m.name._buffer[i]), fixed_text(value(m.position, i), 3),
+                    fixed_text(value(m.velocity, i), 2), fixed_text(value(m.effort, i), 2));
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "rt/base/errors.h"
+#include "rt/base/fixed_text.h"
 #include "rt/base/quantile.h"
 #include "rt/core/messages.h"
 #include "rt/telemetry/diagnostics.h"
@@ -17,6 +18,11 @@ namespace {
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kRateWindow_ns = 3 * kSecond_ns;
 constexpr std::size_t kRecentTicks = 2 * kControlHz;
+
+std::string velocity_text(double vx_mps, double vy_mps, double wz_radps) {
+  return fmt::format("{} {} m/s {} rad/s", fixed_text(vx_mps, 2), fixed_text(vy_mps, 2),
+                     fixed_text(wz_radps, 2));
+}
 
 }  // namespace
 
@@ -108,8 +114,7 @@ std::string RobotView::faults(std::int64_t now_ns) const {
 
 std::string RobotView::command(std::int64_t now_ns) const {
   if (!has_tick(now_ns)) return "-";
-  std::string text = fmt::format("{:.2f} {:.2f} m/s {:.2f} rad/s", tick_.command[0],
-                                 tick_.command[1], tick_.command[2]);
+  std::string text = velocity_text(tick_.command[0], tick_.command[1], tick_.command[2]);
   if (tick_.command_share < 1.0f) {
     text += fmt::format(", held to {:.0f} %: more than the policy can follow",
                         100.0 * static_cast<double>(tick_.command_share));
@@ -142,10 +147,10 @@ std::string RobotView::screen(std::int64_t now_ns) const {
   row("faults", faults(now_ns));
   row("of joints", value("fault_joints"));
   row("command", command(now_ns));
-  row("speed", has_odometry_
-                   ? fmt::format("{:.2f} {:.2f} m/s {:.2f} rad/s, height {:.2f} m (estimated)",
-                                 speed_[0], speed_[1], speed_[2], speed_[3])
-                   : "-");
+  row("speed", has_odometry_ ? fmt::format("{}, height {} m (estimated)",
+                                           velocity_text(speed_[0], speed_[1], speed_[2]),
+                                           fixed_text(speed_[3], 2))
+                             : "-");
   constexpr std::array<const char*, kNumRates> kNames = {"joint_states", "imu/data",    "odom",
                                                          "tf",           "diagnostics", "ticks"};
   std::string rates;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as files: evaluation.json and a CSV a part.
+// Results as files: evaluation.json and one CSV file for each part.
 #pragma once
 
 #include <string>

@@ -22,7 +22,7 @@ const std::vector<Metric>& metrics() {
        [](R r) { return rate(r.track_done && r.track_limits_kept); }},
       {"track_speed_mps", "track m/s", 1.0, 2, kMean, [](R r) { return r.track_speed_mps; }},
       {"track_cot", "track CoT", 1.0, 2, kMean, [](R r) { return r.track_cot; }},
-      {"top_speed_mps", "top m/s", 1.0, 2, kMean, [](R r) { return r.top_speed_mps; }},
+      {"track_end_speed_mps", "end m/s", 1.0, 2, kMean, [](R r) { return r.track_end_speed_mps; }},
       {"vx_mps", "vx m/s", 1.0, 2, kMean, [](R r) { return r.vx_mps; }},
       {"vy_mps", "vy m/s", 1.0, 2, kMean, [](R r) { return r.vy_mps; }},
       {"yaw_rate_radps", "wz rad/s", 1.0, 2, kMean, [](R r) { return r.yaw_rate_radps; }},

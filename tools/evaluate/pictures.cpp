@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "rt/plot/plot.h"
 
@@ -13,6 +14,7 @@ namespace sandrunner::evaluate {
 namespace {
 
 constexpr plot::Color kPolicyColors[] = {{0.05, 0.35, 0.70}, {0.80, 0.40, 0.05}};
+constexpr double kFastest_mps = 4.5;  // end of the speed axes
 constexpr plot::Color kLightColors[] = {{0.45, 0.65, 0.90}, {0.95, 0.70, 0.45}};
 
 // Grounds in their order, each with the indices of its groups.
@@ -35,51 +37,65 @@ void draw_speed(const PartResults& results, const std::vector<std::string>& poli
   figure.width_px = 1100;
   figure.panel_height_px = 220;
   for (const auto& [ground, groups] : by_ground(results.part)) {
-    plot::Panel panel{ground, "m/s", {}, 1e-3};
+    plot::Panel panel{ground, "speed, m/s", {}, 1e-3, true};
     figure.x.clear();
     for (const std::size_t g : groups) figure.x.push_back(results.part.groups[g].command.vx_mps);
     panel.series.push_back({"command", plot::kFaintInk, figure.x, false, true});
     for (std::size_t p = 0; p < policies.size(); ++p) {
-      plot::Series track{policies[p] + ", track", kPolicyColors[p], {}};
-      plot::Series top{"top", kLightColors[p], {}};
+      plot::Series track{policies[p] + ", whole track", kPolicyColors[p], {}};
+      plot::Series end{"its last gait cycle", kLightColors[p], {}};
+      track.markers = end.markers = true;
       for (const std::size_t g : groups) {
         track.y.push_back(pool(metric("track_speed_mps"), results.runs[p][g]).value);
-        top.y.push_back(pool(metric("top_speed_mps"), results.runs[p][g]).value);
+        end.y.push_back(pool(metric("track_end_speed_mps"), results.runs[p][g]).value);
       }
       panel.series.push_back(track);
-      panel.series.push_back(top);
+      panel.series.push_back(end);
     }
     figure.panels.push_back(panel);
   }
-  figure.views = {{"", figure.x.front(), figure.x.back(), 1.0}};
+  figure.views = {{"", 0.0, kFastest_mps, 1.0}};
   plot::draw(figure, path);
 }
 
 void draw_cost(const PartResults& results, const std::vector<std::string>& policies,
                const std::string& path) {
-  constexpr double kStep_mps = 0.01, kEnd_mps = 4.5;
+  constexpr double kStep_mps = 0.01;
   plot::Figure figure;
   figure.title = "Straight run: cost of transport against steady speed";
   figure.x_label = "steady speed, m/s";
   figure.width_px = 1100;
   figure.panel_height_px = 220;
-  for (int i = 0; i * kStep_mps <= kEnd_mps; ++i) figure.x.push_back(i * kStep_mps);
+  double greatest = 0.0;
+  for (int i = 0; i * kStep_mps <= kFastest_mps; ++i) figure.x.push_back(i * kStep_mps);
   for (const auto& [ground, groups] : by_ground(results.part)) {
-    plot::Panel panel{ground, "CoT", {}, 1e-3};
+    plot::Panel panel{ground, "cost of transport", {}, 1e-3, true};
     for (std::size_t p = 0; p < policies.size(); ++p) {
       std::vector<std::pair<double, double>> points;
       for (const std::size_t g : groups) {
         const Estimate speed = pool(metric("vx_mps"), results.runs[p][g]);
         const Estimate cot = pool(metric("cot"), results.runs[p][g]);
-        if (cot.n > 0) points.emplace_back(speed.value, cot.value);
+        if (cot.n == 0) continue;
+        points.emplace_back(speed.value, cot.value);
+        greatest = std::max(greatest, cot.value);
       }
       plot::Series line{policies[p], kPolicyColors[p], {}};
       for (const double x : figure.x) line.y.push_back(interpolate(points, x));
       panel.series.push_back(line);
+      plot::Series measured{"", kPolicyColors[p], {}};
+      measured.markers = true;
+      measured.y.assign(figure.x.size(), std::numeric_limits<double>::quiet_NaN());
+      for (const auto& [speed, cot] : points) {
+        const auto at = static_cast<std::size_t>(std::lround(speed / kStep_mps));
+        if (at < measured.y.size()) measured.y[at] = cot;
+      }
+      panel.series.push_back(measured);
     }
     figure.panels.push_back(panel);
   }
-  figure.views = {{"", 0.0, kEnd_mps, 1.0}};
+  // One scale, so that grounds can be compared.
+  for (plot::Panel& panel : figure.panels) panel.least_range = 1.12 * greatest;
+  figure.views = {{"", 0.0, kFastest_mps, 1.0}};
   plot::draw(figure, path);
 }
 
@@ -142,7 +158,10 @@ void draw_grid(const PartResults& results, const std::vector<std::string>& polic
   const auto count = static_cast<int>(policies.size());
   const plot::Canvas canvas(kLeft_px + kAcross_px * count,
                             kTop_px + kDown_px * static_cast<int>(std::size(kMaps)));
-  canvas.text(kLeft_px, 32.0, "Stiffness grid", 20.0, 0.0, plot::kInk, true);
+  canvas.text(
+      kLeft_px, 32.0,
+      fmt::format("Stiffness grid, {} robots in each cell", results.runs.at(0).at(0).size()), 20.0,
+      0.0, plot::kInk, true);
   for (int row = 0; const Map& map : kMaps) {
     const Metric& m = metric(map.key);
     std::vector<std::vector<double>> values(policies.size());

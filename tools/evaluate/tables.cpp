@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "rt/base/fixed_text.h"
+
 namespace sandrunner::evaluate {
 namespace {
 
@@ -47,8 +49,9 @@ std::string cell(const Metric& m, const std::vector<TrialFigures>& runs, bool wi
     return fmt::format("{:.0f}/{} [{:.0f},{:.0f}]", e.value * e.n, e.n, 100 * e.low, 100 * e.high);
   }
   const double half = 0.5 * (e.high - e.low) * m.table_scale;
-  if (e.n == 1 || !with_interval) return fmt::format("{:.{}f}", e.value * m.table_scale, m.digits);
-  return fmt::format("{:.{}f}+-{:.{}f}", e.value * m.table_scale, m.digits, half, m.digits);
+  if (e.n == 1 || !with_interval) return fixed_text(e.value * m.table_scale, m.digits);
+  return fmt::format("{}+-{}", fixed_text(e.value * m.table_scale, m.digits),
+                     fixed_text(half, m.digits));
 }
 
 std::string command_text(const VelocityCommand& c) {
@@ -136,7 +139,7 @@ std::string grid_tables(const PartResults& results, const std::vector<std::strin
         if (!(values[i] >= values[least])) least = i;
         if (!(values[i] <= values[greatest])) greatest = i;
       }
-      const auto number = [&](double v) { return fmt::format("{:.{}f}", v, m.digits); };
+      const auto number = [&](double v) { return fixed_text(v, m.digits); };
       const std::string heading =
           m.pooling == Pooling::kRate ? fmt::format("{} %", m.heading) : m.heading;
       table.add({p == 0 ? heading : "", policies[p], n > 0 ? number(sum / n) : "-",
@@ -179,8 +182,8 @@ std::string tables(const PartResults& results, const std::vector<std::string>& p
     std::string text = "Straight run: 1 m, then a track of 5 m\n";
     text += group_table(
         results, policies,
-        {"track_success", "track_strict_success", "track_speed_mps", "top_speed_mps", "vx_mps",
-         "track_cot", "cot", "clearance_iqr_m", "drift_vy_mps", "drift_yaw_radps"},
+        {"track_success", "track_strict_success", "track_speed_mps", "track_end_speed_mps",
+         "vx_mps", "track_cot", "cot", "clearance_iqr_m", "drift_vy_mps", "drift_yaw_radps"},
         false);
     text += "\nStraight run: gait, limits, estimate\n";
     text += group_table(
@@ -196,7 +199,9 @@ std::string tables(const PartResults& results, const std::vector<std::string>& p
     return text;
   }
   if (results.part.name == "grid") {
-    return "Stiffness grid: sigma_flat/sigma_cone in MN/m3\n" + grid_tables(results, policies);
+    return fmt::format("Stiffness grid: sigma_flat/sigma_cone in MN/m3, {} cells of {} robots\n",
+                       results.part.groups.size(), results.runs.at(0).at(0).size()) +
+           grid_tables(results, policies);
   }
   if (results.part.name == "turn") {
     return "Turning, sideways, backwards, standing\n" +

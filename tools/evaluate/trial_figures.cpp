@@ -172,7 +172,7 @@ void TrialRecorder::track_figures(const Trial& trial, const RobotFacts& facts,
       std::min(static_cast<std::size_t>(std::lround(cycle_s / kStep_s)), end - begin);
   double sum = 0.0;
   for (std::size_t i = end - cycle; i < end; ++i) sum += periods_[i].vx;
-  f.top_speed_mps = sum / static_cast<double>(cycle);
+  f.track_end_speed_mps = sum / static_cast<double>(cycle);
 }
 
 TrialFigures TrialRecorder::figures(const Trial& trial, bool fell, bool met,

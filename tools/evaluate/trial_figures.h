@@ -29,7 +29,7 @@ struct TrialFigures {
   bool track_limits_kept = false;        ///< and until there no joint was past a stop at any tick
   double track_speed_mps = kNotDefined;  ///< length over time
   double track_cot = kNotDefined;        ///< (P_mech + P_heat)/(m g v), from start to end line
-  double top_speed_mps =
+  double track_end_speed_mps =
       kNotDefined;  ///< mean vx of the last gait cycle before the end of the track
 
   // Steady.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <string>
 
 #include "policy/policy_file.h"
@@ -108,7 +109,13 @@ void print_info(const std::string& path) {
   }
   fmt::print("\n");
   for (const auto& [key, value] : spec.provenance) {
-    fmt::print("{:<19} {}\n", printable(key), printable(value, 200));
+    if (value.find('\n') == std::string::npos) {
+      fmt::print("{:<19} {}\n", printable(key), printable(value, 200));
+      continue;
+    }
+    fmt::print("{}\n", printable(key));  // settings, one in each line
+    std::istringstream lines(value);
+    for (std::string line; std::getline(lines, line);) fmt::print("  {}\n", printable(line, 200));
   }
   row("golden example", fmt::format("{} steps pass, largest deviation {:.1e} (allowed {:.0e})",
                                     kGoldenSteps, deviation, kGoldenTolerance));

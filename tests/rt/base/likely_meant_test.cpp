@@ -6,8 +6,12 @@
 namespace sandrunner {
 namespace {
 
-const std::vector<std::string> kKnown = {"controller.stand.kp_nmprad", "controller.walk.kp_nmprad",
-                                         "dry-sand", "terrain.friction", "--from", "--to"};
+const std::vector<std::string> kKnown = {"controller.stand.kp_nmprad",
+                                         "controller.walk.kp_nmprad",
+                                         "dry-sand",
+                                         "terrain.friction",
+                                         "--from",
+                                         "--to"};
 
 TEST(LikelyMeantTest, FindsSlipsOfTheKeyboardUnitsLeftOutAndOtherTables) {
   EXPECT_EQ(likely_meant("dry-snad", kKnown), "dry-sand");

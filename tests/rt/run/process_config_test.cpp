@@ -220,5 +220,11 @@ TEST(ProcessConfigTest, MissingOrBrokenRobotIsRefused) {
   expect_refused(load, {folder.path("map.toml") + ":1: unknown key 'wheels'"});
 }
 
+TEST(ProcessConfigTest, AnglesAreShownAsTheyWereMeant) {
+  const std::string effective = config_of("dry-sand", {}, nullptr).effective;
+  EXPECT_NE(effective.find("terrain.cone_angle_deg = 60.0\n"), std::string::npos) << effective;
+  EXPECT_NE(effective.find("terrain.crater_angle_deg = 45.0\n"), std::string::npos) << effective;
+}
+
 }  // namespace
 }  // namespace sandrunner

@@ -236,7 +236,7 @@ TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
   // The drives report the torque of the tick before.
   EXPECT_NEAR(result.figures.torque_squared_nm2, known.figures.torque_squared_nm2,
               0.01 * known.figures.torque_squared_nm2);
-  const RunInfo info{"1,0,0", "raibo", "dry-sand", 0};
+  const RunInfo info{"1,0,0", "raibo", "dry-sand", "lockstep", 0};
   EXPECT_EQ(summary_json(result, info).find("sinkage"), std::string::npos);
   EXPECT_EQ(summary_table(result, info).find("sinkage"), std::string::npos);
   EXPECT_NE(summary_table(known, info).find("sinkage"), std::string::npos);

@@ -62,7 +62,7 @@ TEST_F(TrialFiguresTest, SteadyRunHasTheFiguresOfTheirDefinitions) {
   EXPECT_TRUE(f.track_done);
   EXPECT_TRUE(f.track_limits_kept);
   EXPECT_NEAR(f.track_speed_mps, 1.0, 1e-4);
-  EXPECT_NEAR(f.top_speed_mps, 1.0, 1e-4);
+  EXPECT_NEAR(f.track_end_speed_mps, 1.0, 1e-4);
   EXPECT_NEAR(f.vx_mps, 1.0, 1e-5);
   EXPECT_NEAR(f.vy_mps, 0.2, 1e-5);
   EXPECT_NEAR(f.yaw_rate_radps, -0.1, 1e-5);
@@ -86,7 +86,7 @@ TEST_F(TrialFiguresTest, TopSpeedIsOfTheLastGaitCycleOfTheTrack) {
   // The end of the track is reached in period 550; a gait cycle is 0.5 s.
   for (int i = 0; i < 800; ++i) period(i >= 500 && i < 550 ? 2.0f : i < 200 ? 0.9f : 1.0667f);
   EXPECT_NEAR(figures().track_speed_mps, 5.0 / (0.01 * (550 - 111)), 0.02);
-  EXPECT_NEAR(figures().top_speed_mps, 2.0, 0.05);
+  EXPECT_NEAR(figures().track_end_speed_mps, 2.0, 0.05);
 }
 
 TEST_F(TrialFiguresTest, DisturbanceIsMetOrNotOrThereIsNone) {

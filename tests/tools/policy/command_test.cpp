@@ -68,6 +68,15 @@ TEST_F(PolicyCommandTest, HelpAndVersionSucceed) {
   EXPECT_EQ(output().rfind("sandrunner-policy ", 0), 0u);
 }
 
+TEST_F(PolicyCommandTest, InfoPrintsSettingsOneInEachLine) {
+  PolicyFile file = random_policy_file();
+  file.spec.provenance["config"] = "a.first = 1\nb.second = 2\n";
+  write_policy_file(folder_.path("policy"), file);
+  ASSERT_EQ(run("info policy"), 0);
+  EXPECT_NE(output().find("\nconfig\n  a.first = 1\n  b.second = 2\n"), std::string::npos)
+      << output();
+}
+
 TEST_F(PolicyCommandTest, BadInputIsOneLineAndExitCodeTwo) {
   write_bare_weights("weights");
   write_file(folder_.path("garbage"), "garbage");
@@ -75,8 +84,9 @@ TEST_F(PolicyCommandTest, BadInputIsOneLineAndExitCodeTwo) {
   expect_refused("convert x", "subcommand is required");
   expect_refused("import weights", "--out");
   expect_refused("info", "FILE");
-  expect_refused("info weights weights", "not expected");
-  expect_refused("info absent", "absent: cannot be read (No such file or directory), expected a policy file");
+  expect_refused("info weights weights", "unexpected");
+  expect_refused("info absent",
+                 "absent: cannot be read (No such file or directory), expected a policy file");
   expect_refused("info garbage", "'garbage': 7 bytes are too few");
   expect_refused("info weights", "not a policy file");
   expect_refused("import garbage --out policy", "'garbage': ");
