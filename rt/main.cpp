@@ -29,7 +29,6 @@
 #include "rt/run/run.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
-#include "rt/telemetry/start_time.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 
@@ -90,16 +89,12 @@ struct Listeners {
 
   TickTap tap() {
     if (!recorder && !black_box && !dds) return {};
-    return [this, begun = false](const TickRecord& tick) mutable {
-      if (!begun) begin(start_time_ns(tick));
-      begun = true;
+    return [this](const TickRecord& tick) {
       if (recorder) recorder->add(tick);
       if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
     };
   }
-
- private:
   void begin(std::int64_t start_ns) {
     if (recorder) recorder->begin(start_ns);
     if (black_box) black_box->begin(start_ns);
@@ -134,7 +129,7 @@ int run(int argc, char** argv) {
   flush_denormals_to_zero();
   SignalWatch signals;
   Listeners listeners;
-  if (config.dds.enabled) listeners.dds.emplace(config, options->live);
+  if (config.dds.enabled) listeners.dds.emplace(config, options->live, !options->realtime);
   listeners.recorder = make_recorder(*options, config, policy_text, policy);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
   sim::Simulator simulator(config.robot, config.simulator);
@@ -153,6 +148,7 @@ int run(int argc, char** argv) {
       .keep_record = out,
       .progress = terminal ? show_progress : std::function<void(const RunSample&)>(),
       .tap = listeners.tap(),
+      .begin_tap = [&](std::int64_t start_ns) { listeners.begin(start_ns); },
       .interrupt = signals.interrupted()};
   SystemClock clock;
   const RunResult result =

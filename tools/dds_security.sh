@@ -22,9 +22,9 @@ made=$(realpath -- "$made")
 start=$PWD
 cd -- "$made"
 
-telemetry=(rt/joint_states rt/imu/data rt/odom rt/tf rt/robot_description rt/diagnostics sandrunner/ticks
-  sandrunner/mode_reply)
-commands=(rt/cmd_vel sandrunner/mode_request)
+telemetry=(rt/joint_states rt/imu/data rt/odom rt/tf rt/tf_static rt/robot_description rt/diagnostics rt/clock
+  sandrunner/ticks sandrunner/mode_reply ros_discovery_info 'rr/sandrunner/*')
+commands=(rt/cmd_vel sandrunner/mode_request rt/sandrunner/request 'rq/sandrunner/*')
 days=3650
 from=$(date -u +%Y-%m-%dT%H:%M:%S)
 until=$(date -u -d "+$days days" +%Y-%m-%dT%H:%M:%S)

@@ -52,6 +52,8 @@ class Lockstep {
 
 /// Gets every tick of a run, in an ordinary thread: figures, recorders, telemetry.
 using TickTap = std::function<void(const TickRecord&)>;
+/// Is told the wall clock of slot 0, ns since 1970, before the first tick, in the same thread.
+using StartTap = std::function<void(std::int64_t)>;
 
 /// How a loop ended.
 struct LoopEnd {
@@ -61,8 +63,12 @@ struct LoopEnd {
   GateState gate;
 };
 
+/// The wall clock, ns since 1970.
+std::int64_t wall_clock_ns() noexcept;
+
 /// Ticks until `op` or `interrupt` ends it, then the drives are off.
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap);
+                     OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                     const StartTap& begin_tap = {});
 
 }  // namespace sandrunner

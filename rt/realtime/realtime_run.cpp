@@ -95,7 +95,7 @@ void end_if_it_hangs(const Watchdog& watchdog, const std::atomic<std::uint64_t>&
 RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
                          const RealtimeConfig& realtime, Mode start, Policy* policy,
                          OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
-                         Clock& clock) {
+                         Clock& clock, const StartTap& begin_tap) {
   RealtimeSetup setup(realtime);
   const auto exchange = std::make_unique<PolicyExchange>();
   const auto ring = std::make_unique<TickRing>();
@@ -118,7 +118,9 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
     threads.set_up(setup);
     const std::string missing = missing_rights(setup.items());
     if (!missing.empty()) to_standard_error(fmt::format("sandrunner: {}\n", missing));
+    const std::int64_t start_ns = wall_clock_ns() + kLeadTime_ns;
     threads.start();
+    if (begin_tap) begin_tap(start_ns);
     std::uint64_t ticks_seen = 0;
     std::int64_t alive_ns = clock.now_ns();
     while (!threads.done()) {

@@ -27,13 +27,13 @@ struct RealtimeEnd : LoopEnd {
 };
 
 /// As run_lockstep, on the clock: control and policy in threads of their own; `tap` gets their
-/// ticks in the caller's thread. A watchdog cuts the drives when the control thread hangs; if it
-/// still hangs two seconds later, the process ends. Wanted rights that are missing are said on
-/// standard error before slot 0. `clock` is shared by all threads. Throws InputError if a required
-/// part of the set-up is not to be had.
+/// ticks, and `begin_tap` their start, in the caller's thread. A watchdog cuts the drives when the
+/// control thread hangs; if it still hangs two seconds later, the process ends. Wanted rights that
+/// are missing are said on standard error before slot 0. `clock` is shared by all threads. Throws
+/// InputError if a required part of the set-up is not to be had.
 RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
                          const RealtimeConfig& realtime, Mode start, Policy* policy,
                          OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
-                         Clock& clock);
+                         Clock& clock, const StartTap& begin_tap = {});
 
 }  // namespace sandrunner

@@ -11,13 +11,17 @@ namespace sandrunner {
 /// The process on DDS: telemetry, and, if operators are to command the robot, their inbox.
 class DdsBridge {
  public:
-  /// `live`: commands come over DDS, and the robot stays passive until somebody asks. Throws
-  /// InputError.
-  DdsBridge(const ProcessConfig& config, bool live)
+  /// `live`: commands come over DDS, and the robot stays passive until somebody asks. `lockstep`:
+  /// time is simulated; add() then waits for the wall clock. Throws InputError.
+  DdsBridge(const ProcessConfig& config, bool live, bool lockstep = false)
       : participant_(config.dds), operator_(config.dds.stale_ticks()) {
-    if (live) inbox_ = std::make_unique<CommandInbox>(participant_, config.dds, true, operator_);
+    if (live) {
+      inbox_ = std::make_unique<CommandInbox>(
+          participant_, config.dds, hardware_id(config.robot.description), true, operator_);
+    }
     telemetry_ = std::make_unique<Telemetry>(participant_, config.dds, config.robot.description,
-                                             inbox_.get());
+                                             inbox_.get(), lockstep);
+    participant_.announce_node("sandrunner");
   }
 
   void begin(std::int64_t start_time_ns) noexcept { telemetry_->begin(start_time_ns); }

@@ -42,15 +42,16 @@ RunResult run(const RunParts& parts, const Loop& loop) {
 
 RunResult run_in_lockstep(const RunParts& parts) {
   return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
-    result.end =
-        run_lockstep(parts.robot, parts.controller, start, parts.policy, op, parts.interrupt, tap);
+    result.end = run_lockstep(parts.robot, parts.controller, start, parts.policy, op,
+                              parts.interrupt, tap, parts.begin_tap);
   });
 }
 
 RunResult run_in_realtime(const RunParts& parts, const RealtimeConfig& realtime, Clock& clock) {
   return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
-    const RealtimeEnd end = run_realtime(parts.robot, parts.controller, realtime, start,
-                                         parts.policy, op, parts.interrupt, tap, clock);
+    const RealtimeEnd end =
+        run_realtime(parts.robot, parts.controller, realtime, start, parts.policy, op,
+                     parts.interrupt, tap, clock, parts.begin_tap);
     result.end = end;
     result.realtime = end.report;
   });

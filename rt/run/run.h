@@ -25,6 +25,7 @@ struct RunParts {
   bool keep_record = false;                             ///< samples for CSV and pictures
   std::function<void(const RunSample&)> progress = {};  ///< every half second of the robot's time
   TickTap tap = {};                                     ///< gets every tick: recorders, telemetry
+  StartTap begin_tap = {};                              ///< is told when it starts
   const std::atomic<bool>& interrupt;                   ///< ends the run in damping
 };
 

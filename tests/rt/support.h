@@ -46,6 +46,7 @@ struct SimulatedRun {
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(const RunSample&)> progress = {};
   TickTap tap = {};
+  StartTap begin_tap = {};
   OperatorInput* live = nullptr;
   bool realtime = false;
   Clock* clock = nullptr;  ///< null: the system's
@@ -66,6 +67,7 @@ inline RunResult simulate(const SimulatedRun& run) {
                        .keep_record = run.keep_record,
                        .progress = run.progress,
                        .tap = run.tap,
+                       .begin_tap = run.begin_tap,
                        .interrupt = run.interrupt ? *run.interrupt : nobody};
   SystemClock system;
   return run.realtime ? run_in_realtime(parts, run.config.realtime, run.clock ? *run.clock : system)

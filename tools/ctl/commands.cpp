@@ -109,12 +109,17 @@ void request_mode(const Options& options, Interrupt& interrupt) {
     throw RefusedError(fmt::format(
         "{}: no answer; it is not known whether the robot received the request", options.mode));
   }
-  const std::string mode = one_line(reply->mode);
+  const std::string mode = one_line(reply->mode), robot = one_line(reply->robot);
   if (!reply->accepted) {
-    throw RefusedError(
-        fmt::format("{}: refused in mode {}: {}", options.mode, mode, one_line(reply->reason)));
+    throw RefusedError(fmt::format("{}: refused by {} in mode {}: {}", options.mode, robot, mode,
+                                   one_line(reply->reason)));
   }
-  print(fmt::format("{}: accepted, mode {}\n", options.mode, mode));
+  print(fmt::format("{}: accepted by {}, mode {}\n", options.mode, robot, mode));
+  const std::uint32_t robots = client.robots();
+  if (robots > 1) {
+    to_standard_error(
+        fmt::format("sandrunner-ctl: {} robots obey {}\n", robots, place(options.dds)));
+  }
 }
 
 void watch_topic(const Options& options, Interrupt& interrupt) {

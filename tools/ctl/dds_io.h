@@ -42,6 +42,8 @@ class ModeClient {
 
   /// Whether there is a robot that can receive a request and answer it.
   bool has_robot() const { return readers_of(requests_) > 0 && writers_of(replies_) > 0; }
+  /// How many robots would answer.
+  std::uint32_t robots() const { return writers_of(replies_); }
   /// Sends the request with this name.
   void ask(std::string_view request);
   /// The answer to the latest request, once.

@@ -129,8 +129,9 @@ std::string text(const sandrunner_ModeRequest& m) {
 }
 
 std::string text(const sandrunner_ModeReply& m) {
-  return fmt::format("{:016x}  {}  mode {}", m.id,
-                     m.accepted ? "accepted" : "refused: " + clean(m.reason), clean(m.mode));
+  return fmt::format("{:016x}  {}  mode {}  robot {}", m.id,
+                     m.accepted ? "accepted" : "refused: " + clean(m.reason), clean(m.mode),
+                     clean(m.robot));
 }
 
 }  // namespace sandrunner::ctl

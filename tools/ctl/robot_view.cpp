@@ -76,6 +76,7 @@ void RobotView::add(const diagnostic_msgs_msg_dds__DiagnosticArray_& array, std:
     const auto& status = array.status._buffer[i];
     if (std::string(status.name) != "sandrunner") continue;
     count(kDiagnostics, now_ns);
+    message_ = one_line(status.message ? status.message : "");
     robot_ = one_line(status.hardware_id ? status.hardware_id : "");
     diagnostics_.clear();
     for (std::uint32_t k = 0; k < status.values._length; ++k) {
@@ -143,6 +144,7 @@ std::string RobotView::screen(std::int64_t now_ns) const {
     out += fmt::format("{:<14} {}\n", name, text);
   };
   row("robot", robot_);
+  row("condition", message_);
   row("mode", mode(now_ns));
   row("faults", faults(now_ns));
   row("of joints", value("fault_joints"));

@@ -55,8 +55,8 @@ class RobotView {
   std::string command(std::int64_t now_ns) const;
   std::string recent(std::size_t part) const;  // quantiles of late, control or write
 
-  std::string robot_ = "-";      // which one it is, by the diagnostics
-  sandrunner_TickState tick_{};  // latest
+  std::string robot_ = "-", message_ = "-";  // which one it is, and how it is, by the diagnostics
+  sandrunner_TickState tick_{};              // latest
   std::int64_t last_tick_ns_ = 0;
   std::uint64_t sequence_number_ = 0;  // latest; 0: none yet
   std::uint64_t messages_ = 0, lost_messages_ = 0, skipped_ = 0;

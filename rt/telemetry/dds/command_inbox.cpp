@@ -9,7 +9,10 @@
 #include <cstddef>
 #include <cstring>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "rt/base/errors.h"
 #include "rt/core/mode_machine.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/sandrunner.h"
@@ -35,16 +38,6 @@ Twist twist_from(const geometry_msgs_msg_dds__Twist_& t) {
           .angular_radps = {t.angular.x, t.angular.y, t.angular.z}};
 }
 
-/// The participant of a writer that `reader` knows; zero if it is gone.
-dds_guid_t participant_of(dds_entity_t reader, dds_instance_handle_t writer) {
-  dds_guid_t key{};
-  if (dds_builtintopic_endpoint_t* const data = dds_get_matched_publication_data(reader, writer)) {
-    key = data->participant_key;
-    dds_builtintopic_free_endpoint(data);
-  }
-  return key;
-}
-
 template <std::size_t kSize>
 void copy_text(char (&to)[kSize], std::string_view from) {
   const std::size_t size = std::min(from.size(), kSize - 1);
@@ -55,8 +48,9 @@ void copy_text(char (&to)[kSize], std::string_view from) {
 }  // namespace
 
 CommandInbox::CommandInbox(const DdsParticipant& participant, const DdsConfig& config,
-                           bool can_walk, DdsOperator& op)
+                           std::string robot, bool can_walk, DdsOperator& op)
     : operator_(op),
+      robot_(std::move(robot)),
       stamped_(config.stamped_cmd_vel),
       can_walk_(can_walk),
       gate_(static_cast<std::int64_t>(config.stale_s * 1e9)),
@@ -68,9 +62,15 @@ CommandInbox::CommandInbox(const DdsParticipant& participant, const DdsConfig& c
                                    kRequestDepth, true)),
       replies_(
           participant.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, kRequestDepth)),
+      texts_(participant.reader("rt/sandrunner/request", std_msgs_msg_dds__String__desc,
+                                kRequestDepth, false)),
       wake_(check_dds(dds_create_guardcondition(participant.entity()), "guard condition")),
-      waitset_(check_dds(dds_create_waitset(participant.entity()), "waitset")) {
-  for (const dds_entity_t reader : {cmd_vel_, requests_}) {
+      waitset_(check_dds(dds_create_waitset(participant.entity()), "waitset")),
+      services_(participant),
+      neighbours_(participant, stamped_) {
+  std::vector<dds_entity_t> readers = services_.readers();
+  readers.insert(readers.end(), {cmd_vel_, requests_, texts_});
+  for (const dds_entity_t reader : readers) {
     check_dds(dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS), "status mask");
     check_dds(dds_waitset_attach(waitset_, reader, reader), "waitset");
   }
@@ -83,7 +83,7 @@ CommandInbox::~CommandInbox() {
   end_ = true;
   dds_set_guardcondition(wake_, true);
   thread_.join();
-  for (const dds_entity_t entity : {waitset_, wake_, cmd_vel_, requests_, replies_}) {
+  for (const dds_entity_t entity : {waitset_, wake_, cmd_vel_, requests_, replies_, texts_}) {
     dds_delete(entity);
   }
 }
@@ -128,34 +128,57 @@ void CommandInbox::take_velocity() {
 void CommandInbox::take_requests() {
   take(requests_, [this](const void* message, const dds_sample_info_t& info) {
     const auto& request = *static_cast<const sandrunner_ModeRequest*>(message);
-    answer(request.id, request.request, info.publication_handle);
+    const RequestOutcome outcome =
+        answer(request.request, participant_of(requests_, info.publication_handle));
+    sandrunner_ModeReply reply{};
+    reply.id = request.id;
+    reply.accepted = outcome.accepted;
+    copy_text(reply.mode, mode_name(operator_.mode()));
+    copy_text(reply.robot, robot_);
+    copy_text(reply.reason, outcome.accepted ? "" : outcome.text);
+    dds_write(replies_, &reply);
   });
+  take(texts_, [this](const void* message, const dds_sample_info_t& info) {
+    const auto& text = *static_cast<const std_msgs_msg_dds__String_*>(message);
+    answer(text.data, participant_of(texts_, info.publication_handle));
+  });
+  services_.answer(
+      [this](std::string_view request, const dds_guid_t& asker) { return answer(request, asker); });
 }
 
-void CommandInbox::answer(std::uint64_t id, std::string_view request,
-                          dds_instance_handle_t writer) {
-  const std::string unknown = fmt::format("unknown, expected {}", kRequestNames);
-  const char* const refusal = is_request(request) ? follow(request, writer) : unknown.c_str();
-  ++answers_[refusal ? 0 : 1];
-  sandrunner_ModeReply reply{};
-  reply.id = id;
-  reply.accepted = refusal == nullptr;
-  copy_text(reply.mode, mode_name(operator_.mode()));
-  copy_text(reply.reason, refusal ? refusal : "");
-  dds_write(replies_, &reply);
+RequestOutcome CommandInbox::answer(std::string_view request, const dds_guid_t& asker) {
+  const std::string refusal = is_request(request)
+                                  ? follow(request, asker)
+                                  : fmt::format("unknown, expected {}", kRequestNames);
+  ++answers_[refusal.empty() ? 1 : 0];
+  RequestOutcome outcome{refusal.empty(), refusal};
+  if (outcome.accepted) outcome.text = fmt::format("mode {}", mode_name(operator_.mode()));
+  const std::lock_guard lock(last_request_mutex_);
+  last_request_ = fmt::format("{}: {}: {}", one_line(std::string(request.substr(0, 15))),
+                              outcome.accepted ? "accepted" : "refused", outcome.text);
+  return outcome;
 }
 
-const char* CommandInbox::follow(std::string_view request, dds_instance_handle_t writer) {
+std::string CommandInbox::last_request() const {
+  const std::lock_guard lock(last_request_mutex_);
+  return last_request_;
+}
+
+std::string CommandInbox::follow(std::string_view request, const dds_guid_t& asker) {
   // A stop or damp waits for a controller that does not answer; until the controller has taken it,
   // nothing but a damp replaces it.
   const bool waiting = calming_number_ > operator_.considered();
   if (waiting && request != "damp") return kNoAnswer;
   const RequestDecision decision = decide(request, operator_.mode(), can_walk_);
   if (decision.refusal) return decision.refusal;
-  if (!decision.calms && gate_.held(steady_ns())) {
-    const dds_guid_t asker = participant_of(requests_, writer);
-    if (std::memcmp(asker.v, holder_.v, sizeof(asker.v)) != 0) {
-      return "another operator drives the robot";
+  if (!decision.calms && gate_.held(steady_ns()) &&
+      std::memcmp(asker.v, holder_.v, sizeof asker.v) != 0) {
+    return "another operator drives the robot";
+  }
+  if (!decision.calms) {
+    const std::vector<std::string> others = neighbours_.look().robots;
+    if (!others.empty()) {
+      return fmt::format("another robot would obey as well: {}", joined(others));
     }
   }
   if (decision.calms) {
@@ -181,7 +204,8 @@ const char* CommandInbox::follow(std::string_view request, dds_instance_handle_t
     }
     std::this_thread::sleep_for(kLookEvery);
   }
-  return failure(decision.request, operator_.mode());
+  const char* const failed = failure(decision.request, operator_.mode());
+  return failed ? failed : "";
 }
 
 }  // namespace sandrunner

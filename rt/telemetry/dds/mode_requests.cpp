@@ -2,14 +2,11 @@
 #include "rt/telemetry/dds/mode_requests.h"
 
 #include <algorithm>
-#include <array>
 
 namespace sandrunner {
 
 bool is_request(std::string_view name) noexcept {
-  constexpr std::array<std::string_view, 6> kNames = {"arm",  "stand", "walk",
-                                                      "stop", "damp",  "reset_fault"};
-  return std::ranges::find(kNames, name) != kNames.end();
+  return std::ranges::find(kRequests, name) != kRequests.end();
 }
 
 RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept {

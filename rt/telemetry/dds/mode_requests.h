@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string_view>
 
 #include "rt/core/messages.h"
@@ -8,6 +9,8 @@
 namespace sandrunner {
 
 /// What an operator may request over DDS, by name.
+inline constexpr std::array<std::string_view, 6> kRequests = {"arm",  "stand", "walk",
+                                                              "stop", "damp",  "reset_fault"};
 inline constexpr const char* kRequestNames = "arm, stand, walk, stop, damp or reset_fault";
 bool is_request(std::string_view name) noexcept;
 

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,6 +14,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
+#include "rt/telemetry/dds/ros.h"
 
 namespace sandrunner {
 namespace {
@@ -136,13 +139,48 @@ dds_entity_t DdsParticipant::topic(const char* name, const dds_topic_descriptor_
 dds_entity_t DdsParticipant::writer(const char* name, const dds_topic_descriptor_t& type, int depth,
                                     bool latched) const {
   const Qos qos = make_qos(depth, true, latched);
-  return check_dds(dds_create_writer(participant_, topic(name, type), qos.get(), nullptr), name);
+  writers_.push_back(
+      check_dds(dds_create_writer(participant_, topic(name, type), qos.get(), nullptr), name));
+  return writers_.back();
 }
 
 dds_entity_t DdsParticipant::reader(const char* name, const dds_topic_descriptor_t& type, int depth,
                                     bool reliable, bool latched) const {
   const Qos qos = make_qos(depth, reliable, latched);
-  return check_dds(dds_create_reader(participant_, topic(name, type), qos.get(), nullptr), name);
+  readers_.push_back(
+      check_dds(dds_create_reader(participant_, topic(name, type), qos.get(), nullptr), name));
+  return readers_.back();
+}
+
+void DdsParticipant::announce_node(const std::string& name) {
+  const auto gid_of = [](dds_entity_t entity) {
+    dds_guid_t guid{};
+    dds_get_guid(entity, &guid);
+    rmw_dds_common_msg_dds__Gid_ gid;
+    std::copy(std::begin(guid.v), std::end(guid.v), gid.data);
+    return gid;
+  };
+  const auto gids = [&](const std::vector<dds_entity_t>& entities) {
+    std::vector<rmw_dds_common_msg_dds__Gid_> all;
+    for (const dds_entity_t entity : entities) all.push_back(gid_of(entity));
+    return all;
+  };
+  std::vector<rmw_dds_common_msg_dds__Gid_> readers = gids(readers_), writers = gids(writers_);
+  const auto sequence = [](std::vector<rmw_dds_common_msg_dds__Gid_>& of) {
+    const auto size = static_cast<std::uint32_t>(of.size());
+    return dds_sequence_rmw_dds_common_msg_dds__Gid_{size, size, of.data(), false};
+  };
+  std::string space = "/", own_name = name;
+  rmw_dds_common_msg_dds__NodeEntitiesInfo_ node{.node_namespace = space.data(),
+                                                 .node_name = own_name.data(),
+                                                 .reader_gid_seq = sequence(readers),
+                                                 .writer_gid_seq = sequence(writers)};
+  const rmw_dds_common_msg_dds__ParticipantEntitiesInfo_ info{gid_of(participant_),
+                                                              {1, 1, &node, false}};
+  constexpr const char* kTopic = "ros_discovery_info";
+  const dds_entity_t to =
+      writer(kTopic, rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc, 1, true);
+  check_dds(dds_write(to, &info), kTopic);
 }
 
 }  // namespace sandrunner

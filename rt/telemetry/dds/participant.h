@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "dds/dds.h"
 #include "rt/telemetry/dds/dds_config.h"
@@ -29,12 +30,17 @@ class DdsParticipant {
   dds_entity_t reader(const char* topic, const dds_topic_descriptor_t& type, int depth,
                       bool reliable, bool latched = false) const;
 
+  /// Tells ROS 2 that all writers and readers made so far belong to a node /`name`. Throws
+  /// InputError.
+  void announce_node(const std::string& name);
+
   dds_entity_t entity() const noexcept { return participant_; }
 
  private:
   dds_entity_t topic(const char* name, const dds_topic_descriptor_t& type) const;
 
   dds_entity_t domain_ = 0, participant_ = 0;
+  mutable std::vector<dds_entity_t> writers_, readers_;
 };
 
 /// Takes the messages that have arrived, `limit` at most; `use` is given each as

@@ -122,4 +122,12 @@ bool RosPublisher::publish(const DiagnosticsMessage& message) {
   return write(diagnostics_, message);
 }
 
+ClockPublisher::ClockPublisher(const DdsParticipant& participant)
+    : writer_(participant.writer("rt/clock", rosgraph_msgs_msg_dds__Clock__desc, kDepth)) {}
+
+bool ClockPublisher::publish(std::int64_t now_ns) {
+  const rosgraph_msgs_msg_dds__Clock_ message{ros_time(now_ns)};
+  return dds_write(writer_, &message) >= 0;
+}
+
 }  // namespace sandrunner

@@ -28,4 +28,17 @@ class RosPublisher {
   const dds_entity_t joint_states_, imu_, odometry_, transforms_, diagnostics_;
 };
 
+/// Publishes the time of a simulation on rt/clock, for nodes with use_sim_time.
+class ClockPublisher {
+ public:
+  /// Throws InputError.
+  explicit ClockPublisher(const DdsParticipant& participant);
+
+  /// `now_ns` since 1970. False: it could not be written.
+  bool publish(std::int64_t now_ns);
+
+ private:
+  const dds_entity_t writer_;
+};
+
 }  // namespace sandrunner

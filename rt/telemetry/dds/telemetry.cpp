@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/telemetry/dds/telemetry.h"
 
-#include <string>
+#include <fmt/format.h>
 
-#include "rt/telemetry/start_time.h"
+#include <string>
+#include <thread>
+
+#include "rt/base/standard_error.h"
 
 namespace sandrunner {
 namespace {
 
 constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
+constexpr std::uint64_t kBatchHz = kControlHz / kTicksPerBatch;
 
 void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
                 std::uint64_t failed_writes) {
@@ -27,12 +31,14 @@ void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
 }  // namespace
 
 Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-                     const RobotDescription& robot, const CommandInbox* inbox)
+                     const RobotDescription& robot, const CommandInbox* inbox, bool lockstep)
     : ros_hz_(static_cast<std::uint64_t>(config.ros_hz)),
       inbox_(inbox),
       ros_(participant, robot),
+      neighbours_(participant, config.stamped_cmd_vel),
       diagnostics_(robot),
       odometry_(robot) {
+  if (lockstep) clock_.emplace(participant);
   if (config.ticks) batches_.emplace(participant);
 }
 
@@ -40,27 +46,55 @@ Telemetry::~Telemetry() {
   if (batches_) batches_->flush();
 }
 
+void Telemetry::begin(std::int64_t start_ns) noexcept {
+  start_ns_ = start_ns;
+  start_ = std::chrono::steady_clock::now();
+}
+
 void Telemetry::add(const TickRecord& record) {
   const std::uint64_t tick = record.input.sensors.tick;
-  if (start_ns_ == 0) start_ns_ = start_time_ns(record);
-  const std::int64_t stamp_ns = start_ns_ + static_cast<std::int64_t>(tick) * kTick_ns;
-  odometry_.add(record);
-  diagnostics_.add(record);
-  if (batches_ && !batches_->add(record, stamp_ns)) ++failed_writes_;
+  const std::chrono::nanoseconds time(static_cast<std::int64_t>(tick) * kTick_ns);
+  const std::int64_t stamp_ns = start_ns_ + time.count();
   // Due when the tick enters a new slot of the slower rate, even if the slot's first tick is
   // missing.
   const auto due = [&](std::uint64_t hz) {
     return tick * hz / kControlHz != last_tick_ * hz / kControlHz;
   };
+  if (clock_ && (due(ros_hz_) || due(kBatchHz))) {
+    std::this_thread::sleep_until(start_ + time);
+    if (!clock_->publish(stamp_ns)) ++failed_writes_;
+  }
+  odometry_.add(record);
+  diagnostics_.add(record);
+  if (batches_ && !batches_->add(record, stamp_ns)) ++failed_writes_;
   if (due(ros_hz_)) {
     failed_writes_ += static_cast<std::uint64_t>(ros_.publish(record, odometry_, stamp_ns));
   }
   if (due(1)) {
     DiagnosticsMessage message = diagnostics_.message(stamp_ns);
+    if (inbox_) add_neighbours(message);
     add_counts(message, inbox_ ? inbox_->counts() : CommandCounts{}, failed_writes_);
     if (!ros_.publish(message)) ++failed_writes_;
   }
   last_tick_ = tick;
+}
+
+// What an operator would wonder about: it is in the diagnostics, and once on standard error.
+void Telemetry::add_neighbours(DiagnosticsMessage& message) {
+  const Neighbours neighbours = neighbours_.look();
+  message.values.emplace_back("last_request", inbox_->last_request());
+  message.values.emplace_back("other_robots", joined(neighbours.robots));
+  message.values.emplace_back("other_cmd_vel_types", joined(neighbours.other_commands));
+  if (!neighbours.other_commands.empty()) message.warn("rt/cmd_vel of another type is not read");
+  if (neighbours.robots.empty()) return;
+  message.warn("another robot would obey as well");
+  if (alone_) {
+    to_standard_error(
+        fmt::format("sandrunner: another robot in this DDS domain would obey as well ({}): only "
+                    "stop and damp are accepted\n",
+                    joined(neighbours.robots)));
+  }
+  alone_ = false;
 }
 
 }  // namespace sandrunner

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 
 #include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/command_inbox.h"
+#include "rt/telemetry/dds/neighbours.h"
 #include "rt/telemetry/dds/ros_publisher.h"
 #include "rt/telemetry/dds/tick_batches.h"
 #include "rt/telemetry/diagnostics.h"
@@ -18,20 +20,22 @@ namespace sandrunner {
 /// and every tick in batches. Used by one thread of ordinary priority; a write may take
 /// milliseconds. A stamp is the wall clock at tick 0 plus 0.25 ms per tick: stamps are as evenly
 /// spaced as the control loop's slots and do not follow later corrections of the wall clock.
+///
+/// In lockstep, that time goes out on rt/clock before the messages that are stamped with it, and
+/// add() waits so that it never runs ahead of the wall clock.
 class Telemetry {
  public:
   /// `participant` must outlive this object, and so must `inbox`, whose counts are published; it
   /// may be null. Throws InputError.
   Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-            const RobotDescription& robot, const CommandInbox* inbox);
+            const RobotDescription& robot, const CommandInbox* inbox, bool lockstep = false);
   /// Publishes the last ticks.
   ~Telemetry();
   Telemetry(const Telemetry&) = delete;
   Telemetry& operator=(const Telemetry&) = delete;
 
-  /// Sets the wall clock at tick 0, ns since 1970, before the first add(), which otherwise takes
-  /// it.
-  void begin(std::int64_t start_ns) noexcept { start_ns_ = start_ns; }
+  /// The wall clock at tick 0, ns since 1970; before the first add().
+  void begin(std::int64_t start_ns) noexcept;
   /// Every tick, in order.
   void add(const TickRecord& tick);
 
@@ -39,14 +43,20 @@ class Telemetry {
   std::uint64_t failed_writes() const noexcept { return failed_writes_; }
 
  private:
+  void add_neighbours(DiagnosticsMessage& message);
+
   const std::uint64_t ros_hz_;
   const CommandInbox* inbox_;
   RosPublisher ros_;
+  std::optional<ClockPublisher> clock_;  // in lockstep
+  NeighbourWatch neighbours_;
   Diagnostics diagnostics_;
   std::optional<TickBatches> batches_;
   Odometry odometry_;
   std::int64_t start_ns_ = 0;
+  std::chrono::steady_clock::time_point start_;
   std::uint64_t last_tick_ = 0, failed_writes_ = 0;
+  bool alone_ = true;  // no other robot has been seen
 };
 
 }  // namespace sandrunner

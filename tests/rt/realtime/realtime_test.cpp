@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include "tests/rt/realtime/live_operator.h"
@@ -36,6 +38,30 @@ class Steps {
  private:
   int done_ = 0;
 };
+
+TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFirst) {
+  Policy policy = load_shipped_policy();
+  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  std::int64_t start_ns = 0, least_ns = std::numeric_limits<std::int64_t>::max();
+  int ticks_before_start = 0;
+  simulate({.config = config,
+            .policy = &policy,
+            .plan = {.walk_s = 0.3, .start_walking = true},
+            .tap =
+                [&](const TickRecord& tick) {
+                  ticks_before_start += start_ns == 0;
+                  const std::int64_t now_ns = wall_clock_ns();
+                  // When its slot began, by the stamps, plus how late it was.
+                  const std::int64_t began_ns =
+                      start_ns + static_cast<std::int64_t>(tick.input.sensors.tick) * 250'000 +
+                      tick.timing.late_ns;
+                  least_ns = std::min(least_ns, now_ns - began_ns);
+                },
+            .begin_tap = [&](std::int64_t at_ns) { start_ns = at_ns; },
+            .realtime = true});
+  EXPECT_EQ(ticks_before_start, 0);
+  EXPECT_GT(least_ns, -200'000);  // no stamp leads; before, by up to 5 ms
+}
 
 TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
   Policy policy = load_shipped_policy();

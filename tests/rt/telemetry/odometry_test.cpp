@@ -29,6 +29,7 @@ class BreakableRobot final : public RobotIo {
   }
   void cut_drives() noexcept override { simulator_.cut_drives(); }
   void shut_down() noexcept override {}
+  void cut_drives() noexcept override {}
   bool truth(RobotTruth& truth) const noexcept override { return simulator_.truth(truth); }
 
   bool broken = false;
@@ -53,6 +54,7 @@ class Day {
   template <typename Look>
   void live(const Look& look) {
     wait(0.6, look);
+    ask(ModeRequest::kArm, Mode::kDamping, look);
     ask(ModeRequest::kStand, Mode::kStand, look);
     wait(1.0, look);
     ask(ModeRequest::kWalk, Mode::kWalk, look);

@@ -77,24 +77,27 @@ TEST(CtlProgramTest, ARobotThatDoesNotAnswerIsWaitedForTwoSeconds) {
 TEST(CtlProgramTest, ModePrintsWhatTheRobotSays) {
   const DdsConfig config = test_config();
   FakeRobot robot(config);
-  expect_error(run({"mode", "walk"}, config), 1,
-               "walk: refused in mode passive: the robot does not stand, stand comes first");
-  expect_error(run({"mode", "reset_fault"}, config), 1, "refused in mode passive: no fault");
+  expect_error(
+      run({"mode", "walk"}, config), 1,
+      "walk: refused by example@here in mode passive: the robot does not stand, stand comes first");
+  expect_error(run({"mode", "reset_fault"}, config), 1,
+               "refused by example@here in mode passive: no fault");
   Ended ended = run({"mode", "arm"}, config);
-  EXPECT_EQ(ended.out, "arm: accepted, mode damping\n") << ended.err;
+  EXPECT_EQ(ended.out, "arm: accepted by example@here, mode damping\n") << ended.err;
   ended = run({"mode", "stand"}, config);
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_EQ(ended.out, "stand: accepted, mode stand_up\n");
+  EXPECT_EQ(ended.out, "stand: accepted by example@here, mode stand_up\n");
   ASSERT_TRUE(robot.wait_for(Mode::kStand));
   ended = run({"mode", "walk"}, config);
-  EXPECT_EQ(ended.out, "walk: accepted, mode walk\n") << ended.err;
+  EXPECT_EQ(ended.out, "walk: accepted by example@here, mode walk\n") << ended.err;
   ended = run({"mode", "stop"}, config);
-  EXPECT_TRUE(has(ended.out, "stop: accepted, mode ")) << ended.err;
+  EXPECT_TRUE(has(ended.out, "stop: accepted by example@here, mode ")) << ended.err;
   ended = run({"mode", "damp"}, config);
-  EXPECT_EQ(ended.out, "damp: accepted, mode damping\n") << ended.err;
+  EXPECT_EQ(ended.out, "damp: accepted by example@here, mode damping\n") << ended.err;
   robot.robot().break_joint();
   ASSERT_TRUE(robot.wait_for(Mode::kFault));
-  expect_error(run({"mode", "stand"}, config), 1, "refused in mode fault: a fault is latched");
+  expect_error(run({"mode", "stand"}, config), 1,
+               "refused by example@here in mode fault: a fault is latched");
 }
 
 TEST(CtlProgramTest, CmdSendsTwentyASecondThenZero) {
@@ -167,7 +170,7 @@ TEST(CtlProgramTest, WatchPrintsEachMessageOfEachTopicInOneLine) {
       {"rt/joint_states", "  FL_thigh 0.1"},
       {"rt/imu/data", "turning 0.100 0.200 0.300 rad/s"},
       {"rt/odom", "velocity 0.000 0.000 0.000 m/s"},
-      {"rt/tf", "odom to trunk: "},
+      {"rt/tf", "odom to base_link: "},
       {"rt/diagnostics", "sandrunner ok: passive; mode=passive; faults=none;"},
       {"sandrunner/ticks", "mode passive  faults none  command 0.90 -0.10 0.20"}};
   for (const auto& [topic, part] : kCases) {
@@ -209,7 +212,7 @@ TEST(CtlProgramTest, WatchShowsWhatOthersAskAndWhatTheRobotAnswers) {
   // Each returns when all that read the topic are known: the robot and the program, or only that.
   const auto cmd_vel = peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc, 2);
   const auto request = peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc, 2);
-  peer.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1);
+  dds_delete(peer.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1));
   const sandrunner_ModeRequest asked[] = {{.id = 0xabc, .request = "reset_fault"},
                                           {.id = 0xdef, .request = "damp"}};
   EXPECT_TRUE(wait_until([&] {  // they may not yet know these writers
@@ -218,7 +221,7 @@ TEST(CtlProgramTest, WatchShowsWhatOthersAskAndWhatTheRobotAnswers) {
     return commands.has_printed("linear 0.500 0.000 0.000 m/s  angular 0.000 0.000 0.000") &&
            requests.has_printed("0000000000000abc  reset_fault\n0000000000000def  damp\n") &&
            replies.has_printed("0000000000000abc  refused: no fault is latched  mode ") &&
-           replies.has_printed("0000000000000def  accepted  mode ");
+           replies.has_printed("0000000000000def  accepted  mode passive  robot example@here\n");
   }));
   for (Program* program : {&commands, &requests, &replies}) {
     program->signal(SIGINT);
@@ -253,8 +256,9 @@ TEST(CtlProgramTest, StatusOnceShowsTheRobot) {
   const Ended ended = run({"status", "--once"}, config);
   EXPECT_EQ(ended.code, 0) << ended.err;
   for (const char* part :
-       {"mode           passive\n", "faults         none\nof joints      none\n",
-        "command        0.90 -0.10 m/s 0.20 rad/s\n", "speed          0.00 0.00 m/s",
+       {"robot          example@", "condition      passive\n", "mode           passive\n",
+        "faults         none\nof joints      none\n", "command        0.90 -0.10 m/s 0.20 rad/s\n",
+        "speed          0.00 0.00 m/s",
         "late, us       last 2 s: p50 2.0, p99 2.0  since the start: p50 2.0",
         "control, us    last 2 s: p50 4.0, p99 4.0", "write, us      last 2 s: p50 5.0, p99 5.0",
         "slots missed   0 while watching, 0 since the start\n", "messages lost  0 lost and "}) {
@@ -282,7 +286,7 @@ TEST(CtlProgramTest, WithSecurityOnlyTheOperatorIsHeard) {
   FakeRobot robot(config);
   Program stranger({"mode", "stand"}, config);
   const Ended ended = run({"--security", keys, "mode", "arm"}, config);
-  EXPECT_EQ(ended.out, "arm: accepted, mode damping\n") << ended.err;
+  EXPECT_EQ(ended.out, "arm: accepted by example@here, mode damping\n") << ended.err;
   EXPECT_TRUE(
       has(run({"--security", keys, "status", "--once"}, config).out, "mode           damping"));
   EXPECT_EQ(run({"--security", keys, "cmd", "0", "0", "0", "--for", "0.1"}, config).code, 0);

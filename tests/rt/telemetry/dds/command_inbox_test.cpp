@@ -188,7 +188,7 @@ TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLat
        {std::pair("arm", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
     DdsParticipant participant(config);
     DdsOperator op(config.stale_ticks());
-    CommandInbox inbox(participant, config, true, op);
+    CommandInbox inbox(participant, config, "example@here", true, op);
     Peer peer(config);
     EXPECT_STREQ(Asker(peer).ask(request).reason, "the controller does not answer");
     op.command(0);
@@ -200,7 +200,7 @@ TEST(CommandInboxTest, ADampThatWaitsForTheControllerIsNotReplacedByAWalk) {
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
   DdsOperator op(config.stale_ticks());
-  CommandInbox inbox(participant, config, true, op);
+  CommandInbox inbox(participant, config, "example@here", true, op);
   Peer peer(config);
   Asker asker(peer);
   for (const char* request : {"damp", "arm", "walk"}) {

@@ -4,6 +4,8 @@
 //   dds_peer DOMAIN INTERFACE watch SECONDS [SECURITY_DIR IDENTITY]        counts the gaps between
 //       batches of ticks, and the ticks that are neither there nor reported as missed by the robot
 //   dds_peer DOMAIN INTERFACE publish SECONDS                              telemetry of a robot
+//   dds_peer DOMAIN XML stock SECONDS      what comes on rt/odom with this configuration of Cyclone
+//       DDS
 // Prints what it did as one line; "matched" as soon as it has found the other end, and "watching"
 // before that, when its reader is there.
 #include <chrono>
@@ -85,9 +87,26 @@ int publish(const DdsParticipant& participant, const DdsConfig& config, double d
   return 0;
 }
 
+int stock(int domain, const char* xml, double duration_s) {
+  DdsConfig config;
+  config.domain = domain;
+  check_dds(dds_create_domain(static_cast<dds_domainid_t>(domain), xml), "domain");
+  Peer peer(config);
+  const dds_entity_t reader = peer.reader("rt/odom", nav_msgs_msg_dds__Odometry__desc);
+  long long count = 0;
+  const auto end = Steady::now() + std::chrono::duration<double>(duration_s);
+  while (Steady::now() < end) {
+    count += take<nav_msgs_msg_dds__Odometry_>(reader, [](const auto&) {});
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  std::printf("odom %lld\n", count);
+  return 0;
+}
+
 int run(int argc, char** argv) {
   if (argc < 5) return 2;
   const std::string what = argv[3];
+  if (what == "stock") return stock(std::atoi(argv[1]), argv[2], std::atof(argv[4]));
   const int own = what == "drive" ? 6 : 5;
   DdsConfig config;
   config.domain = std::atoi(argv[1]);

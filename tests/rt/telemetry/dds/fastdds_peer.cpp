@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An independent peer, on eProsima's Fast DDS as ROS 2's rmw_fastrtps uses it:
-//   fastdds_peer DOMAIN VX_MPS SECONDS
+//   fastdds_peer DOMAIN VX_MPS SECONDS DISCOVERY
 // Sends Twists at 50 Hz and receives every ROS topic with a ROS 2 node's default QoS; prints for
 // each topic how many messages came and what was in the last one.
+//   fastdds_peer DOMAIN call REQUEST DISCOVERY
+// Calls the service /sandrunner/REQUEST as rmw_cyclonedds would, and prints the reply and the nodes
+// of ros_discovery_info.
+// DISCOVERY is how it looks for the robot: "loopback", or "profile": as rmw_fastrtps, with the
+// default settings or those of the file that the environment names.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
@@ -27,8 +32,11 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-// On the loopback interface only, and looking for peers only there.
-dds::DomainParticipantQos loopback_qos() {
+dds::DomainParticipantQos participant_qos(const std::string& discovery) {
+  if (discovery == "profile") {
+    dds::DomainParticipantFactory::get_instance()->load_profiles();
+    return dds::DomainParticipantFactory::get_instance()->get_default_participant_qos();
+  }
   dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.push_back("127.0.0.1");
@@ -80,10 +88,58 @@ struct Received {
   int count = 0;
 };
 
-void run(int domain, double vx_mps, double duration_s) {
-  dds::DomainParticipant* participant =
-      dds::DomainParticipantFactory::get_instance()->create_participant(
-          static_cast<dds::DomainId_t>(domain), loopback_qos());
+dds::DomainParticipant* make_participant(int domain, const std::string& discovery) {
+  return dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<dds::DomainId_t>(domain), participant_qos(discovery));
+}
+
+void call(int domain, const std::string& request, const std::string& discovery) {
+  dds::DomainParticipant* participant = make_participant(domain, discovery);
+  dds::Subscriber* subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  dds::Publisher* publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
+  Received<std_srvs::srv::dds_::Trigger_Response_PubSubType> reply(
+      participant, subscriber, ("rr/sandrunner/" + request + "Reply").c_str(),
+      "std_srvs::srv::dds_::Trigger_Response_");
+  Received<rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_PubSubType> nodes(
+      participant, subscriber, "ros_discovery_info",
+      "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", true);
+  dds::DataWriter* writer = publisher->create_datawriter(
+      make_topic<std_srvs::srv::dds_::Trigger_Request_PubSubType>(
+          participant, ("rq/sandrunner/" + request + "Request").c_str(),
+          "std_srvs::srv::dds_::Trigger_Request_"),
+      dds::DATAWRITER_QOS_DEFAULT);
+  std_srvs::srv::dds_::Trigger_Request_ message;
+  message.client(0x0123456789abcdef);
+  message.number(7);
+  // Once it has found the robot, and again after a second without an answer: the robot may not yet
+  // have found it.
+  int wait = 0;
+  for (int i = 0; i < 500 && (reply.count == 0 || nodes.count == 0); ++i) {
+    dds::PublicationMatchedStatus readers;
+    dds::SubscriptionMatchedStatus writers;
+    writer->get_publication_matched_status(readers);
+    reply.reader->get_subscription_matched_status(writers);
+    if (readers.current_count > 0 && writers.current_count > 0 && wait-- == 0) {
+      writer->write(&message);
+      wait = 100;
+    }
+    reply.take();
+    nodes.take();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  std::printf("client %llx number %lld success %d message %s\n",
+              static_cast<unsigned long long>(reply.last.client()),
+              static_cast<long long>(reply.last.number()), reply.last.success(),
+              reply.last.message().c_str());
+  for (const auto& node : nodes.last.node_entities_info_seq()) {
+    std::printf("node %s%s readers %zu writers %zu\n", node.node_namespace().c_str(),
+                node.node_name().c_str(), node.reader_gid_seq().size(),
+                node.writer_gid_seq().size());
+  }
+}
+
+void run(int domain, double vx_mps, double duration_s, const std::string& discovery) {
+  dds::DomainParticipant* participant = make_participant(domain, discovery);
   dds::Subscriber* subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   dds::Publisher* publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   Received<sensor_msgs::msg::dds_::JointState_PubSubType> joints(
@@ -172,8 +228,13 @@ void run(int domain, double vx_mps, double duration_s) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) return 2;
-  run(std::atoi(argv[1]), std::atof(argv[2]), std::atof(argv[3]));
+  if (argc != 5) return 2;
+  const int domain = std::atoi(argv[1]);
+  if (std::string(argv[2]) == "call") {
+    call(domain, argv[3], argv[4]);
+  } else {
+    run(domain, std::atof(argv[2]), std::atof(argv[3]), argv[4]);
+  }
   std::fflush(stdout);
   std::_Exit(0);  // without telling its peers
 }

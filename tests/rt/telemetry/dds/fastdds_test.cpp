@@ -23,7 +23,8 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
     ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
     ASSERT_TRUE(asker.ask("walk").accepted);
   }
-  ChildProcess fast({SANDRUNNER_FASTDDS_PEER, std::to_string(setup.config.domain), "0.7", "4"});
+  ChildProcess fast(
+      {SANDRUNNER_FASTDDS_PEER, std::to_string(setup.config.domain), "0.7", "4", "loopback"});
   double fastest_mps = 0.0;
   const auto start = std::chrono::steady_clock::now();
   for (std::uint64_t tick = 0; tick < 4 * kControlHz;) {
@@ -73,6 +74,42 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   has(" w 0.707107 trunk FL_hip_link y 0.100000 ");
   has("\ntf_static 1 base_link trunk FL_thigh_link FL_foot\n");
   has(" sandrunner level 0 message walk mode=walk faults=none ");
+}
+
+TEST(FastDdsTest, ACallInTheBytesOfRmwCycloneddsIsAnsweredAndTheNodeIsListed) {
+  LiveSetup setup;
+  setup.participant.announce_node("sandrunner");
+  const auto call = [&](const char* request) {
+    ChildProcess fast({SANDRUNNER_FASTDDS_PEER, std::to_string(setup.config.domain), "call",
+                       request, "loopback"});
+    return fast.wait().out;
+  };
+  const std::string refused = call("walk");
+  EXPECT_EQ(refused.rfind("client 123456789abcdef number 7 success 0 message the robot "
+                          "does not stand, stand comes first\nnode /sandrunner readers ",
+                          0),
+            0u)
+      << refused;
+  EXPECT_EQ(setup.robot.mode(), Mode::kPassive);
+  const std::string accepted = call("arm");
+  EXPECT_EQ(accepted.rfind("client 123456789abcdef number 7 success 1 message mode "
+                           "damping\n",
+                           0),
+            0u)
+      << accepted;
+  EXPECT_EQ(setup.robot.mode(), Mode::kDamping);
+}
+
+TEST(FastDdsTest, RmwFastrtpsUnderRos2LocalhostFindsTheRobotThroughItsDefaultInterface) {
+  LiveSetup setup;
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.inbox);
+  ChildProcess fast({"bash", "-c",
+                     "source " SANDRUNNER_ROS2_LOCALHOST " && exec " SANDRUNNER_FASTDDS_PEER " " +
+                         std::to_string(setup.config.domain) + " 0.1 4 profile"});
+  publish_for(telemetry, 0, 4.0);
+  const std::string text = fast.wait().out;
+  EXPECT_GE(number_after(text, "\nodom"), 100.0) << text.substr(0, 200);
+  EXPECT_GE(setup.inbox.counts().accepted, 25u);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ class RobotCommandsTest : public testing::Test {
             &policy_.spec())),
         participant_(config_.dds),
         op_(config_.dds.stale_ticks()),
-        inbox_(participant_, config_.dds, true, op_),
+        inbox_(participant_, config_.dds, "raibo@here", true, op_),
         telemetry_(participant_, config_.dds, config_.robot.description, &inbox_),
         peer_(config_.dds) {}
 

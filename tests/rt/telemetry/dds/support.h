@@ -130,6 +130,7 @@ inline void drive(dds_entity_t writer, double vx_mps) {
 /// time that one add() took, s.
 inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double duration_s) {
   using Steady = std::chrono::steady_clock;
+  if (first_tick == 0) telemetry.begin(kExampleStart_ns);
   const auto start = Steady::now();
   const std::uint64_t ticks = ticks_from_s(duration_s);
   double longest_s = 0.0;
@@ -210,7 +211,7 @@ struct LiveSetup {
       : config(config_in),
         participant(config),
         op(config.stale_ticks()),
-        inbox(participant, config, can_walk, op),
+        inbox(participant, config, "example@here", can_walk, op),
         robot(op, config) {}
 
   DdsConfig config;

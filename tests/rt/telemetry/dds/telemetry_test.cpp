@@ -189,6 +189,31 @@ TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsTimesAndTheGatesCoun
   }
 }
 
+TEST(TelemetryTest, InLockstepTheClockHasTheMessagesStampsAndDoesNotRunAheadOfTheWall) {
+  Published setup;
+  const auto clock = setup.peer.reader("rt/clock", rosgraph_msgs_msg_dds__Clock__desc);
+  const auto joints = setup.peer.reader("rt/joint_states", sensor_msgs_msg_dds__JointState__desc);
+  const auto start = std::chrono::steady_clock::now();
+  {
+    Telemetry telemetry(setup.participant, setup.config, example_robot(), nullptr, true);
+    telemetry.begin(kExampleStart_ns);
+    for (std::uint64_t tick = 0; tick <= 400; ++tick) telemetry.add(example_tick(tick));
+  }
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(100));
+  std::vector<std::int64_t> times_ns, stamps_ns;
+  const auto ns = [](const builtin_interfaces_msg_dds__Time_& t) {
+    return t.sec * std::int64_t{1'000'000'000} + t.nanosec;
+  };
+  take<rosgraph_msgs_msg_dds__Clock_>(
+      clock, [&](const rosgraph_msgs_msg_dds__Clock_& m) { times_ns.push_back(ns(m.clock)); });
+  take<sensor_msgs_msg_dds__JointState_>(joints, [&](const sensor_msgs_msg_dds__JointState_& m) {
+    stamps_ns.push_back(ns(m.header.stamp));
+  });
+  EXPECT_EQ(times_ns.size(), 10u);
+  EXPECT_EQ(times_ns.front(), kExampleStart_ns + 10'000'000);
+  EXPECT_EQ(times_ns, stamps_ns);
+}
+
 TEST(TelemetryTest, EveryTickIsInTheBatchesOnceAndInOrder) {
   Published setup;
   const auto reader = setup.peer.reader("sandrunner/ticks", sandrunner_TickBatch_desc);

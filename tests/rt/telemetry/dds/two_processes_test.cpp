@@ -29,6 +29,25 @@ TEST(TwoProcessesTest, APublisherThatIsKilledLosesTheCommandAfterTheStaleTime) {
   EXPECT_TRUE(wait_until([&] { return setup.inbox.counts().accepted > before + 20; }));
 }
 
+// What rmw_cyclonedds adds to the environment's settings, by version and discovery range.
+TEST(TwoProcessesTest, RmwCycloneddsUnderRos2LocalhostFindsTheRobotThroughItsDefaultInterface) {
+  const std::string index =
+      "<CycloneDDS><Domain><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+      "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex></Discovery></Domain></CycloneDDS>,";
+  for (const std::string& added : {std::string(), index}) {  // Humble; since Iron
+    SCOPED_TRACE(added);
+    const DdsConfig config = test_config();
+    DdsParticipant participant(config);
+    Telemetry telemetry(participant, config, example_robot(), nullptr);
+    ChildProcess peer({"bash", "-c",
+                       "source " SANDRUNNER_ROS2_LOCALHOST " && exec " SANDRUNNER_DDS_PEER " " +
+                           std::to_string(config.domain) + " '" + added +
+                           "'\"$CYCLONEDDS_URI\" stock 4"});
+    publish_for(telemetry, 0, 4.0);
+    EXPECT_GE(number_after(peer.wait().out, "odom"), 100.0);
+  }
+}
+
 TEST(TwoProcessesTest, AStoppedSubscriberHoldsUpNobodyAndALiveOneMissesNothing) {
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
