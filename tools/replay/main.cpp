@@ -129,7 +129,7 @@ int run(int argc, char** argv) {
   flush_denormals_to_zero();
   std::optional<Player> player;
   std::optional<ReplayDifference> difference;
-  std::uint64_t compared = 0, drawn = 0, last_tick = 0;
+  std::uint64_t compared = 0, not_compared = 0, drawn = 0, last_tick = 0;
   RecordingVisitor visitor;
   visitor.begin = [&](const RecordingInfo& info) {
     player.emplace(info, *arguments);
@@ -147,7 +147,7 @@ int run(int argc, char** argv) {
     std::optional<ReplayDifference> found;
     if (compares) found = player->replay->check(recorded);
     if (t_s < arguments->from_s) return true;
-    compared += compares;
+    ++(compares ? compared : not_compared);
     ++drawn;
     if (player->observer) player->observer->add(recorded);
     if (found && !difference) difference = std::move(found);
@@ -190,6 +190,10 @@ int run(int argc, char** argv) {
   } else {
     fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared,
                player->replay->policy_steps());
+  }
+  if (not_compared > 0) {
+    fmt::print("{} ticks behind the damage have no state to start from: NOT COMPARED\n",
+               not_compared);
   }
   if (!contents.damage.empty()) throw InputError(contents.damage);
   return kExitOk;

@@ -37,7 +37,7 @@ RecordingInfo info_of(const std::string& path, const McapReader& reader) {
     return found->second;
   };
   const auto one_of = [&](const char* key, const char* a, const char* b) {
-    const std::string value = text(key);
+    std::string value = text(key);
     if (value != a && value != b) {
       fail(path, fmt::format("metadata '{}': {} is '{}', expected {} or {}", kRunMetadata, key,
                              value, a, b));
