@@ -29,7 +29,6 @@ class BreakableRobot final : public RobotIo {
   }
   void cut_drives() noexcept override { simulator_.cut_drives(); }
   void shut_down() noexcept override {}
-  void cut_drives() noexcept override {}
   bool truth(RobotTruth& truth) const noexcept override { return simulator_.truth(truth); }
 
   bool broken = false;
