@@ -11,6 +11,7 @@
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
+#include "tools/evaluate/commands_picture.h"
 #include "tools/evaluate/files.h"
 #include "tools/evaluate/options.h"
 #include "tools/evaluate/pictures.h"
@@ -24,6 +25,7 @@ Part make_part(Study& study, const std::string& name) {
   if (name == "straight") return study.straight();
   if (name == "grid") return study.grid();
   if (name == "turn") return study.turn();
+  if (name == "commands") return study.commands();
   return study.robust();
 }
 
@@ -70,6 +72,8 @@ int run(int argc, char** argv) {
     const bool taken = !results.policies.empty() && results.policies[0] == policy.spec().name;
     results.policies.push_back(policy.spec().name + (taken ? " (2)" : ""));
   }
+  std::vector<CommandEnvelope> envelopes;
+  for (const Policy& policy : policies) envelopes.push_back(policy.spec().envelope);
   Study study(options->study, robot);
   RunnerSettings settings;
   settings.threads = options->threads;
@@ -88,6 +92,9 @@ int run(int argc, char** argv) {
     for (const PartResults& part : results.parts) {
       write_file(dir + part.part.name + ".csv", part_csv(part, results.policies));
       draw_part(part, results.policies, options->out_dir);
+      if (part.part.name == "commands") {
+        draw_commands(part, results.policies, envelopes, dir + "commands.png");
+      }
     }
     write_file(dir + "evaluation.json", results_json(results, robot.description.name, *options));
     fmt::print("wrote evaluation.json and the parts' files into {}\n", options->out_dir);

@@ -13,7 +13,7 @@ struct Options {
   std::string policy_path, against_path, robot_path, out_dir;
   StudySettings study;
   int threads = 1;
-  std::vector<std::string> parts = {"straight", "grid", "turn", "robust"};
+  std::vector<std::string> parts = {"straight", "grid", "turn", "robust", "commands"};
   bool torque_speed_line = true;
 };
 

@@ -27,11 +27,18 @@ struct Group {
   std::vector<Trial> trials;
 };
 
-/// "straight", "grid", "turn" or "robust".
+/// "straight", "grid", "turn", "robust" or "commands".
 struct Part {
   std::string name;
   std::vector<Group> groups;
 };
+
+/// The maps of commands: vx across, vy or yaw rate up.
+enum class CommandPlane { kSideways, kTurning };
+inline constexpr int kCommandColumns = 13, kCommandRows = 9;
+inline constexpr double kCommandAcceleration = 2.0;  ///< of the commands, m/s^2 and rad/s^2
+double commanded_vx_mps(int column);
+double commanded_other(CommandPlane plane, int row);  ///< m/s or rad/s
 
 inline constexpr int kGridSize = 10;  ///< cells along each side of the stiffness grid
 
@@ -61,6 +68,7 @@ class Study {
   Part grid();
   Part turn();
   Part robust();
+  Part commands();
 
  private:
   StudySettings settings_;

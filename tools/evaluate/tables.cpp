@@ -175,6 +175,26 @@ std::string grid_tables(const PartResults& results, const std::vector<std::strin
   return text;
 }
 
+/// Commands that all robots survived, of all, by plane and ground.
+std::string command_table(const PartResults& results, const std::vector<std::string>& policies) {
+  std::string text = fmt::format("Commands survived by all of {} robots, of {} (commands.png)\n",
+                                 results.runs.at(0).at(0).size(), kCommandColumns * kCommandRows);
+  Table table(3);
+  table.add({"plane", "ground", "policy", "survived"});
+  constexpr std::size_t kCells = kCommandColumns * kCommandRows;
+  for (std::size_t first = 0; first < results.part.groups.size(); first += kCells) {
+    const Group& group = results.part.groups[first];
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      int survived = 0;
+      for (std::size_t i = first; i < first + kCells; ++i) {
+        survived += pool(metric("survival"), results.runs[p][i]).value >= 1.0 ? 1 : 0;
+      }
+      table.add({group.scenario, group.ground, policies[p], fmt::format("{}", survived)});
+    }
+  }
+  return text + table.text();
+}
+
 }  // namespace
 
 std::string tables(const PartResults& results, const std::vector<std::string>& policies) {
@@ -210,6 +230,7 @@ std::string tables(const PartResults& results, const std::vector<std::string>& p
                         "turning_cot", "cot", "stride_hz", "past_stop_share"},
                        true);
   }
+  if (results.part.name == "commands") return command_table(results, policies);
   return "Robustness\n" +
          group_table(results, policies,
                      {"survival", "disturbance_met", "vx_mps", "velocity_error_mps", "cot",

@@ -66,7 +66,7 @@ for (const { channelId, data } of messages) {
 assert.equal(next, BigInt(ticks));
 
 const attachments = new Map(records.Attachment.map((a) => [a.name, new TextDecoder().decode(a.data)]));
-assert.deepEqual([...attachments.keys()].sort(), ["config.toml", "policy.safetensors", "robot.urdf"]);
+assert.deepEqual([...attachments.keys()].sort(), ["config.toml", "policy.safetensors", "robot.toml", "robot.urdf"]);
 assert.match(attachments.get("config.toml"), /friction/);
 assert.match(attachments.get("policy.safetensors"), /F32/);
 assert.match(attachments.get("robot.urdf"), /<robot/);
