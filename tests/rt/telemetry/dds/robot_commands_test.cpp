@@ -200,7 +200,8 @@ TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
   const auto transforms = peer.reader("rt/tf", tf2_msgs_msg_dds__TFMessage__desc);
   for (std::uint64_t tick = 0; tick <= kTicksPerPolicyStep; ++tick) bridge.add(example_tick(tick));
   EXPECT_EQ(take<std_msgs_msg_dds__String_>(
-                descriptions, [&](const auto& m) { EXPECT_EQ(m.data, small_robot_urdf()); }),
+                descriptions,
+                [&](const auto& m) { EXPECT_EQ(m.data, config.robot.description.ros_urdf); }),
             1);
   EXPECT_EQ(take<sensor_msgs_msg_dds__JointState_>(joints,
                                                    [&](const auto& m) {
@@ -212,7 +213,9 @@ TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
   EXPECT_EQ(take<tf2_msgs_msg_dds__TFMessage_>(
                 transforms,
                 [&](const auto& m) {
+                  ASSERT_EQ(m.transforms._length, 1u + kNumJoints);
                   EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "base_link");
+                  EXPECT_STREQ(m.transforms._buffer[1].child_frame_id, "fl_hip");
                 }),
             1);
 }
