@@ -39,7 +39,7 @@ void add_once(std::vector<std::string>& texts, const std::string& text) {
 std::string property(const dds_qos_t* qos, const char* name) {
   char* value = nullptr;
   if (!dds_qget_prop(qos, name, &value)) return "?";
-  const std::string text = value;
+  std::string text = value;
   dds_free(value);
   return text;
 }

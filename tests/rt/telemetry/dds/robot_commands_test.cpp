@@ -213,7 +213,9 @@ TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
   EXPECT_EQ(take<tf2_msgs_msg_dds__TFMessage_>(
                 transforms,
                 [&](const auto& m) {
+                  ASSERT_EQ(m.transforms._length, 1u + kNumJoints);
                   EXPECT_STREQ(m.transforms._buffer[0].child_frame_id, "base_link");
+                  EXPECT_STREQ(m.transforms._buffer[1].child_frame_id, "fl_hip");
                 }),
             1);
 }
