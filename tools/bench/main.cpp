@@ -12,6 +12,7 @@
 #include "rt/base/program.h"
 #include "tools/bench/batch_bench.h"
 #include "tools/bench/contact_bench.h"
+#include "tools/bench/learner_bench.h"
 #include "tools/bench/policy_bench.h"
 #include "tools/bench/realtime_bench.h"
 
@@ -28,11 +29,13 @@ int run(int argc, char** argv) {
       "batch", "steps per second of robots trotting on sand, against MuJoCo in the same run");
   CLI::App* contact = app.add_subcommand(
       "contact", "time of dynamic resistive force theory over that of the cone model, same drops");
+  CLI::App* learner = app.add_subcommand(
+      "learner", "GFLOP/s of the training's matrix products, against Eigen and this core's peak");
   CLI::App* rt = app.add_subcommand(
       "rt",
       "wake-up of the control thread against cyclictest, policy step against Eigen and a read "
       "floor, exchange between threads against a mutex");
-  for (CLI::App* command : {batch, contact, rt}) {
+  for (CLI::App* command : {batch, contact, learner, rt}) {
     command->add_option("--json", json_path, "file for the figures")->type_name("FILE");
     command->add_option("--rounds", rounds, "interleaved rounds")
         ->check(CLI::Range(1, 10000))
@@ -48,6 +51,7 @@ int run(int argc, char** argv) {
   bench::Report report;
   if (batch->parsed()) report = bench::run_batch_bench(rounds);
   if (contact->parsed()) report = bench::run_contact_bench(rounds);
+  if (learner->parsed()) report = bench::run_learner_bench(rounds);
   if (rt->parsed()) {
     report = bench::run_policy_bench(rounds);
     bench::run_exchange_bench(rounds, report);

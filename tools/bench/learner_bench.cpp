@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/bench/learner_bench.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "rt/core/floating_point.h"
+#include "sim/lanes/processor.h"
+#include "tools/bench/clock.h"
+#include "tools/train/kernels/kernels.h"
+
+namespace sandrunner::bench {
+namespace {
+
+using Eigen::MatrixXf;
+using learner::Kernels;
+using learner::Panels;
+using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// About 50 ms of each.
+constexpr double kFlopsPerRun = 1e10;
+constexpr double kTolerance = 1e-3;
+
+/// As the learner has them: a block of 64 environments steps through the encoder; the others take
+/// four steps at a time.
+struct Size {
+  int inputs, outputs, samples;
+};
+constexpr Size kSizes[] = {{95, 256, 64},                                    // encoder
+                           {64, 128, 256}, {128, 128, 256}, {128, 8, 256},   // estimator
+                           {75, 256, 256}, {256, 128, 256}, {128, 12, 256},  // actor
+                           {77, 128, 256}, {128, 128, 256}, {128, 1, 256}};  // critic
+
+/// A layer, one sample a column: y = W x, dx = W^T dy, dw += dy x^T.
+struct Layer {
+  explicit Layer(const Size& size)
+      : w(random_matrix(size.outputs, size.inputs)),
+        x(random_matrix(size.inputs, size.samples)),
+        dy(random_matrix(size.outputs, size.samples)),
+        y(MatrixXf::Zero(size.outputs, size.samples)),
+        dx(MatrixXf::Zero(size.inputs, size.samples)),
+        dw(RowMajor::Zero(size.outputs, size.inputs)),
+        forward(size.inputs, size.outputs),
+        backward(size.outputs, size.inputs) {
+    forward.pack(w.data(), 1, size.inputs);
+    backward.pack(w.data(), size.inputs, 1);
+  }
+  static MatrixXf random_matrix(int rows, int columns) {
+    static std::mt19937 random(1);
+    std::normal_distribution<float> normal;
+    return MatrixXf::NullaryExpr(rows, columns, [&] { return normal(random); });
+  }
+  double flops() const {
+    return 2.0 * static_cast<double>(w.size()) * static_cast<double>(x.cols());
+  }
+
+  RowMajor w;
+  MatrixXf x, dy, y, dx;
+  RowMajor dw;
+  Panels<float> forward, backward;  ///< w, packed
+};
+
+/// One kind of product of a layer.
+struct Pass {
+  const char* name;
+  void (*ours)(const Kernels<float>&, Layer&);
+  void (*eigen)(Layer&);
+};
+
+learner::Rows<const float> in(const MatrixXf& m) { return {m.data(), m.outerStride()}; }
+
+const Pass kPasses[] = {
+    {"forward",
+     [](const Kernels<float>& kernels, Layer& l) {
+       kernels.multiply({.samples = static_cast<int>(l.x.cols()),
+                         .a = in(l.x),
+                         .b = l.forward,
+                         .c = {l.y.data(), l.y.outerStride()}});
+     },
+     [](Layer& l) { l.y.noalias() = l.w * l.x; }},
+    {"backward",
+     [](const Kernels<float>& kernels, Layer& l) {
+       kernels.multiply({.samples = static_cast<int>(l.x.cols()),
+                         .a = in(l.dy),
+                         .b = l.backward,
+                         .c = {l.dx.data(), l.dx.outerStride()}});
+     },
+     [](Layer& l) { l.dx.noalias() = l.w.transpose() * l.dy; }},
+    {"gradient",
+     [](const Kernels<float>& kernels, Layer& l) {
+       kernels.add_gradient({.samples = static_cast<int>(l.x.cols()),
+                             .rows = static_cast<int>(l.w.rows()),
+                             .columns = static_cast<int>(l.w.cols()),
+                             .a = in(l.dy),
+                             .b = in(l.x),
+                             .c = {l.dw.data(), l.dw.outerStride()}});
+     },
+     [](Layer& l) { l.dw.noalias() += l.dy * l.x.transpose(); }},
+};
+
+/// `loops` times a fused multiply-add into each of twelve registers, which hides its latency.
+constexpr int kPeakRegisters = 12;
+#define SANDRUNNER_FMA_LOOP(registers)                                                        \
+  asm volatile(                                                                               \
+      ".irp i, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 15\n"                                    \
+      "vxorps %%xmm\\i, %%xmm\\i, %%xmm\\i\n"                                                 \
+      ".endr\n"                                                                               \
+      "1:\n"                                                                                  \
+      ".irp i, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11\n"                                        \
+      "vfmadd231ps %%" registers "15, %%" registers "15, %%" registers                        \
+      "\\i\n"                                                                                 \
+      ".endr\n"                                                                               \
+      "dec %0\n"                                                                              \
+      "jnz 1b\n"                                                                              \
+      "vzeroupper\n"                                                                          \
+      : "+r"(loops)                                                                           \
+      :                                                                                       \
+      : "cc", "xmm0", "xmm1", "xmm2", "xmm3", "xmm4", "xmm5", "xmm6", "xmm7", "xmm8", "xmm9", \
+        "xmm10", "xmm11", "xmm12", "xmm13", "xmm14", "xmm15")
+void fma_loop_x8(long loops) { SANDRUNNER_FMA_LOOP("ymm"); }
+void fma_loop_x16(long loops) { SANDRUNNER_FMA_LOOP("zmm"); }
+#undef SANDRUNNER_FMA_LOOP
+
+double peak_gflops(void (*fma_loop)(long), int lanes) {
+  const double flops_per_loop = 2.0 * kPeakRegisters * lanes;
+  const double start = thread_cpu_s();
+  fma_loop(std::lround(kFlopsPerRun / flops_per_loop));
+  return 1e-9 * kFlopsPerRun / (thread_cpu_s() - start);
+}
+
+template <typename Run>
+double gflops(std::vector<Layer>& layers, const Run& run) {
+  double flops = 0.0;
+  const double start = thread_cpu_s();
+  while (flops < kFlopsPerRun) {
+    for (Layer& layer : layers) {
+      run(layer);
+      flops += layer.flops();
+    }
+  }
+  return 1e-9 * flops / (thread_cpu_s() - start);
+}
+
+void require_agreement(const Kernels<float>& kernels) {
+  for (const Size& size : kSizes) {
+    Layer ours(size);
+    Layer eigen = ours;
+    for (const Pass& pass : kPasses) {
+      pass.ours(kernels, ours);
+      pass.eigen(eigen);
+    }
+    const float worst = std::max({(ours.y - eigen.y).cwiseAbs().maxCoeff(),
+                                  (ours.dx - eigen.dx).cwiseAbs().maxCoeff(),
+                                  (ours.dw - eigen.dw).cwiseAbs().maxCoeff()});
+    if (!(worst <= kTolerance)) {
+      throw std::runtime_error(
+          fmt::format("the kernels and Eigen differ by {:.1e} in a layer of {} inputs and {} "
+                      "outputs, expected at most {:.0e}",
+                      worst, size.inputs, size.outputs, kTolerance));
+    }
+  }
+}
+
+}  // namespace
+
+Report run_learner_bench(int rounds) {
+  flush_denormals_to_zero();
+  const bool has_x16 = sim::has_avx512();
+  require_agreement(learner::kernels_x8());
+  if (has_x16) require_agreement(learner::kernels_x16());
+  std::vector<Layer> layers(std::begin(kSizes), std::end(kSizes));
+
+  std::map<std::string, std::vector<double>> rates;
+  for (int round = 0; round < rounds; ++round) {
+    rates["peak_x8"].push_back(peak_gflops(fma_loop_x8, 8));
+    if (has_x16) rates["peak_x16"].push_back(peak_gflops(fma_loop_x16, 16));
+    for (const Pass& pass : kPasses) {
+      const auto ours = [&](const Kernels<float>& kernels) {
+        return gflops(layers, [&](Layer& layer) { pass.ours(kernels, layer); });
+      };
+      const std::string name = pass.name;
+      rates[name + "_eigen"].push_back(gflops(layers, pass.eigen));
+      rates[name + "_x8"].push_back(ours(learner::kernels_x8()));
+      if (has_x16) rates[name + "_x16"].push_back(ours(learner::kernels_x16()));
+      for (Layer& layer : layers) layer.dw.setZero();
+    }
+  }
+
+  Report report;
+  report.facts = {
+      {"processor", processor_name()},
+      {"products",
+       "of all layers of the training that ships, 256 samples, the encoder's 64; GFLOP/s"},
+      {"ours", "AVX-512 (x16) and AVX2 (x8), weights packed beforehand as once a minibatch"},
+      {"eigen", "AVX2, as the rest of the program"},
+      {"peak", "fused multiply-adds on registers, nothing else"},
+      {"clock", "processor time of the thread"}};
+  for (const auto& [name, values] : rates) report.rates.emplace_back(name, quartiles(values));
+  const auto ratio = [&](const std::string& above, const std::string& below) {
+    if (!rates.contains(above)) return;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < rates[above].size(); ++i) {
+      values.push_back(rates[above][i] / rates[below][i]);
+    }
+    const bool peak = below.starts_with("peak");
+    report.ratios.emplace_back(above + (peak ? "_vs_peak" : "_vs_eigen"), quartiles(values));
+  };
+  for (const Pass& pass : kPasses) {
+    const std::string name = pass.name;
+    for (const char* width : {"_x16", "_x8"}) {
+      ratio(name + width, name + "_eigen");
+      ratio(name + width, std::string("peak") + width);
+    }
+  }
+  return report;
+}
+
+}  // namespace sandrunner::bench
