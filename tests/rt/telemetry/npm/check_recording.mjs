@@ -8,10 +8,11 @@ import { all, openIndexed, readStream } from "./mcap_file.mjs";
 const [path, ticks] = [process.argv[2], Number(process.argv[3])];
 const bytes = new Uint8Array(fs.readFileSync(path));
 
-// Topic, schema and number of messages of it; an event: at least that the robot walks.
+// Topic, schema and number of messages of it; undefined: at least one (a state per chunk, that the robot walks).
 const batches = Math.ceil(ticks / 40);
 const expectedTopics = {
   "/sandrunner/ticks": ["sandrunner::TickRecordBatch", "omgidl", batches],
+  "/sandrunner/states": ["sandrunner::ReplayState", "omgidl", undefined],
   "/sandrunner/events": ["sandrunner::Event", "omgidl", undefined],
   "/sandrunner/states": ["sandrunner::ReplayState", "omgidl", undefined],
   "/joint_states": ["sensor_msgs/msg/JointState", "ros2msg", batches],
@@ -69,6 +70,7 @@ const attachments = new Map(records.Attachment.map((a) => [a.name, new TextDecod
 assert.deepEqual([...attachments.keys()].sort(), ["config.toml", "policy.safetensors", "robot.toml", "robot.urdf"]);
 assert.match(attachments.get("config.toml"), /friction/);
 assert.match(attachments.get("policy.safetensors"), /F32/);
+assert.match(attachments.get("robot.toml"), /urdf = /);
 assert.match(attachments.get("robot.urdf"), /<robot/);
 const run = records.Metadata.find((m) => m.name === "run").metadata;
 assert.equal(run.get("clock"), "lockstep");
@@ -78,5 +80,5 @@ const indexed = await openIndexed(bytes);
 assert.equal(indexed.statistics.messageCount, BigInt(messages.length));
 assert.equal(indexed.chunkIndexes.length, records.Chunk.length);
 assert.equal((await all(indexed.readMessages({ validateCrcs: true }))).length, messages.length);
-assert.equal((await all(indexed.readAttachments())).length, 3);
+assert.equal((await all(indexed.readAttachments())).length, attachments.size);
 console.log(`${path}: ${ticks} ticks, ${messages.length} messages in ${records.Chunk.length} chunks read twice, all CRCs right`);
