@@ -107,10 +107,12 @@ void draw_commands(const PartResults& results, const std::vector<std::string>& p
                             kTop_px + 2 * kDown_px);
   canvas.text(kLeft_px, 36.0, "Survived commands", 20.0, 0.0, plot::kInk, true);
   canvas.text(kLeft_px, 62.0,
-              fmt::format("% of {} robots on their feet after 6 s, on whichever of dry sand, hard "
-                          "ground and the softest sand is worst; outline: envelope",
+              fmt::format("% of {} robots on their feet after 6 s on the worst for it of dry sand, "
+                          "hard ground and the softest sand.",
                           results.runs.at(0).at(0).size()),
               12.0, 0.0, plot::kFaintInk);
+  canvas.text(kLeft_px, 80.0, "Outline: the policy's envelope, to which commands are held.", 12.0,
+              0.0, plot::kFaintInk);
   for (std::size_t p = 0; p < policies.size(); ++p) {
     for (const CommandPlane plane : {CommandPlane::kSideways, CommandPlane::kTurning}) {
       const Plot at{kLeft_px + static_cast<double>(p) * kAcross_px,

@@ -14,7 +14,6 @@ const expectedTopics = {
   "/sandrunner/ticks": ["sandrunner::TickRecordBatch", "omgidl", batches],
   "/sandrunner/states": ["sandrunner::ReplayState", "omgidl", undefined],
   "/sandrunner/events": ["sandrunner::Event", "omgidl", undefined],
-  "/sandrunner/states": ["sandrunner::ReplayState", "omgidl", undefined],
   "/joint_states": ["sensor_msgs/msg/JointState", "ros2msg", batches],
   "/imu/data": ["sensor_msgs/msg/Imu", "ros2msg", batches],
   "/odom": ["nav_msgs/msg/Odometry", "ros2msg", batches],
