@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -20,6 +21,7 @@ int run_program(const char* name, Body&& body) {
   const auto say = [&](const std::string& message) {
     to_standard_error(fmt::format("{}: {}\n", name, one_line(message)));
   };
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its write
   try {
     const int code = body();
     if (std::fflush(stdout) == 0) return code;

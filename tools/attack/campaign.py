@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Attacks the programs with random inputs: settings, robots, grounds, policies, commands, recordings, command lines,
+signals, environments, pauses. Bounded in time and number, seeded: input I of seed S is the same each time, but for when
+a signal hits.
+
+Each run is judged:
+  ok          0, or 1 for a robot that fell, or a comparison that differs
+  refused     2 and one line on stderr that begins with the program's name
+  crash       ended by a signal that was not sent
+  hang        over the time limit
+  misleading  0 or 1 although the input is surely broken; several lines or an empty one; an internal error; another
+              exit code; half-written files (*.part) left
+Prints totals, and how each crash, hang and misleading answer is repeated; then ends with 1."""
+
+import argparse
+import collections
+import concurrent.futures
+import os
+import pathlib
+import random
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import inputs
+
+LIMIT_S = 60.0  # a short run takes 0.1 s on a free machine
+PROGRAMS = ['sandrunner', 'sandrunner-replay', 'sandrunner-policy', 'sandrunner-evaluate', 'sandrunner-ctl']
+HURT = ['crash', 'hang', 'misleading']
+NOBODY = 65534
+
+
+def good_files(tree, programs, folder):
+    """What inputs are made from: files of the tree, and what the programs write."""
+    subprocess.run([programs / 'sandrunner', '--start', 'walk', '--duration', '0.05', '--out', '.', '--record', '.'],
+                   cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    paths = [folder / 'config.toml', folder / 'run.mcap', tree / 'sim/robot/raibo.urdf', tree / 'sim/robot/raibo.toml',
+             tree / 'sim/ground/presets/dry-sand.toml', tree / 'policy/trained/raibo.safetensors']
+    return {path.name: path.read_bytes() for path in paths}
+
+
+def start(one, programs, folder):
+    """The program in its folder; bash does what has to be done before in the very process."""
+    words = [str(programs / one.command[0]), *one.command[1:]]
+    words = [word.replace('\0', '') for word in words]
+    if one.environment:  # not bash's
+        words = ['env', *(f'{name}={value}' for name, value in one.environment.items()), *words]
+    user = NOBODY if one.other_user and os.getuid() == 0 else None
+    if user:
+        os.chown(folder, user, user)
+    with open(folder / 'stdout', 'wb') as out, open(folder / 'stderr', 'wb') as err:
+        return subprocess.Popen(['bash', '-c', (one.shell or ':') + '; exec "$@"', 'bash', *words], cwd=folder,
+                                user=user, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
+
+
+def run(one, programs, folder):
+    """Runs the input. Exit code as of subprocess, None: over the limit."""
+    child = start(one, programs, folder)
+    began = time.monotonic()
+    for at_s, number in one.signals:
+        try:
+            child.wait(max(0.0, began + at_s - time.monotonic()))
+            return child.returncode
+        except subprocess.TimeoutExpired:
+            child.send_signal(number)
+    if any(number == signal.SIGTSTP for _, number in one.signals):
+        time.sleep(0.1)
+        child.send_signal(signal.SIGCONT)
+    try:
+        return child.wait(LIMIT_S)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        child.wait()
+        return None
+
+
+def judge(one, code, folder):
+    """The class of what came of it, and why."""
+    sent = {number for _, number in one.signals}
+    if code is None:
+        return 'hang', f'not done after {LIMIT_S:g} s'
+    if code < 0 and -code not in sent:
+        return 'crash', signal.Signals(-code).name
+    stderr = (folder / 'stderr').read_text(errors='replace')
+    said = stderr + (folder / 'stdout').read_text(errors='replace')
+    for word in ['internal error', 'terminate called', 'Assertion', 'Sanitizer', 'runtime error']:
+        if word in said:
+            return 'misleading', stderr.strip()[:300]
+    if code < 0:
+        return 'ok', ''
+    if list(folder.glob('**/*.part')):
+        return 'misleading', f'exit {code}, left ' + ' '.join(p.name for p in folder.glob('**/*.part'))
+    if code == 3 and stderr.endswith(': standard output cannot be written\n') and stderr.count('\n') == 1:
+        return 'refused', stderr.strip()
+    if code > 2:
+        return 'misleading', f'exit {code}: {stderr.strip()[:300]}'
+    if code == 2:
+        # Of a run that had begun, warnings come before.
+        lines = stderr.split('\n')[:-1]
+        begun = '--clock' in one.command or (folder / 'stdout').stat().st_size > 0
+        name = one.command[0] + ': '
+        proper = len(lines) == 1 or (begun and len(lines) > 1)
+        longest = 1000 + sum(len(word) for word in one.command)
+        if not proper or not all(line.startswith(name) and len(line) < longest for line in lines):
+            return 'misleading', f'{len(lines)} lines: {stderr.strip()[:300]!r}'
+        return 'refused', lines[-1]
+    if one.broken and code == 0:
+        return 'misleading', f'exit 0 although the input is broken: {stderr.strip()[:300]}'
+    return 'ok', ''
+
+
+def attack(index, seed, maker, programs, out):
+    """Input `index`: its kind, class, reason. Its folder stays if it hurt."""
+    folder = out / str(index)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    one = maker.draw(random.Random(f'{seed}:{index}'), folder)
+    code = run(one, programs, folder)
+    verdict, why = judge(one, code, folder)
+    if verdict in HURT:
+        words = shlex.join(one.command)
+        extra = ' '.join(f'{signal.Signals(n).name}@{t:.3f}s' for t, n in one.signals)
+        why += f'\n    {words[:400]} {one.shell} {str(one.environment or "")[:80]} {extra}'.rstrip()
+    else:
+        shutil.rmtree(folder, ignore_errors=True)
+    return index, one.kind, verdict, why
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='tools/attack.sh', description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--bin', type=pathlib.Path, required=True, help='folder of the programs')
+    parser.add_argument('--minutes', type=float, default=5.0)
+    parser.add_argument('--inputs', type=int, default=10**9)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--only', type=int, help='repeat this input alone, and keep its files')
+    parser.add_argument('--out', type=pathlib.Path, help='folder for the files of what hurt (default: a temporary one)')
+    options = parser.parse_args()
+    out = options.out or pathlib.Path(tempfile.mkdtemp(prefix='attack-'))
+    out.mkdir(parents=True, exist_ok=True)
+    out = out.resolve()
+    out.chmod(0o755)
+    programs = out / 'bin'  # where other users find them
+    programs.mkdir(exist_ok=True)
+    for name in PROGRAMS:
+        shutil.copy(options.bin / name, programs / name)
+    good = out / 'good'
+    good.mkdir(exist_ok=True)
+    maker = inputs.Inputs(good_files(pathlib.Path(__file__).resolve().parents[2], programs, good))
+
+    totals, kinds, found = collections.Counter(), collections.Counter(), []
+    began = time.monotonic()
+    until = began + 60.0 * options.minutes
+    indices = iter([options.only] if options.only is not None else range(options.inputs))
+    workers = 2 * (os.cpu_count() or 1)  # some of them sleep
+    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+        running = set()
+        while True:
+            while len(running) < workers and time.monotonic() < until and (index := next(indices, None)) is not None:
+                running.add(pool.submit(attack, index, options.seed, maker, programs, out))
+            if not running:
+                break
+            done, running = concurrent.futures.wait(running, return_when=concurrent.futures.FIRST_COMPLETED)
+            for future in done:
+                index, kind, verdict, why = future.result()
+                totals[verdict] += 1
+                kinds[kind, verdict] += 1
+                if verdict in HURT:
+                    found.append(index)
+                    print(f'{verdict} ({kind}): {why}\n    tools/attack.sh --seed {options.seed} --only {index}',
+                          flush=True)
+                elif options.only is not None:
+                    print(f'{verdict} ({kind}): {why}')
+    wall_s = time.monotonic() - began
+    for kind in sorted({kind for kind, _ in kinds}):
+        print(f'{kind:13}' + ''.join(f'{kinds[kind, v]:7} {v}' for v in ['ok', 'refused', *HURT]))
+    count = sum(totals.values())
+    print(f'{count} inputs of seed {options.seed} in {wall_s:.0f} s ({count / wall_s:.1f} a second): '
+          + ', '.join(f'{totals[v]} {v}' for v in ['ok', 'refused', *HURT]))
+    if found:
+        print(f'files: {out}')
+    elif options.out is None:
+        shutil.rmtree(out)
+    return 1 if found else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
