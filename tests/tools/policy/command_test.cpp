@@ -104,5 +104,11 @@ TEST_F(PolicyCommandTest, RefusedImportLeavesTheTargetAsItWas) {
   EXPECT_EQ(read_file(folder_.path("policy")), "precious");
 }
 
+TEST_F(PolicyCommandTest, FileThatMayNotGrowIsRefusedAndNotASignal) {
+  write_bare_weights("weights");
+  EXPECT_EQ(run_line("ulimit -f 1; " SANDRUNNER_POLICY_PROGRAM " import weights --out policy"), 2);
+  EXPECT_NE(error().find("policy: cannot be written"), std::string::npos) << error();
+}
+
 }  // namespace
 }  // namespace sandrunner
