@@ -216,11 +216,6 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   return r;
 }
 
-// In training commands change from one moment to the next; on a robot no faster than this, which
-// spares it the hardest of them.
-constexpr double kAcceleration_mps2 = 1.5;
-constexpr double kYawAcceleration_radps2 = 2.0;
-
 PolicyFile Training::policy_file() const {
   PolicyFile file;
   const PolicySettings& policy = config_.task.policy;
@@ -240,8 +235,8 @@ PolicyFile Training::policy_file() const {
                    .backward_mps = commands.backward_mps,
                    .lateral_mps = commands.lateral_mps,
                    .yaw_radps = commands.yaw_radps,
-                   .acceleration_mps2 = kAcceleration_mps2,
-                   .yaw_acceleration_radps2 = kYawAcceleration_radps2};
+                   .acceleration_mps2 = config_.task.command.acceleration_mps2,
+                   .yaw_acceleration_radps2 = config_.task.command.yaw_acceleration_radps2};
   spec.has_envelope = true;
   const InputScales& scales = task_.scales();
   for (int i = 0; i < kEstimateSize; ++i) {

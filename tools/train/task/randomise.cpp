@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Task: what is drawn at random, and resets.
+#include <algorithm>
 #include <cmath>
 
 #include "rt/core/command_shaping.h"
@@ -58,8 +59,21 @@ void Task::new_command(int env, Env& e) const {
   } else if (rest < c.zero_share + c.in_place_share) {
     e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -r.yaw_radps, r.yaw_radps))};
   }
+  e.target = e.command;
+  e.stand_steps_left = 0;
   e.command_steps_left =
       static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
+}
+
+void Task::approach_target(Env& e) const {
+  if (--e.stand_steps_left >= 0) return;
+  const CommandSettings& c = config_.command;
+  const std::array<double, 3> rate{c.acceleration_mps2, c.acceleration_mps2,
+                                   c.yaw_acceleration_radps2};
+  for (int i = 0; i < 3; ++i) {
+    const auto most = static_cast<float>(rate[i] / kPolicyHz);
+    e.command[i] += std::clamp(e.target[i] - e.command[i], -most, most);
+  }
 }
 
 sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
@@ -174,8 +188,14 @@ void Task::hard_reset(int env, Env& e) {
   e.air_s = e.stance_s = {};
   e.unloaded_steps = {};
   e.drift = {};
-  // Some start exactly as a robot that has stood up: their first step has to break the symmetry.
+  // Some start exactly as a robot that has stood up, and is then told to go: their first step has
+  // to break the symmetry.
   const double off = uniform(env, e) < s.reset_nominal_share ? 0.0 : 1.0;
+  if (off == 0.0) {
+    e.command = {};
+    e.stand_steps_left =
+        static_cast<std::int32_t>(kPolicyHz * uniform(env, e, 0.0, config_.command.start_stand_s));
+  }
   sim::RobotState<float> state;
   sim::RigidState<float>& x = state.rigid;
   for (int j = 0; j < kNumJoints; ++j) {

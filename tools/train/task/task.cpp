@@ -163,6 +163,7 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
     }
   } else {
     rollout.end(t, env) = learner::End::kNone;
+    approach_target(e);
     if (--e.command_steps_left <= 0) new_command(env, e);
     if (uniform(env, e) < config_.episode.push_probability) push(env, e, state);
   }

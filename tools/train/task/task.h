@@ -74,7 +74,8 @@ class Task {
   // One environment beside its robot in the batch. Trivially copyable: a checkpoint.
   struct Env {
     std::uint64_t draws = 0;
-    std::array<float, 3> command{};
+    std::array<float, 3> command{}, target{};  // target: where the command goes
+    std::int32_t stand_steps_left = 0;         // before it does
     std::int32_t step = 0, command_steps_left = 0;
     JointArray<float> action{}, action_1{}, action_2{};  // the latest, and those before it
     JointArray<float> joint_offset{};
@@ -98,6 +99,7 @@ class Task {
     return env % block_envs_ >= block_envs_ - config_.ground.patchy_envs;
   }
   void new_command(int env, Env& e) const;
+  void approach_target(Env& e) const;
   sim::Ground<double> draw_ground(int env, Env& e, bool rigid,
                                   std::array<float, kGroundFeatures>& features) const;
   void new_ground(int env, Env& e, float x_m);
