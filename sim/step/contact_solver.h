@@ -151,7 +151,8 @@ inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& t
 /// G_nt > G_nn), so that treating the two in turn may cycle. Here lambda(s) = -(G + s diag(1, 1,
 /// 0))^-1 b has v_n = 0 and v_t = -s lambda_t for every s >= 0; s = 0 sticks, and if that lies
 /// outside the cone, |lambda_t| - mu lambda_n has a root, bracketed by s = 0 (positive) and s =
-/// infinity (negative). Illinois iteration on u = s/(s + m), which maps the bracket to [0, 1].
+/// infinity (negative). Anderson-Bjoerck iteration on u = s/(s + m), which maps the bracket to [0,
+/// 1].
 template <typename S>
 inline void solve_hard(const Sym3<S>& g, const std::array<S, 3>& b, S friction, S tolerance,
                        std::array<S, 3>& impulse) noexcept {
@@ -186,8 +187,10 @@ inline void solve_hard(const Sym3<S>& g, const std::array<S, 3>& b, S friction, 
     const S u = fma(high - low, f_low / max(f_low - f_high, tiny), low);
     const S f = excess(scale * (u / max(one - u, tiny)));
     const Mask<S> outside = f > zero;
-    // Illinois: the value of the end that stays is halved, so that the other end moves as well.
-    const S kept = S(0.5);
+    // Anderson and Bjoerck (1973): the value of the end that stays shrinks as that of the other end
+    // did, or is halved, so that it moves as well.
+    const S shrunk = one - f / select(outside, f_low, f_high);
+    const S kept = select(shrunk > zero, shrunk, S(0.5));
     const S next_low = select(outside, u, low), next_high = select(outside, high, u);
     const S next_f_low = select(outside, f, kept * f_low),
             next_f_high = select(outside, kept * f_high, f);
