@@ -35,8 +35,8 @@ std::vector<Scalar> random_values(std::size_t count, unsigned seed) {
 template <typename Scalar>
 struct Gapped {
   Gapped(int rows, int columns, unsigned seed)
-      : stride(columns + 3), values(random_values<Scalar>(std::size_t(rows * stride), seed)) {}
-  Scalar& operator()(int i, int j) { return values[std::size_t(i * stride + j)]; }
+      : stride(columns + 3), values(random_values<Scalar>(std::size_t(rows) * stride, seed)) {}
+  Scalar& operator()(int i, int j) { return values[std::size_t(i) * stride + j]; }
   Rows<Scalar> rows() { return {values.data(), stride}; }
   Rows<const Scalar> const_rows() const { return {values.data(), stride}; }
 
@@ -112,7 +112,7 @@ struct Cells {
 
 /// Both passes of LSTM cells.
 Cells cells(const Kernels<float>& kernels, int samples, int units) {
-  const auto n = std::size_t(samples * units);
+  const auto n = std::size_t(samples) * units;
   Cells cells{random_values<float>(4 * n, 1), random_values<float>(n, 2),
               std::vector<float>(n),          std::vector<float>(n),
               std::vector<float>(n),          random_values<float>(n, 3)};
