@@ -11,7 +11,8 @@ namespace sandrunner::evaluate {
 double commanded_vx_mps(int column) { return -1.5 + 0.5 * column; }
 double commanded_other(CommandPlane plane, int row) {
   const double step = plane == CommandPlane::kSideways ? 0.2 : 0.5;
-  return step * (row - kCommandRows / 2);
+  constexpr int kMiddle = kCommandRows / 2;
+  return step * (row - kMiddle);
 }
 
 Part Study::commands() {
