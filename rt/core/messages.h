@@ -50,6 +50,12 @@ template <typename T>
 using JointArray = std::array<T, kNumJoints>;
 using Vector3 = std::array<double, 3>;
 
+/// Whether none of the numbers of an array is NaN or infinite.
+template <std::size_t kSize>
+bool all_finite(const std::array<double, kSize>& values) noexcept {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
 /// Joint encoders and drives.
 struct JointState {
   JointArray<double> position_rad{};

@@ -13,11 +13,6 @@ namespace {
 
 constexpr std::uint64_t bit(Fault fault) { return static_cast<std::uint64_t>(fault); }
 
-template <typename Array>
-bool all_finite(const Array& values) noexcept {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
-
 /// Joints with a value that is not finite, as bits.
 std::uint64_t non_finite(const JointState& joints) noexcept {
   std::uint64_t found = 0;
@@ -30,7 +25,7 @@ std::uint64_t non_finite(const JointState& joints) noexcept {
   return found;
 }
 
-bool all_finite(const JointCommand& command) noexcept {
+bool is_finite(const JointCommand& command) noexcept {
   return all_finite(command.position_rad) && all_finite(command.velocity_radps) &&
          all_finite(command.kp_nmprad) && all_finite(command.kd_nmsprad) &&
          all_finite(command.feedforward_nm);
@@ -76,7 +71,10 @@ double cos_of_degrees(double angle_deg) noexcept {
   return cosine;
 }
 
-bool judged_in(Mode mode, ModeSet modes) noexcept { return (modes & mode_set(mode)) != 0; }
+/// As the table says.
+bool judged_in(Mode mode, Fault fault) noexcept {
+  return (kFaultTable[std::countr_zero(bit(fault))].modes & mode_set(mode)) != 0;
+}
 
 /// Adds `found` and the joints it is about to the latch, and remembers what began it.
 void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept {
@@ -137,14 +135,12 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
 
   if (joints_usable) {
     // Drives that are off may lie as they like, but they cool and they move.
-    std::uint64_t at_rest = 0;
-    std::uint64_t& joints_at_fault = judged_in(mode, kMoving) ? at_fault : at_rest;
-    const std::uint64_t hot = judge_heat(sensors.joints, elapsed, state, joints_at_fault);
-    if (judged_in(mode, kMoving)) found |= hot | judge_joints(sensors.joints, state, at_fault);
+    found |= judge_heat(sensors.joints, elapsed, mode, state, at_fault);
+    if (mode != Mode::kPassive) found |= judge_joints(sensors.joints, state, at_fault);
     found |= judge_encoders(sensors.joints, mode, state, at_fault);
   }
   if (mode == Mode::kPassive) state.torque_over_ticks.fill(0);
-  if (judged_in(mode, kCarrying) && imu_usable) {
+  if (judged_in(mode, Fault::kTilt) && imu_usable) {
     found |= judge_body(sensors.imu, elapsed, state);
   } else {
     state.tilted_ticks = state.falling_ticks = 0;
@@ -167,7 +163,7 @@ std::uint64_t SafetyGate::judge_time(std::uint64_t tick, Mode mode,
   state.stall_end_tick = tick;
   state.stall_ticks = skipped;
   const bool too_long = skipped > config_.stall_fault_ticks;
-  return too_long && judged_in(mode, kCarrying) ? bit(Fault::kLoopStalled) : 0;
+  return too_long && judged_in(mode, Fault::kLoopStalled) ? bit(Fault::kLoopStalled) : 0;
 }
 
 std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateState& state,
@@ -192,7 +188,7 @@ std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateStat
   const std::uint64_t imu_age = age(sensors.imu.tick, state);
   if (imu_age > config_.imu_limit_ticks) ++state.counters.imu_late;
   if (imu_age > config_.imu_fault_ticks) found |= bit(Fault::kImuStale);
-  if (judged_in(mode, kWalkOnly) &&
+  if (judged_in(mode, Fault::kPolicyStale) &&
       age(input.policy_input_tick, state) > config_.policy_fault_ticks) {
     found |= bit(Fault::kPolicyStale);
   }
@@ -225,7 +221,7 @@ std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& stat
   return found;
 }
 
-std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t elapsed,
+std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t elapsed, Mode mode,
                                      GateState& state, std::uint64_t& at_fault) const noexcept {
   std::uint64_t found = 0;
   bool hot = false;
@@ -235,7 +231,7 @@ std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t ela
     double& heat = state.heat_n2m2[j];
     heat += share * (torque_nm * torque_nm - heat);
     hot = hot || heat > 0.64 * heat_fault_n2m2_;
-    if (heat > heat_fault_n2m2_) {
+    if (heat > heat_fault_n2m2_ && judged_in(mode, Fault::kOverload)) {
       found |= bit(Fault::kOverload);
       at_fault |= std::uint64_t{1} << j;
     }
@@ -254,7 +250,7 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, Ga
     const auto seconds = [](std::uint64_t ticks) {
       return kControlPeriod_s * static_cast<double>(ticks);
     };
-    if (state.encoders_seen != 0 && judged_in(mode, kMoving)) {
+    if (state.encoders_seen != 0 && judged_in(mode, Fault::kEncoderJump)) {
       const double way_rad = std::fabs(joints.position_rad[j] - state.position_rad[j]);
       const double reach_rad = config_.encoder_jump_rad +
                                config_.speed_fault_radps * seconds(tick - state.sample_tick[j]);
@@ -265,7 +261,7 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, Ga
     if (!same || state.sent == 0) {
       state.changed_tick[j] = tick;
       state.told_rad[j] = state.sent_rad[j];
-    } else if (judged_in(mode, kStandUpOnly | kWalkOnly)) {
+    } else if (judged_in(mode, Fault::kEncoderFrozen)) {
       // What its own speed says that it moved, and what it was told to.
       const std::uint64_t frozen_ticks = tick - state.changed_tick[j];
       const double moved_rad = std::fabs(joints.velocity_radps[j]) * seconds(frozen_ticks);
@@ -324,7 +320,7 @@ SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const Joi
   const bool stiff_before = state.sent != 0;
   state.sent = 0;
   if (!enabled) return SafeCommand{};
-  if (!all_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), 0, state);
+  if (!is_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), 0, state);
   if (state.faults != 0) return SafeCommand{damping_, true, state.blind_joints};
 
   JointCommand allowed = wanted;

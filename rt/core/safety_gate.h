@@ -52,8 +52,8 @@ class SafetyGate {
                            std::uint64_t& at_fault) const noexcept;
   std::uint64_t judge_joints(const JointState& joints, GateState& state,
                              std::uint64_t& at_fault) const noexcept;
-  std::uint64_t judge_heat(const JointState& joints, std::uint64_t elapsed, GateState& state,
-                           std::uint64_t& at_fault) const noexcept;
+  std::uint64_t judge_heat(const JointState& joints, std::uint64_t elapsed, Mode mode,
+                           GateState& state, std::uint64_t& at_fault) const noexcept;
   std::uint64_t judge_encoders(const JointState& joints, Mode mode, GateState& state,
                                std::uint64_t& at_fault) const noexcept;
   std::uint64_t judge_body(const ImuSample& imu, std::uint64_t elapsed,

@@ -140,34 +140,31 @@ TEST_F(RecordingTest, FactsThatCannotBeAreRefused) {
       << output();
   rewrite(path(), broken, [](RecordingInfo& info) { info.start_mode = "fly"; }, {});
   EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2);
-  const auto write_one = [&](const std::string& first_tick, std::uint16_t schema) {
+  const auto facts = [](const std::string& first_tick) {
+    return McapMetadata{kRunMetadata,
+                        {{"build", "another"},
+                         {"start_mode", "walk"},
+                         {"clock", "lockstep"},
+                         {"start_time_ns", "0"},
+                         {"first_tick", first_tick}}};
+  };
+  {
     McapWriter writer(broken);
-    writer.write_metadata({kRunMetadata,
-                           {{"build", "another"},
-                            {"start_mode", "walk"},
-                            {"clock", "lockstep"},
-                            {"start_time_ns", "0"},
-                            {"first_tick", first_tick}}});
-    writer.write_message({.channel_id = writer.add_channel(schema, kTicksTopic, "cdr", {}),
+    writer.write_metadata(facts("0"));
+    writer.write_message({.channel_id = writer.add_channel(0, kTicksTopic, "cdr", {}),
                           .sequence = 1,
                           .log_time_ns = 0,
                           .publish_time_ns = 0,
                           .data = CdrWriter().bytes()});
     writer.close();
-    EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2) << output();
-  };
-  write_one("0", 0);
+  }
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2) << output();
   EXPECT_EQ(output(),
             "sandrunner-replay: " + broken + ": the channel of /sandrunner/ticks has no schema\n");
   EXPECT_THROW(read_ticks(broken), InputError);
   {
     McapWriter writer(broken);
-    writer.write_metadata({kRunMetadata,
-                           {{"build", "another"},
-                            {"start_mode", "walk"},
-                            {"clock", "lockstep"},
-                            {"start_time_ns", "0"},
-                            {"first_tick", "x"}}});
+    writer.write_metadata(facts("x"));
     writer.close();
   }
   EXPECT_EQ(run(SANDRUNNER_REPLAY, broken), 2);
