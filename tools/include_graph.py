@@ -13,7 +13,7 @@ import sys
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
-    ["rt/plot", "policy", "estimator"],
+    ["rt/plot", "policy", "estimator", "drivers/imu"],
     ["sim/lanes"],
     ["sim/robot"],
     ["sim/ground"],

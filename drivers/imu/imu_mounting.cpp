@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/imu/imu_mounting.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+
+namespace {
+
+using Quaternion = std::array<double, 4>;
+
+Quaternion product(const Quaternion& a, const Quaternion& b) noexcept {
+  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+          a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+Quaternion conjugate(const Quaternion& q) noexcept { return {q[0], -q[1], -q[2], -q[3]}; }
+
+Vector3 rotate(const Quaternion& q, const Vector3& v) noexcept {
+  const Quaternion r = product(product(q, {0.0, v[0], v[1], v[2]}), conjugate(q));
+  return {r[1], r[2], r[3]};
+}
+
+/// FRD to FLU, or NED to north-west-up, and back: half a turn about x.
+Vector3 flip(const Vector3& v) noexcept { return {v[0], -v[1], -v[2]}; }
+Quaternion flip(const Quaternion& q) noexcept { return {q[0], q[1], -q[2], -q[3]}; }
+
+/// Whether it is a rotation, to 1 %; only then is it given the length 1.
+bool normalise(Quaternion& q) noexcept {
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(std::abs(norm - 1.0) <= 0.01)) return false;
+  for (double& number : q) number /= norm;
+  return true;
+}
+
+}  // namespace
+
+ImuMounting::ImuMounting(const Quaternion& body_from_sensor_wxyz)
+    : body_from_sensor_(body_from_sensor_wxyz) {
+  const Quaternion& q = body_from_sensor_wxyz;
+  if (!normalise(body_from_sensor_)) {
+    throw InputError(
+        fmt::format("IMU mounting: ({}, {}, {}, {}) is no rotation: expected a quaternion "
+                    "(w, x, y, z) of length 1",
+                    q[0], q[1], q[2], q[3]));
+  }
+}
+
+ImuMounting ImuMounting::from_rpy(const Vector3& rpy_rad) {
+  if (!all_finite(rpy_rad)) {
+    throw InputError(fmt::format("IMU mounting: roll, pitch, yaw ({}, {}, {}) must be finite",
+                                 rpy_rad[0], rpy_rad[1], rpy_rad[2]));
+  }
+  const auto about = [&rpy_rad](std::size_t axis) {
+    Quaternion q{std::cos(rpy_rad[axis] / 2), 0.0, 0.0, 0.0};
+    q[axis + 1] = std::sin(rpy_rad[axis] / 2);
+    return q;
+  };
+  return ImuMounting(product(product(about(2), about(1)), about(0)));
+}
+
+Vector3 ImuMounting::to_body(const std::array<float, 3>& sensor) const noexcept {
+  return rotate(body_from_sensor_, flip(Vector3{sensor[0], sensor[1], sensor[2]}));
+}
+
+Quaternion ImuMounting::to_orientation(const std::array<float, 4>& sensor_wxyz,
+                                       const Quaternion& previous) const noexcept {
+  // The device's q takes vectors from its axes to NED: p_sensor = q^-1 p_ned q.
+  const Quaternion sensor{sensor_wxyz[0], sensor_wxyz[1], sensor_wxyz[2], sensor_wxyz[3]};
+  Quaternion q = product(flip(sensor), conjugate(body_from_sensor_));
+  normalise(q);
+  double dot = 0.0;
+  for (std::size_t i = 0; i < q.size(); ++i) dot += q[i] * previous[i];
+  if (dot < 0.0) {
+    for (double& number : q) number = -number;
+  }
+  return q;
+}
+
+mip::SensorData ImuMounting::to_sensor(const ImuSample& sample) const noexcept {
+  const auto turned = [this](const Vector3& body, double scale) {
+    const Vector3 v = flip(rotate(conjugate(body_from_sensor_), body));
+    return std::array<float, 3>{static_cast<float>(v[0] * scale), static_cast<float>(v[1] * scale),
+                                static_cast<float>(v[2] * scale)};
+  };
+  const Quaternion q = flip(product(sample.orientation_wxyz, body_from_sensor_));
+  mip::SensorData data;
+  data.accel_g = turned(sample.linear_acceleration_mps2, 1.0 / kStandardGravity_mps2);
+  data.gyro_radps = turned(sample.angular_velocity_radps, 1.0);
+  data.quaternion_wxyz = {static_cast<float>(q[0]), static_cast<float>(q[1]),
+                          static_cast<float>(q[2]), static_cast<float>(q[3])};
+  return data;
+}
+
+}  // namespace sandrunner

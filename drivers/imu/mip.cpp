@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/imu/mip.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace sandrunner::mip {
+
+namespace {
+
+constexpr std::uint8_t kApply = 0x01;  // function selector: use the new setting
+
+template <typename Number>
+Number read(Bytes data, std::size_t offset) noexcept {
+  Number value = 0;
+  for (std::size_t i = 0; i < sizeof(Number); ++i) {
+    value = static_cast<Number>(value << 8 | data[offset + i]);
+  }
+  return value;
+}
+
+/// The data of a field that is being written.
+class Writer {
+ public:
+  template <typename Number>
+  Writer& put(Number value) noexcept {
+    for (std::size_t i = sizeof(Number); i-- > 0;) {
+      bytes_[size_++] = static_cast<std::uint8_t>(value >> (8 * i));
+    }
+    return *this;
+  }
+  template <std::size_t kSize>
+  Writer& put(const std::array<float, kSize>& values) noexcept {
+    for (const float value : values) put(std::bit_cast<std::uint32_t>(value));
+    return *this;
+  }
+  Bytes data() const noexcept { return {bytes_.data(), size_}; }
+
+ private:
+  std::array<std::uint8_t, kMaxPayload> bytes_{};
+  std::size_t size_ = 0;
+};
+
+Packet command(std::uint8_t descriptor_set, std::uint8_t descriptor, Bytes data = {}) noexcept {
+  Packet packet(descriptor_set);
+  packet.add(descriptor, data);
+  return packet;
+}
+
+template <std::size_t kSize>
+std::array<float, kSize> read_floats(Bytes data) noexcept {
+  std::array<float, kSize> values;
+  for (std::size_t i = 0; i < kSize; ++i) values[i] = std::bit_cast<float>(read_u32(data, 4 * i));
+  return values;
+}
+
+/// Length of the data of a field of kSensorData; 0: not one that is decoded.
+std::size_t sensor_field_length(std::uint8_t descriptor) noexcept {
+  switch (descriptor) {
+    case kAccel:
+    case kGyro:
+    case kGpsTime:
+      return 12;
+    case kQuaternion:
+      return 16;
+    case kReferenceTime:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+const char* sensor_field_name(std::uint8_t descriptor) noexcept {
+  switch (descriptor) {
+    case kAccel:
+      return "acceleration";
+    case kGyro:
+      return "angular rate";
+    case kQuaternion:
+      return "quaternion";
+    case kGpsTime:
+      return "GPS time";
+    case kReferenceTime:
+      return "reference time";
+    default:
+      return "unknown field";
+  }
+}
+
+const char* ack_text(std::uint8_t code) noexcept {
+  switch (code) {
+    case kAckOk:
+      return "done";
+    case kNackUnknown:
+      return "it does not know this command";
+    case 2:
+      return "it found a bad checksum";
+    case kNackParameter:
+      return "it does not support such a value";
+    case 4:
+      return "it could not do it";
+    case 5:
+      return "it took too long";
+    default:
+      return "it gives a reason that the manual does not name";
+  }
+}
+
+std::array<std::uint8_t, kChecksumSize> checksum(Bytes bytes) noexcept {
+  std::uint8_t a = 0, b = 0;
+  for (const std::uint8_t byte : bytes) {
+    a = static_cast<std::uint8_t>(a + byte);
+    b = static_cast<std::uint8_t>(b + a);
+  }
+  return {a, b};
+}
+
+bool take_field(Bytes& payload, Field& field) noexcept {
+  if (payload.size() < 2) return false;
+  const std::size_t length = payload[0];
+  if (length < 2 || length > payload.size()) return false;
+  field = {payload[1], payload.subspan(2, length - 2)};
+  payload = payload.subspan(length);
+  return true;
+}
+
+std::uint16_t read_u16(Bytes data, std::size_t offset) noexcept {
+  return read<std::uint16_t>(data, offset);
+}
+std::uint32_t read_u32(Bytes data, std::size_t offset) noexcept {
+  return read<std::uint32_t>(data, offset);
+}
+std::uint64_t read_u64(Bytes data, std::size_t offset) noexcept {
+  return read<std::uint64_t>(data, offset);
+}
+
+Packet::Packet(std::uint8_t descriptor_set) noexcept {
+  bytes_[0] = kSync1;
+  bytes_[1] = kSync2;
+  bytes_[2] = descriptor_set;
+  seal();
+}
+
+bool Packet::add(std::uint8_t descriptor, Bytes data) noexcept {
+  const std::size_t length = 2 + data.size(), used = bytes_[3];
+  if (used + length > kMaxPayload) return false;
+  const auto place = bytes_.begin() + static_cast<std::ptrdiff_t>(kHeaderSize + used);
+  place[0] = static_cast<std::uint8_t>(length);
+  place[1] = descriptor;
+  std::copy(data.begin(), data.end(), place + 2);
+  bytes_[3] = static_cast<std::uint8_t>(used + length);
+  seal();
+  return true;
+}
+
+void Packet::seal() noexcept {
+  const std::size_t end = kHeaderSize + bytes_[3];
+  const auto sum = checksum({bytes_.data(), end});
+  bytes_[end] = sum[0];
+  bytes_[end + 1] = sum[1];
+  size_ = end + kChecksumSize;
+}
+
+Packet ping() noexcept { return command(kBaseCommands, kPing); }
+Packet set_idle() noexcept { return command(kBaseCommands, kSetIdle); }
+Packet resume() noexcept { return command(kBaseCommands, kResume); }
+Packet ask_imu_base_rate() noexcept { return command(k3dmCommands, kImuBaseRate); }
+
+Packet ask_base_rate(std::uint8_t data_set) noexcept {
+  return command(k3dmCommands, kBaseRate, Writer().put(data_set).data());
+}
+
+Packet message_format(std::uint8_t data_set, std::span<const DecimatedField> fields) noexcept {
+  constexpr std::size_t kMostFields = (kMaxPayload - 2 - 3) / 3;
+  fields = fields.first(std::min(fields.size(), kMostFields));
+  Writer data;
+  data.put(kApply).put(data_set).put(static_cast<std::uint8_t>(fields.size()));
+  for (const DecimatedField& field : fields) data.put(field.descriptor).put(field.decimation);
+  return command(k3dmCommands, kMessageFormat, data.data());
+}
+
+Packet stream_control(std::uint8_t data_set, bool on) noexcept {
+  return command(k3dmCommands, kStreamControl,
+                 Writer().put(kApply).put(data_set).put(std::uint8_t{on}).data());
+}
+
+Packet uart_speed(std::uint8_t port, std::uint32_t baud) noexcept {
+  return command(kBaseCommands, kUartSpeed, Writer().put(kApply).put(port).put(baud).data());
+}
+
+Packet acknowledge(std::uint8_t command_set, std::uint8_t command_field,
+                   std::uint8_t code) noexcept {
+  return command(command_set, kAck, Writer().put(command_field).put(code).data());
+}
+
+Packet base_rate_reply(std::uint8_t data_set, std::uint16_t rate_hz) noexcept {
+  Packet packet = acknowledge(k3dmCommands, kBaseRate, kAckOk);
+  packet.add(kBaseRateReply, Writer().put(data_set).put(rate_hz).data());
+  return packet;
+}
+
+std::optional<Reply> find_reply(Bytes payload, std::uint8_t command_field) noexcept {
+  Field field;
+  while (take_field(payload, field)) {
+    if (field.descriptor != kAck || field.data.size() != 2 || field.data[0] != command_field) {
+      continue;
+    }
+    Reply reply{.code = field.data[1], .response = {}};
+    if (take_field(payload, field) && field.descriptor != kAck) reply.response = field;
+    return reply;
+  }
+  return std::nullopt;
+}
+
+SensorData decode_sensor_data(Bytes payload) noexcept {
+  SensorData data;
+  const auto wrong_length = [&data](std::uint8_t descriptor) {
+    ++data.wrong_length_fields;
+    data.wrong_length_field = descriptor;
+  };
+  Field field;
+  while (take_field(payload, field)) {
+    const std::size_t length = sensor_field_length(field.descriptor);
+    if (length == 0) {
+      ++data.unknown_fields;
+      continue;
+    }
+    if (field.data.size() != length) {
+      wrong_length(field.descriptor);
+      continue;
+    }
+    switch (field.descriptor) {
+      case kAccel:
+        data.accel_g = read_floats<3>(field.data);
+        break;
+      case kGyro:
+        data.gyro_radps = read_floats<3>(field.data);
+        break;
+      case kQuaternion:
+        data.quaternion_wxyz = read_floats<4>(field.data);
+        break;
+      case kGpsTime:
+        data.gps_time = {.time_of_week_s = std::bit_cast<double>(read_u64(field.data, 0)),
+                         .week = read_u16(field.data, 8),
+                         .flags = read_u16(field.data, 10)};
+        break;
+      default:
+        data.reference_time_ns = read_u64(field.data, 0);
+    }
+  }
+  if (!payload.empty()) wrong_length(payload.size() > 1 ? payload[1] : 0);
+  return data;
+}
+
+Packet encode_sensor_data(const SensorData& data) noexcept {
+  Packet packet(kSensorData);
+  if (data.accel_g) packet.add(kAccel, Writer().put(*data.accel_g).data());
+  if (data.gyro_radps) packet.add(kGyro, Writer().put(*data.gyro_radps).data());
+  if (data.quaternion_wxyz) packet.add(kQuaternion, Writer().put(*data.quaternion_wxyz).data());
+  if (data.gps_time) {
+    packet.add(kGpsTime, Writer()
+                             .put(std::bit_cast<std::uint64_t>(data.gps_time->time_of_week_s))
+                             .put(data.gps_time->week)
+                             .put(data.gps_time->flags)
+                             .data());
+  }
+  if (data.reference_time_ns) {
+    packet.add(kReferenceTime, Writer().put(*data.reference_time_ns).data());
+  }
+  return packet;
+}
+
+std::size_t Parser::find(PacketView& packet) noexcept {
+  while (size_ > 0) {
+    std::size_t length = 0;
+    if (bytes_[0] == kSync1 && (size_ < 2 || bytes_[1] == kSync2)) {
+      if (size_ < kHeaderSize) return 0;
+      length = kHeaderSize + bytes_[3] + kChecksumSize;
+      if (size_ < length) return 0;
+      const std::size_t end = length - kChecksumSize;
+      const auto sum = checksum({bytes_.data(), end});
+      if (sum[0] == bytes_[end] && sum[1] == bytes_[end + 1]) {
+        packet = {bytes_[2], {bytes_.data() + kHeaderSize, bytes_[3]}, times_ns_[0]};
+        return length;
+      }
+      ++bad_checksums_;
+    }
+    const auto* const next = std::find(bytes_.data() + 1, bytes_.data() + size_, kSync1);
+    const auto skipped = static_cast<std::size_t>(next - bytes_.data());
+    skipped_bytes_ += skipped;
+    drop(skipped);
+  }
+  return 0;
+}
+
+void Parser::drop(std::size_t count) noexcept {
+  size_ -= count;
+  std::memmove(bytes_.data(), bytes_.data() + count, size_);
+  std::memmove(times_ns_.data(), times_ns_.data() + count, size_ * sizeof(times_ns_[0]));
+}
+
+}  // namespace sandrunner::mip
