@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Attacks the programs with random inputs: settings, robots, grounds, policies, commands, recordings, command lines,
-signals, environments, pauses, and over DDS. Bounded in time and number, seeded: input I of seed S is the same each time,
-but for when a signal or a message hits.
+signals, environments, pauses, messages over DDS. Bounded in time and number, seeded: input I of seed S is the same each
+time, but for when a signal or a message hits.
 
 Each run is judged:
   ok          0, or 1 for a robot that fell, or a comparison that differs
