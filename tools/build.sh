@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/build.sh [sandrunner]: installs what is missing and builds everything, or the program sandrunner alone, which
-# needs half the packages and a fifth of the time, in release, into build/release. Says what it does on stderr; says
-# nothing if nothing is to be done.
+# tools/build.sh [sandrunner|deb]: installs what is missing and builds, in release, into build/release: everything; the
+# program sandrunner alone, which needs half the packages and a fifth of the time; the Debian package of what a robot
+# needs (tools/deploy). Says what it does on stderr; says nothing if nothing is to be done.
 set -euo pipefail
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
@@ -13,10 +13,10 @@ bash "$root/tools/install_packages.sh" "$what"
 # Configured for this very folder (a copied tree brings the build of its original along), and for all that is asked for?
 cached() { grep -qsxF "$1" "$build/CMakeCache.txt"; }
 configure=(cmake --preset release)
-[[ $what == all ]] || configure+=(-D SANDRUNNER_ALL=OFF)
+[[ $what != sandrunner ]] || configure+=(-D SANDRUNNER_ALL=OFF)
 if [[ ! -f $build/build.ninja ]] || ! cached "CMAKE_HOME_DIRECTORY:INTERNAL=$root"; then
   (cd "$root" && "${configure[@]}" --fresh) >&2
-elif [[ $what == all ]] && ! cached SANDRUNNER_ALL:BOOL=ON; then
+elif [[ $what != sandrunner ]] && ! cached SANDRUNNER_ALL:BOOL=ON; then
   (cd "$root" && "${configure[@]}") >&2
 fi
 # What ninja says when nothing is to be done. Asked with -n, it does not know: it would look for new files first.

@@ -9,11 +9,12 @@ packages=(
   # fonts-dejavu-core is what the pictures are lettered with
   g++ cmake ninja-build pkg-config git fonts-dejavu-core
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
-  liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libzstd-dev zlib1g-dev
+  liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
 )
-# Trainer, benches and tests. The last line is a DDS peer that is not ours, and what generates its code.
+# Trainer, benches, tests and the Debian package. The last line is a DDS peer that is not ours, and what generates its
+# code.
 [[ ${1:-all} == sandrunner ]] || packages+=(
-  libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy
+  libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
 [[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Attacks the programs with random inputs: settings, robots, grounds, policies, commands, recordings, command lines,
-signals, environments, pauses. Bounded in time and number, seeded: input I of seed S is the same each time, but for when
-a signal hits.
+signals, environments, pauses, messages over DDS. Bounded in time and number, seeded: input I of seed S is the same each
+time, but for when a signal or a message hits.
 
 Each run is judged:
   ok          0, or 1 for a robot that fell, or a comparison that differs
@@ -9,7 +9,7 @@ Each run is judged:
   crash       ended by a signal that was not sent
   hang        over the time limit
   misleading  0 or 1 although the input is surely broken; several lines or an empty one; an internal error; another
-              exit code; half-written files (*.part) left
+              exit code; half-written files (*.part) left; a bound of the safety gate that a live robot left
 Prints totals, and how each crash, hang and misleading answer is repeated; then ends with 1."""
 
 import argparse
@@ -21,6 +21,7 @@ import random
 import shlex
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -28,8 +29,10 @@ import time
 
 import inputs
 
-LIMIT_S = 60.0  # a short run takes 0.1 s on a free machine
-PROGRAMS = ['sandrunner', 'sandrunner-replay', 'sandrunner-policy', 'sandrunner-evaluate', 'sandrunner-ctl']
+# A run takes 0.02 to 0.5 s on a free machine: one that is hundreds of times as slow has no "hang" yet.
+LIMIT_S = 300.0
+PROGRAMS = ['sandrunner', 'sandrunner-replay', 'sandrunner-policy', 'sandrunner-evaluate', 'sandrunner-ctl',
+            'dds_attacker']
 HURT = ['crash', 'hang', 'misleading']
 NOBODY = 65534
 
@@ -43,50 +46,85 @@ def good_files(tree, programs, folder):
     return {path.name: path.read_bytes() for path in paths}
 
 
-def start(one, programs, folder):
-    """The program in its folder; bash does what has to be done before in the very process."""
-    words = [str(programs / one.command[0]), *one.command[1:]]
-    words = [word.replace('\0', '') for word in words]
-    if one.environment:  # not bash's
-        words = ['env', *(f'{name}={value}' for name, value in one.environment.items()), *words]
-    user = NOBODY if one.other_user and os.getuid() == 0 else None
-    if user:
-        os.chown(folder, user, user)
-    with open(folder / 'stdout', 'wb') as out, open(folder / 'stderr', 'wb') as err:
-        return subprocess.Popen(['bash', '-c', (one.shell or ':') + '; exec "$@"', 'bash', *words], cwd=folder,
-                                user=user, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
+def reserve_domain(rng):
+    """A DDS domain, and the socket by whose name it is ours, as tests of the project have theirs."""
+    while True:
+        domain = rng.randint(100, 200)
+        held = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            held.bind(f'\0sandrunner-test-domain-{domain}'.encode().ljust(108, b'\0'))
+            return domain, held
+        except OSError:
+            held.close()
+            time.sleep(0.01)
+
+
+class Child:
+    """A program that runs in the input's folder."""
+
+    def __init__(self, command, one, programs, folder, log):
+        self.command, self.sent, self.code = command, set(), None
+        self.out, self.err = folder / f'{log}stdout', folder / f'{log}stderr'
+        words = [str(programs / command[0]), *(word.replace('\0', '') for word in command[1:])]
+        environment = {**os.environ, **one.environment}
+        if one.shell:  # what has to be done before in the very process; the environment is not for bash
+            words = ['bash', '-c', one.shell + '; exec "$@"', 'bash', 'env',
+                     *(f'{name}={value}' for name, value in one.environment.items()), *words]
+            environment = None
+        user = NOBODY if one.other_user and os.getuid() == 0 else None
+        if user:
+            os.chown(folder, user, user)
+        with open(self.out, 'wb') as out, open(self.err, 'wb') as err:
+            self.process = subprocess.Popen(words, cwd=folder, user=user, stdin=subprocess.DEVNULL, stdout=out,
+                                            stderr=err, env=environment)
+
+    def send(self, number):
+        self.sent.add(number)
+        self.process.send_signal(number)
+
+    def ended(self, limit_s):
+        """Whether it ends by itself within this time."""
+        try:
+            self.code = self.process.wait(limit_s)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+    def end(self):
+        """Waits for its end, or kills it."""
+        if not self.ended(LIMIT_S):
+            self.process.kill()
+            self.process.wait()
 
 
 def run(one, programs, folder):
-    """Runs the input. Exit code as of subprocess, None: over the limit."""
-    child = start(one, programs, folder)
+    """Runs the input. Returns its program, then those beside it, all ended."""
+    beside = [Child(command, one, programs, folder, f'{i}-') for i, command in enumerate(one.beside)]
+    child = Child(one.command, one, programs, folder, '')
     began = time.monotonic()
     for at_s, number in one.signals:
-        try:
-            child.wait(max(0.0, began + at_s - time.monotonic()))
-            return child.returncode
-        except subprocess.TimeoutExpired:
-            child.send_signal(number)
-    if any(number == signal.SIGTSTP for _, number in one.signals):
-        time.sleep(0.1)
-        child.send_signal(signal.SIGCONT)
-    try:
-        return child.wait(LIMIT_S)
-    except subprocess.TimeoutExpired:
-        child.kill()
-        child.wait()
-        return None
+        if child.ended(max(0.0, began + at_s - time.monotonic())):
+            break
+        child.send(number)
+    if signal.SIGTSTP in child.sent and not child.ended(0.1):
+        child.process.send_signal(signal.SIGCONT)
+    child.end()
+    for other in beside:
+        other.send(signal.SIGTERM)
+    for other in beside:
+        other.end()
+    return [child, *beside]
 
 
-def judge(one, code, folder):
-    """The class of what came of it, and why."""
-    sent = {number for _, number in one.signals}
+def judge(child, one, folder):
+    """The class of what came of a program, and why."""
+    code = child.code
     if code is None:
         return 'hang', f'not done after {LIMIT_S:g} s'
-    if code < 0 and -code not in sent:
+    if code < 0 and -code not in child.sent:
         return 'crash', signal.Signals(-code).name
-    stderr = (folder / 'stderr').read_text(errors='replace')
-    said = stderr + (folder / 'stdout').read_text(errors='replace')
+    stderr = child.err.read_text(errors='replace')
+    said = stderr + child.out.read_text(errors='replace')
     for word in ['internal error', 'terminate called', 'Assertion', 'Sanitizer', 'runtime error']:
         if word in said:
             return 'misleading', stderr.strip()[:300]
@@ -98,14 +136,14 @@ def judge(one, code, folder):
         return 'refused', stderr.strip()
     if code > 2:
         return 'misleading', f'exit {code}: {stderr.strip()[:300]}'
-    if code == 2:
-        # Of a run that had begun, warnings come before.
-        lines = stderr.split('\n')[:-1]
-        begun = '--clock' in one.command or (folder / 'stdout').stat().st_size > 0
-        name = one.command[0] + ': '
+    name = child.command[0]
+    if code == 2 or (code == 1 and name == 'sandrunner-ctl'):
+        # Of a run that had begun, warnings come before, and what the DDS library says of packets.
+        lines = [line for line in stderr.split('\n')[:-1] if not line.startswith('DDS: ')]
+        begun = '--clock' in child.command or child.out.stat().st_size > 0
         proper = len(lines) == 1 or (begun and len(lines) > 1)
-        longest = 1000 + sum(len(word) for word in one.command)
-        if not proper or not all(line.startswith(name) and len(line) < longest for line in lines):
+        longest = 1000 + sum(len(word) for word in child.command)
+        if not proper or not all(line.startswith(name + ': ') and len(line) < longest for line in lines):
             return 'misleading', f'{len(lines)} lines: {stderr.strip()[:300]!r}'
         return 'refused', lines[-1]
     # A recording may end early, as of a run that was killed, if that is said.
@@ -119,16 +157,31 @@ def attack(index, seed, maker, programs, out):
     folder = out / str(index)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
-    one = maker.draw(random.Random(f'{seed}:{index}'), folder)
-    code = run(one, programs, folder)
-    verdict, why = judge(one, code, folder)
+    rng = random.Random(f'{seed}:{index}')
+    one = maker.draw(rng, folder)
+    held = None
+    if one.beside:
+        domain, held = reserve_domain(rng)
+        for command in [one.command, *one.beside]:
+            command[:] = [word.replace(inputs.DOMAIN, str(domain)) for word in command]
+    children = run(one, programs, folder)
+    if held:
+        held.close()
+    verdicts = [(*judge(child, one, folder), child) for child in children]
+    verdict, why, child = next((v for v in verdicts if v[0] in HURT), verdicts[0])
     if verdict in HURT:
-        words = shlex.join(one.command)
         extra = ' '.join(f'{signal.Signals(n).name}@{t:.3f}s' for t, n in one.signals)
-        why += f'\n    {words[:400]} {one.shell} {str(one.environment or "")[:80]} {extra}'.rstrip()
+        why += f'\n    {shlex.join(child.command)[:400]} {one.shell} {str(one.environment or "")[:80]} {extra}'.rstrip()
     else:
         shutil.rmtree(folder, ignore_errors=True)
     return index, one.kind, verdict, why
+
+
+def scratch_folder():
+    """A new folder: in memory, where there is room for what the workers write."""
+    memory = pathlib.Path('/dev/shm')
+    roomy = os.access(memory, os.W_OK) and shutil.disk_usage(memory).free > 2**30
+    return pathlib.Path(tempfile.mkdtemp(prefix='attack-', dir=memory if roomy else None))
 
 
 def main():
@@ -141,7 +194,7 @@ def main():
     parser.add_argument('--only', type=int, help='repeat this input alone, and keep its files')
     parser.add_argument('--out', type=pathlib.Path, help='folder for the files of what hurt (default: a temporary one)')
     options = parser.parse_args()
-    out = options.out or pathlib.Path(tempfile.mkdtemp(prefix='attack-'))
+    out = options.out or scratch_folder()
     out.mkdir(parents=True, exist_ok=True)
     out = out.resolve()
     out.chmod(0o755)
@@ -157,7 +210,7 @@ def main():
     began = time.monotonic()
     until = began + 60.0 * options.minutes
     indices = iter([options.only] if options.only is not None else range(options.inputs))
-    workers = 2 * (os.cpu_count() or 1)  # some of them sleep
+    workers = 4 * len(os.sched_getaffinity(0))  # most of them sleep
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
         running = set()
         while True:

@@ -5,6 +5,10 @@ import dataclasses
 import signal
 
 SHORT = ['--start', 'walk', '--duration', '0.02']
+DOMAIN = '@DOMAIN@'  # in a word of a command: a DDS domain that nobody else uses
+# Of a live robot, tighter than those of the one that ships: torque, N m; forward, backward, sideways, m/s; yaw, rad/s.
+BOUNDS = {'gate.torque_limit_nm': 50, 'shaping.forward_mps': 1, 'shaping.backward_mps': 0.5,
+          'shaping.lateral_mps': 0.3, 'shaping.yaw_radps': 0.7}
 # Each of them ends a program or stops it, by default.
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2,
            signal.SIGALRM, signal.SIGXCPU, signal.SIGXFSZ, signal.SIGTSTP, signal.SIGPIPE, signal.SIGKILL]
@@ -23,6 +27,7 @@ class Input:
     environment: dict = dataclasses.field(default_factory=dict)
     signals: list = dataclasses.field(default_factory=list)  # (seconds after the start, signal)
     other_user: bool = False
+    beside: list = dataclasses.field(default_factory=list)  # commands that run until this one has ended
 
 
 def number(rng):
@@ -99,7 +104,7 @@ class Inputs:
         self.keys = [line.split(' = ', 1) for line in seeds['config.toml'].decode().splitlines() if ' = ' in line]
         self.kinds = [(self.settings, 8), (self.robot, 4), (self.terrain, 2), (self.policy, 4), (self.commands, 3),
                       (self.recording, 5), (self.command_line, 6), (self.signal, 2), (self.environment, 3),
-                      (self.pause, 1)]
+                      (self.pause, 1), (self.dds, 3), (self.operator, 2), (self.evaluate, 1)]
 
     def draw(self, rng, folder):
         """One input; its files lie in `folder`, in which it runs."""
@@ -211,11 +216,11 @@ class Inputs:
     def long_run(self, rng):
         realtime = rng.random() < 0.5
         command = ['sandrunner', '--out', 'out', '--record', 'rec', '--start', rng.choice(['walk', 'stand']),
-                   '--duration', '0.4' if realtime else '4']
+                   '--duration', '0.4' if realtime else '1']
         return command + (['--clock', 'realtime'] if realtime else [])
 
     def signal(self, rng, folder):
-        plan = [(rng.uniform(0.0, 0.5), rng.choice(SIGNALS)) for _ in range(rng.choice([1, 1, 2]))]
+        plan = [(rng.uniform(0.0, 0.4), rng.choice(SIGNALS)) for _ in range(rng.choice([1, 1, 2]))]
         return Input('signal', self.long_run(rng), signals=sorted(plan))
 
     def pause(self, rng, folder):
@@ -226,6 +231,52 @@ class Inputs:
             time_s += rng.uniform(0.001, 0.2)
             plan.append((time_s, signal.SIGCONT))
         return Input('pause', self.long_run(rng), signals=plan)
+
+    def live_robot(self, rng):
+        """One that operators command; it stands up in no time, so that they get it to walk."""
+        settings = {'dds.enabled': 'true', 'dds.domain': DOMAIN, 'controller.stand.fold_s': 0.02,
+                    'controller.stand.extend_s': 0.02, 'controller.stand.max_speed_radps': 20,
+                    'controller.damping.fault_s': 0.05, **{f'controller.{key}': BOUNDS[key] for key in BOUNDS}}
+        if rng.random() < 0.2:
+            settings['dds.cmd_vel'] = '"twist_stamped"'
+        if rng.random() < 0.2:
+            settings['dds.stale_s'] = rng.choice([0.01, 10])
+        if rng.random() < 0.8:  # it takes more time than all the rest
+            settings['realtime.lock_memory'] = '"off"'
+        command = ['sandrunner', '--clock', 'realtime', '--command', 'dds']
+        return command + [word for key in settings for word in ['--set', f'{key}={settings[key]}']]
+
+    def attacker(self, rng, time_s):
+        return ['dds_attacker', DOMAIN, str(rng.randrange(10**9)), str(time_s), *map(str, BOUNDS.values())]
+
+    def dds(self, rng, folder):
+        return Input('dds', self.attacker(rng, 0.2), beside=[self.live_robot(rng)])
+
+    def operator(self, rng, folder):
+        """sandrunner-ctl with a robot, which others may be at as well."""
+        topics = ['rt/odom', 'rt/joint_states', 'rt/imu/data', 'rt/tf', 'rt/diagnostics', 'rt/robot_description',
+                  'sandrunner/ticks', 'sandrunner/mode_reply', 'rt/cmd_vel', 'x', '']
+        modes = ['arm', 'stand', 'walk', 'stop', 'damp', 'reset_fault']
+        velocity = [number(rng) if rng.random() < 0.1 else f'{rng.uniform(-1, 1):.3g}' for _ in range(3)]
+        words = rng.choice([['mode', rng.choice(modes)], ['cmd', '--for', '0.1', *velocity],
+                            ['watch', rng.choice(topics), '--count', str(rng.randint(0, 50))],
+                            ['drive'], ['status', '--once']])
+        if rng.random() < 0.2:
+            words.insert(rng.randint(0, len(words)), rng.choice([number(rng), '--for', '--once', '--', '--count']))
+        if rng.random() < 0.1:
+            words += ['--cmd-vel', 'twist_stamped']
+        beside = [self.live_robot(rng)] + ([self.attacker(rng, 10)] if rng.random() < 0.5 else [])
+        return Input('operator', ['sandrunner-ctl', '--domain', DOMAIN, *words], signals=[(0.3, signal.SIGINT)],
+                     beside=beside)
+
+    def evaluate(self, rng, folder):
+        (folder / 'p.safetensors').write_bytes(self.seeds['raibo.safetensors'])
+        command = ['sandrunner-evaluate', '--policy', 'p.safetensors', '--runs', '1', '--grid-runs', '1',
+                   '--only', rng.choice(['straight', 'grid', 'turn', 'robust']), '--threads', str(rng.randint(1, 3)),
+                   '--seed', str(rng.randrange(1, 1000))]
+        if rng.random() < 0.3:
+            command += ['--out', 'out', '--torque-speed-line', rng.choice(['on', 'off'])]
+        return Input('evaluate', command, signals=[(0.2, signal.SIGTERM)] if rng.random() < 0.5 else [])
 
     def environment(self, rng, folder):
         command = ['sandrunner', *SHORT, '--out', 'out', '--record', 'rec']

@@ -7,6 +7,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/core/safety_gate.h"
+#include "rt/telemetry/dds/security_files.h"
 
 namespace sandrunner {
 namespace {
@@ -30,8 +31,9 @@ std::string escaped(const std::string& text) {
 }
 
 std::string security_xml(const std::string& dir, const std::string& identity) {
+  const std::filesystem::path folder = std::filesystem::absolute(dir);
   const auto file = [&](const std::string& name) {
-    const std::filesystem::path path = std::filesystem::absolute(dir) / name;
+    const std::filesystem::path path = folder / name;
     std::error_code unreadable;
     if (!std::filesystem::is_regular_file(path, unreadable)) {
       throw InputError(fmt::format(
@@ -40,7 +42,7 @@ std::string security_xml(const std::string& dir, const std::string& identity) {
     }
     return "file:" + escaped(path.string());
   };
-  return fmt::format(
+  std::string xml = fmt::format(
       R"(<Security><Authentication>
   <Library path="dds_security_auth" initFunction="init_authentication" finalizeFunction="finalize_authentication"/>
   <IdentityCA>{}</IdentityCA><IdentityCertificate>{}</IdentityCertificate><PrivateKey>{}</PrivateKey>
@@ -52,6 +54,8 @@ std::string security_xml(const std::string& dir, const std::string& identity) {
  </Cryptographic></Security>)",
       file("ca.pem"), file(identity + ".pem"), file(identity + ".key"), file("ca.pem"),
       file("governance.p7s"), file(identity + ".perm.p7s"));
+  check_key(folder / (identity + ".pem"), folder / (identity + ".key"));
+  return xml;
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ DdsConfig read_dds_config(ConfigTree& config);
 
 /// Configuration of Cyclone DDS. On "lo": unicast within this computer, no multicast. With a
 /// `security_dir`: authentication as `identity` (DIR/identity.pem, .key, .perm.p7s), access
-/// control, encryption. Throws InputError if one of these files is missing.
+/// control, encryption. Throws InputError if one of these files is missing, or if the key is not
+/// the certificate's.
 std::string cyclone_xml(const DdsConfig& config, const std::string& identity);
 
 }  // namespace sandrunner

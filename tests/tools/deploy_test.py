@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""tests/tools/deploy_test.py BUILD VERSION: what tools/deploy installs and packs of the programs of VERSION in the build
+folder BUILD."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD, VERSION = sys.argv.pop(1), sys.argv.pop(1)
+
+
+def run(*command, **options):
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False, **options)
+    assert done.returncode == 0, done
+    return done.stdout
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.prefix = pathlib.Path(folder.name)
+        run("cmake", "--install", BUILD, "--prefix", cls.prefix)
+
+    def test_every_program_runs_from_where_it_was_installed(self):
+        programs = sorted(path.name for path in (self.prefix / "bin").iterdir())
+        self.assertEqual(programs, ["sandrunner", "sandrunner-ctl", "sandrunner-policy", "sandrunner-replay"])
+        for program in programs:
+            self.assertIn(VERSION, run(self.prefix / "bin" / program, "--version"))
+
+    def test_the_robot_runs_with_the_settings_of_the_example(self):
+        settings = self.prefix / "share/doc/sandrunner/examples/settings.toml"
+        with tempfile.TemporaryDirectory() as elsewhere:
+            out = run(self.prefix / "bin/sandrunner", "--start", "walk", "--duration", "1", "--config", settings,
+                      cwd=elsewhere)
+        self.assertIn("state hash", out)
+
+    @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd-analyze here")
+    def test_systemd_finds_no_mistake_in_the_units(self):
+        source = self.prefix / "lib/systemd/system"
+        with tempfile.TemporaryDirectory() as folder:
+            units = pathlib.Path(folder)
+            for unit in source.iterdir():
+                text = unit.read_text().replace("ExecStart=sandrunner", f"ExecStart={self.prefix}/bin/sandrunner")
+                text = text.replace("=ip ", "=true ")
+                (units / unit.name.replace("@", "@can0")).write_text(text.replace("User=sandrunner", "User=root"))
+            drop_in = units / "sandrunner-can@can0.service.d"
+            drop_in.mkdir()
+            shutil.copy(self.prefix / "share/doc/sandrunner/examples/can-irq.conf", drop_in)
+            verified = subprocess.run(
+                ["systemd-analyze", "verify", "--man=no", units / "sandrunner.service",
+                 units / "sandrunner-can@can0.service"], capture_output=True, text=True, check=False)
+        self.assertEqual((verified.returncode, verified.stdout + verified.stderr), (0, ""))
+
+    def test_the_service_never_arms_the_robot_and_has_no_watchdog_that_nobody_feeds(self):
+        unit = (self.prefix / "lib/systemd/system/sandrunner.service").read_text()
+        self.assertNotIn("--arm", unit)
+        self.assertNotRegex(unit, "(?m)^WatchdogSec")
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        run("cpack", "--config", pathlib.Path(BUILD, "CPackConfig.cmake"), "-B", folder.name)
+        [cls.package] = pathlib.Path(folder.name).glob("*.deb")
+
+    def field(self, name):
+        return run("dpkg-deb", "--field", self.package, name).strip()
+
+    def test_it_carries_the_version_of_the_project(self):
+        self.assertEqual(self.package.name, f"sandrunner_{VERSION}_amd64.deb")
+        self.assertEqual(self.field("Version"), VERSION)
+
+    def test_it_needs_libraries_at_run_time_only(self):
+        packages = [re.match(r"\S+", need)[0] for need in self.field("Depends").split(", ")]
+        self.assertIn("libddsc0debian", packages)
+        self.assertEqual([name for name in packages if not name.startswith(("lib", "zlib1g")) or "-dev" in name], [])
+
+    def test_it_leaves_etc_to_the_administrator(self):
+        paths = [line.split()[-1] for line in run("dpkg-deb", "--contents", self.package).splitlines()]
+        self.assertIn("./usr/bin/sandrunner", paths)
+        self.assertIn("./usr/lib/systemd/system/sandrunner.service", paths)
+        self.assertEqual([path for path in paths if not path.startswith("./usr/")], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
