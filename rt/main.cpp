@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "drivers/robot/can_robot.h"
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
@@ -69,6 +70,7 @@ std::string write_results(const RunResult& result, const RunInfo& info,
 ProcessConfig read_config(const Options& options, const PolicySpec& spec) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, options.terrain);
+  if (!options.hardware_path.empty()) tree.add_file(options.hardware_path);
   for (const std::string& file : options.config_files) tree.add_file(file);
   for (const std::string& assignment : options.assignments) tree.set(assignment);
   if (options.live) tree.set("dds.enabled=true");
@@ -77,8 +79,31 @@ ProcessConfig read_config(const Options& options, const PolicySpec& spec) {
   }
   if (!options.robot_path.empty()) tree.set_text("robot", options.robot_path, "--robot");
   ProcessConfig config = read_process_config(tree, &spec);
+  if (!options.hardware_path.empty() && !config.hardware) {
+    throw InputError(fmt::format("{}: found no table [hardware]", options.hardware_path));
+  }
   config.simulator.seed = options.seed;
   return config;
+}
+
+// The robot itself, or the simulator in its place.
+struct TheRobot {
+  std::unique_ptr<CanRobot> hardware;
+  std::unique_ptr<sim::Simulator> simulator;
+
+  RobotIo& io() { return hardware ? static_cast<RobotIo&>(*hardware) : *simulator; }
+};
+
+TheRobot make_robot(const Options& options, const ProcessConfig& config) {
+  TheRobot robot;
+  if (!options.hardware_path.empty()) {
+    robot.hardware = std::make_unique<CanRobot>(*config.hardware, config.robot.description,
+                                                config.controller.gate);
+  } else {
+    robot.simulator = std::make_unique<sim::Simulator>(config.robot, config.simulator);
+    if (!options.start_walking) robot.simulator->reset_lying();
+  }
+  return robot;
 }
 
 // Everything that listens to the ticks of a run, in ordinary threads.
@@ -132,13 +157,12 @@ int run(int argc, char** argv) {
   if (config.dds.enabled) listeners.dds.emplace(config, options->live, !options->realtime);
   listeners.recorder = make_recorder(*options, config, policy_text, policy);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
-  sim::Simulator simulator(config.robot, config.simulator);
-  if (!options->start_walking) simulator.reset_lying();
-  signals.cut_in_a_crash(simulator);
+  TheRobot robot = make_robot(*options, config);
+  signals.cut_in_a_crash(robot.io());
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunParts parts{
-      .robot = simulator,
+      .robot = robot.io(),
       .controller = config.controller,
       .policy = &policy,
       .command = command,
@@ -161,7 +185,8 @@ int run(int argc, char** argv) {
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
-  const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name, options->terrain,
+  const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name,
+                     robot.hardware ? "real" : options->terrain,
                      options->realtime ? "realtime" : "lockstep", options->seed};
   std::string written;
   std::exception_ptr not_written;
@@ -176,6 +201,9 @@ int run(int argc, char** argv) {
   }
   if (listeners.recorder) written += recording_line(recorded, options->record_dir);
   if (listeners.black_box) written += black_box_lines(kept);
+  if (robot.hardware) {
+    written += hardware_report(*robot.hardware, *config.hardware, config.robot.description);
+  }
   fmt::print("{}{}", summary_table(result, info), written);
   if (not_written) std::rethrow_exception(not_written);
   return result.survived ? kExitOk : kExitRobotFailed;

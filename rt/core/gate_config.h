@@ -64,6 +64,10 @@ struct GateConfig {
   double free_fall_mps2 = 2.0;
   double free_fall_s = 0.25;  ///< ... for this long: a fall of 0.3 m. In running it is 0.05 s.
 
+  /// The robot hangs in a frame, for the first tests of its drives: tilt and free fall are not
+  /// judged.
+  bool hanging = false;
+
   // Ages, in control ticks of 0.25 ms in which the loop ran: a stall of the loop itself makes
   // nothing older, it is judged for itself.
   std::uint64_t joints_limit_ticks = 2;  ///< counted: a bus cycle that came late
@@ -102,6 +106,7 @@ inline constexpr GateConfig kGateCeilings{.joint_fault_rad = 0.5,
                                           .tilt_fault_s = 2.0,
                                           .tilt_fault_deg = 80.0,
                                           .free_fall_s = 1.0,
+                                          .hanging = true,
                                           .joints_limit_ticks = 40,
                                           .joints_fault_ticks = 40,
                                           .imu_limit_ticks = 200,

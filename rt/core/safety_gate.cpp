@@ -140,7 +140,7 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
     found |= judge_encoders(sensors.joints, mode, state, at_fault);
   }
   if (mode == Mode::kPassive) state.torque_over_ticks.fill(0);
-  if (judged_in(mode, Fault::kTilt) && imu_usable) {
+  if (judged_in(mode, Fault::kTilt) && imu_usable && !config_.hanging) {
     found |= judge_body(sensors.imu, elapsed, state);
   } else {
     state.tilted_ticks = state.falling_ticks = 0;

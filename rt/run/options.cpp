@@ -31,8 +31,8 @@ std::uint64_t seed_of(const std::string& text) {
 std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   CLI::App app{
-      "Runs a legged robot on sand: the control process, here with the granular simulator in place "
-      "of the robot.",
+      "Runs a legged robot on sand: the control process, with the granular simulator in place of "
+      "the robot unless --hardware names one.",
       "sandrunner"};
   app.option_defaults()->always_capture_default();
   std::string start = "stand";
@@ -43,6 +43,11 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
                  "map of a robot (sim/robot/README.md; default: the one that ships)")
       ->type_name("FILE")
       ->capture_default_str();
+  app.add_option("--hardware", o.hardware_path,
+                 "TOML with the drives and the IMU of a real robot (drivers/robot/README.md)")
+      ->type_name("FILE")
+      ->always_capture_default(false);
+  app.add_flag("--arm", o.arm, "with --hardware: the run itself may move the robot");
   app.add_option(
          "--terrain", o.terrain,
          fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
@@ -97,7 +102,13 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "  sandrunner --clock realtime --command dds");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = start == "walk";
-  o.realtime = clock == "realtime";
+  const bool hardware = !o.hardware_path.empty();
+  if (hardware && (o.start_walking || (app.count("--clock") > 0 && clock == "lockstep"))) {
+    throw InputError(
+        "--hardware: a robot lies first and has its own time: expected neither --start walk nor "
+        "--clock lockstep");
+  }
+  o.realtime = clock == "realtime" || hardware;
   o.rt_report = report->parsed();
   o.live = o.command == "dds";
   if (o.live && !o.realtime) {
@@ -112,6 +123,12 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
   }
+  if (hardware && !o.live && !o.arm) {
+    throw InputError(
+        "--hardware: this command would move the robot by itself: expected --arm, or --command dds "
+        "(operators decide)");
+  }
+  if (o.arm && !hardware) throw InputError("--arm: expected --hardware with it");
   o.seed = seed_of(seed);
   return o;
 }

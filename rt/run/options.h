@@ -10,8 +10,10 @@ namespace sandrunner {
 
 /// The command line of `sandrunner`, as typed; files are not looked at here.
 struct Options {
-  std::string policy_path;  ///< empty: the policy that ships
-  std::string robot_path;   ///< map of a robot; empty: the robot that ships
+  std::string policy_path;    ///< empty: the policy that ships
+  std::string robot_path;     ///< map of a robot; empty: the robot that ships
+  std::string hardware_path;  ///< TOML of its drives and IMU; empty: the simulator
+  bool arm = false;           ///< the script may move the real robot
   std::string terrain = "dry-sand";
   std::string command = "1.5,0,0";
   bool live = false;         ///< --command dds

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
+#include "drivers/robot/hardware_config.h"
 #include "policy/policy.h"
 #include "rt/base/config_tree.h"
 #include "rt/core/controller.h"
@@ -20,6 +23,7 @@ struct ProcessConfig {
   RealtimeConfig realtime;
   RecordingLimits recording;
   DdsConfig dds;
+  std::optional<HardwareConfig> hardware;  ///< if there is a table [hardware]
   double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   std::string effective;        ///< TOML of every setting with the value in effect
 };

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/bus_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "drivers/robot/drive.h"
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+namespace {
+
+FrameShape shape_of(const CanFrame& frame) {
+  return {.bytes = frame.length, .extended = frame.extended, .fd = frame.fd, .brs = frame.brs};
+}
+
+/// The command of one exchange and its reply, measured on frames themselves.
+std::array<FrameShape, 2> shapes_of(const DriveConfig& config, const HardwareConfig& hardware) {
+  CanFrame command, reply;
+  Drive(config, hardware).command_frame({0.1, 0.1, 1.0, 0.1, 0.1}, command);
+  if (config.protocol == Protocol::kMit) {
+    MitReply state;
+    state.bus_voltage_v = state.temperature_degc = state.rotor_temperature_degc = 0.0;
+    encode_mit_reply(config.mit, state, reply);
+  } else {
+    MoteusReply state;
+    state.position_rad = state.velocity_radps = state.torque_nm = 0.0;
+    MoteusRequest request;
+    decode_moteus_request(config.moteus, command, request);
+    encode_moteus_reply(config.moteus, request, state, reply);
+  }
+  return {shape_of(command), shape_of(reply)};
+}
+
+/// Interfaces of the kernel's own (vcan) stand on no device.
+bool is_virtual(const std::string& interface) {
+  std::error_code absent;
+  return !std::filesystem::exists("/sys/class/net/" + interface + "/device", absent);
+}
+
+}  // namespace
+
+std::vector<PlannedBus> plan_buses(const HardwareConfig& hardware) {
+  std::vector<PlannedBus> plan;
+  for (std::size_t b = 0; b < hardware.buses.size(); ++b) {
+    const BusConfig& bus = hardware.buses[b];
+    // All frames of the bus as if of one motor: its drives may differ in their replies.
+    std::vector<FrameShape> shapes;
+    PlannedBus planned;
+    planned.interface = bus.interface;
+    for (const DriveConfig& drive : hardware.drives) {
+      if (drive.bus != static_cast<int>(b)) continue;
+      ++planned.drives;
+      for (const FrameShape& shape : shapes_of(drive, hardware)) shapes.push_back(shape);
+    }
+    const BusCycle cycle{.each_motor = shapes, .once = {}};
+    planned.load = bus_load(cycle, 1, hardware.rate_hz, bus.rates);
+    if (planned.drives > 0) {
+      const BusCycle one{.each_motor = std::span(shapes).first(2), .once = {}};
+      planned.most_drives = motors_that_fit(one, hardware.rate_hz, bus.rates);
+    }
+    for (int parts = 1; parts <= kControlHz / 100; ++parts) {
+      if (kControlHz % parts != 0) continue;
+      const double rate_hz = static_cast<double>(kControlHz) / parts;
+      if (bus_load(cycle, 1, rate_hz, bus.rates).worst > kMaxBusLoad) continue;
+      planned.most_rate_hz = rate_hz;
+      break;
+    }
+    plan.push_back(planned);
+  }
+  return plan;
+}
+
+std::string plan_table(const HardwareConfig& hardware, const std::vector<PlannedBus>& plan) {
+  std::string table = fmt::format(
+      "{} at {} Hz, {} s without a command let a drive go\n"
+      "bus           drives   load  worst   fit at {:<5} these fit at\n",
+      hardware.mode == DriveMode::kGains ? "the drives close the loops, exchange"
+                                         : "the host closes the loops, exchange",
+      hardware.rate_hz, hardware.drive_timeout_s, fmt::format("{} Hz", hardware.rate_hz));
+  for (const PlannedBus& bus : plan) {
+    table +=
+        fmt::format("{:<14}{:>6} {:>5.0f} % {:>4.0f} % {:>8}     {:>10} Hz{}\n", bus.interface,
+                    bus.drives, 100.0 * bus.load.nominal, 100.0 * bus.load.worst, bus.most_drives,
+                    bus.most_rate_hz, bus.overloaded() ? "   OVERLOADED" : "");
+  }
+  return table;
+}
+
+void require_capacity(const HardwareConfig& hardware) {
+  for (const PlannedBus& bus : plan_buses(hardware)) {
+    if (!bus.overloaded() || is_virtual(bus.interface)) continue;
+    throw InputError(fmt::format(
+        "hardware.bus {}: {} drives at {} Hz load it by {:.0f} % in the worst case, at most {:.0f} "
+        "% leave room for a lost frame; {} drives fit, or {:g} Hz (sandrunner check --plan)",
+        bus.interface, bus.drives, hardware.rate_hz, 100.0 * bus.load.worst, 100.0 * kMaxBusLoad,
+        bus.most_drives, bus.most_rate_hz));
+  }
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/robot/hardware_config.h"
+
+namespace sandrunner {
+
+/// What one bus has to carry.
+struct PlannedBus {
+  std::string interface;
+  int drives = 0;
+  BusLoad load;
+  int most_drives = 0;  ///< that fit at this rate
+  double most_rate_hz =
+      0;  ///< at which these drives fit, a whole part of the control rate; 0: none
+  bool overloaded() const noexcept { return load.worst > kMaxBusLoad; }
+};
+
+/// Load of every bus, from the frames of an exchange with each drive.
+std::vector<PlannedBus> plan_buses(const HardwareConfig& hardware);
+
+/// The plan as a table, for a person.
+std::string plan_table(const HardwareConfig& hardware, const std::vector<PlannedBus>& plan);
+
+/// Throws InputError for a real bus that is overloaded, in one line with what would fit. Interfaces
+/// that the kernel emulates (vcan) have no bit rate and are let through.
+void require_capacity(const HardwareConfig& hardware);
+
+}  // namespace sandrunner

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/can_robot.h"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+
+#include "drivers/robot/bring_up.h"
+#include "rt/core/joint_pd.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
+constexpr int kMostFrames = 3 * CanSocket::kMaxFrames;  // of a bus in a tick
+
+std::int64_t now_ns(clockid_t clock) noexcept {  // no system call: the kernel maps both
+  timespec t;
+  clock_gettime(clock, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+/// The tick in which something of `age_ns` happened, seen from `tick`.
+std::uint64_t tick_of(std::int64_t age_ns, std::uint64_t tick) noexcept {
+  const auto ago = static_cast<std::uint64_t>(std::max<std::int64_t>(age_ns, 0) / kTick_ns);
+  return tick - std::min(ago, tick);
+}
+
+}  // namespace
+
+CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
+                   const GateConfig& gate)
+    : config_(config),
+      sockets_(open_buses(config)),
+      counters_(config.buses.size()),
+      imu_(config.imu),
+      off_frames_(config.buses.size()) {
+  for (int j = 0; j < kNumJoints; ++j) {
+    drives_[j] = Drive(config.drives[j], config);
+    CanFrame frame;
+    drives_[j].off_frame(frame);
+    off_frames_[config.drives[j].bus].push_back(frame);
+  }
+  require_drives(config, robot, gate, sockets_);
+}
+
+CanRobot::~CanRobot() = default;
+
+void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
+  tick_ = tick;
+  receive(tick);
+  for (int j = 0; j < kNumJoints; ++j) {
+    const Drive& drive = drives_[j];
+    frame.joints.drive_fault[j] = drive.fault();
+    if (drive.replies() == 0) continue;
+    frame.joints.position_rad[j] = drive.position_rad();
+    frame.joints.velocity_radps[j] = drive.velocity_radps();
+    frame.joints.torque_nm[j] = drive.torque_nm();
+    frame.joints.tick[j] = drive.tick();
+  }
+  const std::int64_t now = now_ns(CLOCK_MONOTONIC);
+  if (imu_.poll(now)) {
+    frame.imu = imu_.sample();
+    frame.imu.tick = tick_of(now - imu_.sample_time_ns(), tick);
+  }
+  frame.drives_cut = cut_.load(std::memory_order_relaxed) ? 1 : 0;
+}
+
+void CanRobot::receive(std::uint64_t tick) noexcept {
+  std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
+  const std::int64_t now = now_ns(CLOCK_REALTIME);  // of the kernel's stamps
+  for (std::size_t b = 0; b < sockets_.size(); ++b) {
+    for (int taken = 0; taken < kMostFrames;) {
+      const CanResult result = sockets_[b]->receive(received);
+      for (int i = 0; i < result.frames; ++i) take(static_cast<int>(b), received[i], tick, now);
+      taken += result.frames;
+      if (result.frames < CanSocket::kMaxFrames) break;
+    }
+    counters_[b].overflowed = sockets_[b]->overflowed();
+  }
+}
+
+void CanRobot::take(int bus, const ReceivedFrame& received, std::uint64_t tick,
+                    std::int64_t now) noexcept {
+  BusCounters& counters = counters_[bus];
+  if (received.frame.error) {
+    const CanError error = decode_can_error(received.frame);
+    ++(error.bus_off ? counters.bus_off : counters.errors);
+    if (!error.bus_off) return;
+    for (int j = 0; j < kNumJoints; ++j) {
+      if (config_.drives[j].bus == bus) drives_[j].lose_bus();
+    }
+    return;
+  }
+  ++counters.received;
+  const std::uint64_t when = received.stamp_ns == 0 ? tick : tick_of(now - received.stamp_ns, tick);
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (config_.drives[j].bus == bus && drives_[j].take(received.frame, when)) return;
+  }
+  ++counters.foreign;
+}
+
+void CanRobot::write(const SafeCommand& command) noexcept {
+  const bool enabled = command.enabled() && !cut_.load(std::memory_order_relaxed);
+  // What takes torque away does not wait for its turn.
+  const bool at_once = enabled_ && !enabled;
+  enabled_ = enabled;
+  if (tick_ < next_exchange_ && !at_once) return;
+  const auto period = static_cast<std::uint64_t>(config_.ticks_per_exchange());
+  next_exchange_ = (tick_ / period + 1) * period;
+  exchange(enabled ? &command : nullptr);
+}
+
+void CanRobot::exchange(const SafeCommand* command) noexcept {
+  std::array<CanFrame, kNumJoints> frames;
+  for (std::size_t b = 0; b < sockets_.size(); ++b) {
+    std::size_t count = 0;
+    for (int j = 0; j < kNumJoints; ++j) {
+      if (config_.drives[j].bus != static_cast<int>(b)) continue;
+      JointSetPoint point;
+      if (command != nullptr) {
+        const JointCommand& c = command->joints();
+        point = {c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j],
+                 c.feedforward_nm[j]};
+        if (config_.mode == DriveMode::kTorque) {
+          const Drive& d = drives_[j];
+          const bool blind = (command->blind_joints() >> j & 1) != 0;
+          const double torque_nm =
+              blind ? 0.0
+                    : joint_torque(d.position_rad(), d.velocity_radps(), point.position_rad,
+                                   point.velocity_radps, point.kp_nmprad, point.kd_nmsprad,
+                                   point.torque_nm);
+          point = {.torque_nm = torque_nm};
+        }
+      }
+      if (drives_[j].next_frame(command != nullptr ? &point : nullptr, tick_, frames[count])) {
+        ++count;
+      }
+    }
+    send(static_cast<int>(b), std::span(frames).first(count));
+  }
+}
+
+void CanRobot::send(int bus, std::span<const CanFrame> frames) noexcept {
+  if (frames.empty()) return;
+  const CanResult result = sockets_[bus]->send(frames);
+  counters_[bus].sent += static_cast<std::uint64_t>(result.frames);
+  counters_[bus].not_sent += frames.size() - static_cast<std::uint64_t>(result.frames);
+}
+
+void CanRobot::cut_drives() noexcept {
+  cut_.store(true, std::memory_order_relaxed);
+  for (std::size_t b = 0; b < sockets_.size(); ++b) sockets_[b]->send(off_frames_[b]);
+}
+
+void CanRobot::shut_down() noexcept {
+  JointArray<std::uint64_t> before;
+  for (int j = 0; j < kNumJoints; ++j) before[j] = drives_[j].replies();
+  for (int i = 0; i < 50; ++i) {
+    exchange(nullptr);
+    const timespec pause{.tv_sec = 0, .tv_nsec = 2'000'000};
+    nanosleep(&pause, nullptr);
+    receive(tick_);
+    // One answer may still be to an earlier command.
+    bool all = true;
+    for (int j = 0; j < kNumJoints; ++j) all = all && drives_[j].replies() >= before[j] + 2;
+    if (all) return;
+  }
+}
+
+std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
+                            const RobotDescription& description) {
+  std::string lines;
+  for (std::size_t b = 0; b < config.buses.size(); ++b) {
+    const BusCounters& c = robot.bus_counters()[b];
+    lines += fmt::format("{}: {} frames sent, {} received", config.buses[b].interface, c.sent,
+                         c.received);
+    if (c.not_sent > 0) lines += fmt::format(", {} NOT SENT", c.not_sent);
+    if (c.foreign > 0) lines += fmt::format(", {} of nobody", c.foreign);
+    if (c.overflowed > 0) lines += fmt::format(", {} LOST in the kernel", c.overflowed);
+    if (c.bus_off > 0) lines += fmt::format(", BUS OFF {} times", c.bus_off);
+    if (c.errors > 0) lines += fmt::format(", {} error frames", c.errors);
+    lines += '\n';
+  }
+  for (int j = 0; j < kNumJoints; ++j) {
+    const Drive& d = robot.drives()[j];
+    const std::uint64_t missing = d.sent() - std::min(d.sent(), d.replies());
+    if (missing <= 1 && d.fault() == 0 && d.bad() == 0) continue;
+    lines += fmt::format("{}: {} of {} commands not answered", description.joint_names[j], missing,
+                         d.sent());
+    if (d.bad() > 0) lines += fmt::format(", {} replies of a wrong length", d.bad());
+    if (d.fault() != 0) lines += "; " + drive_fault_words(config.drives[j], d.fault());
+    lines += '\n';
+  }
+  const MipImu::Counters imu = robot.imu().counters();
+  lines += fmt::format("{}: {} samples", config.imu.device, imu.samples);
+  if (imu.repeated > 0) lines += fmt::format(", {} REPEATED", imu.repeated);
+  if (imu.incomplete > 0) lines += fmt::format(", {} incomplete", imu.incomplete);
+  if (imu.bad_checksums > 0) lines += fmt::format(", {} bad checksums", imu.bad_checksums);
+  if (imu.skipped_bytes > 0) lines += fmt::format(", {} bytes skipped", imu.skipped_bytes);
+  return lines + '\n';
+}
+
+}  // namespace sandrunner

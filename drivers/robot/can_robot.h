@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/can/can_error.h"
+#include "drivers/can/can_socket.h"
+#include "drivers/imu/mip_imu.h"
+#include "drivers/robot/drive.h"
+#include "drivers/robot/hardware_config.h"
+#include "rt/core/robot_io.h"
+
+namespace sandrunner {
+
+/// What became of a bus since it was opened.
+struct BusCounters {
+  std::uint64_t sent = 0, received = 0;
+  std::uint64_t not_sent = 0;    ///< frames that it did not take: queue full, interface down
+  std::uint64_t foreign = 0;     ///< frames that are no reply of a drive of ours
+  std::uint64_t overflowed = 0;  ///< frames that the kernel threw away
+  std::uint64_t bus_off = 0;     ///< times
+  std::uint64_t errors = 0;      ///< other error frames
+};
+
+/// A robot of drives on CAN buses and an IMU on a serial line.
+///
+/// Every `ticks_per_exchange` ticks, write() sends each drive its command, and each answers with
+/// its state, which the next read() that finds it takes: an exchange costs the loop no waiting.
+/// Values have the tick in which the kernel received them. While the robot is off, each drive is
+/// told in every exchange to be off, and answers that. Real-time safe once constructed.
+class CanRobot final : public RobotIo {
+ public:
+  /// Opens buses and IMU, finds every drive, and compares what drives can tell of themselves with
+  /// the configuration; nothing is enabled. Some seconds at most. Throws InputError, one line: a
+  /// drive that does not answer, other limits than configured, a time-out that is not there, a
+  /// posture that cannot be, an overloaded bus.
+  CanRobot(const HardwareConfig& config, const RobotDescription& robot, const GateConfig& gate);
+  ~CanRobot() override;
+
+  void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
+  void write(const SafeCommand& command) noexcept override;
+  void skip(std::uint64_t, const SafeCommand&) noexcept override {}  // it went on without us
+  void cut_drives() noexcept override;
+  /// Tells all drives to be off until each has answered, for 0.1 s at most.
+  void shut_down() noexcept override;
+
+  const std::vector<BusCounters>& bus_counters() const noexcept { return counters_; }
+  const JointArray<Drive>& drives() const noexcept { return drives_; }
+  const MipImu& imu() const noexcept { return imu_; }
+
+ private:
+  void find_drives(const RobotDescription& robot, const GateConfig& gate);
+  void receive(std::uint64_t tick) noexcept;
+  void take(int bus, const ReceivedFrame& received, std::uint64_t tick,
+            std::int64_t now_ns) noexcept;
+  void exchange(const SafeCommand* command) noexcept;
+  void send(int bus, std::span<const CanFrame> frames) noexcept;
+
+  HardwareConfig config_;
+  std::vector<std::unique_ptr<CanSocket>> sockets_;
+  std::vector<BusCounters> counters_;
+  JointArray<Drive> drives_;
+  MipImu imu_;
+  std::vector<std::vector<CanFrame>> off_frames_;  ///< of each bus, for cut_drives()
+  std::uint64_t tick_ = 0, next_exchange_ = 0;
+  std::uint64_t imu_tick_ = 0;
+  bool enabled_ = false;
+  std::atomic<bool> cut_{false};
+  static_assert(std::atomic<bool>::is_always_lock_free);
+};
+
+/// What the buses, drives and IMU counted, as lines for a person.
+std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
+                            const RobotDescription& description);
+
+}  // namespace sandrunner

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/drive.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace sandrunner {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kEnable_ticks = static_cast<std::uint64_t>(kEnable_s * kControlHz);
+/// A drive that does not say whether it is enabled is taken to be after so many replies.
+constexpr std::uint64_t kRepliesToEnable = 3;
+/// Replies in a row that say "off" before that is believed: one may have been on its way.
+constexpr std::uint64_t kOffInARow = 3;
+
+/// MIT codes have none for zero: a drive at rest says half a step. Left as it is, a joint that
+/// stands would seem to creep for ever.
+double without_half_step(double velocity_radps, double limit_radps) noexcept {
+  const double step_radps = 2.0 * limit_radps / 4095.0;
+  return std::fabs(velocity_radps) < 0.51 * step_radps ? 0.0 : velocity_radps;
+}
+
+}  // namespace
+
+Drive::Drive(const DriveConfig& config, const HardwareConfig& hardware) noexcept
+    : config_(config),
+      torque_only_(hardware.mode == DriveMode::kTorque),
+      temperature_limit_degc_(hardware.temperature_limit_degc),
+      voltage_low_v_(hardware.voltage_low_v),
+      voltage_high_v_(hardware.voltage_high_v),
+      timeout_s_(hardware.drive_timeout_s),
+      temperature_degc_(kUnknown),
+      voltage_v_(kUnknown) {}
+
+void Drive::off_frame(CanFrame& frame) const noexcept {
+  if (config_.protocol == Protocol::kMit) {
+    encode_mit_special(config_.mit, MitSpecial::kDisable, frame);
+  } else {
+    encode_moteus_stop(config_.moteus, kMoteusState, frame);
+  }
+}
+
+void Drive::enable_frame(CanFrame& frame) const noexcept {
+  if (config_.protocol == Protocol::kMit) {
+    encode_mit_special(config_.mit, MitSpecial::kEnable, frame);
+  } else {
+    command_frame({}, frame);  // a moteus is enabled by its first command: here one of no torque
+  }
+}
+
+void Drive::command_frame(const JointSetPoint& joint, CanFrame& frame) const noexcept {
+  const double turn = config_.sign * config_.gear;  // of the drive for one of the joint
+  const double gear2 = config_.gear * config_.gear;
+  if (config_.protocol == Protocol::kMit) {
+    encode_mit_command(config_.mit,
+                       {.position_rad = turn * (joint.position_rad - config_.zero_rad),
+                        .velocity_radps = turn * joint.velocity_radps,
+                        .kp_nmprad = joint.kp_nmprad / gear2,
+                        .kd_nmsprad = joint.kd_nmsprad / gear2,
+                        .torque_nm = joint.torque_nm / turn},
+                       frame);
+  } else if (torque_only_) {
+    encode_moteus_torque(config_.moteus, joint.torque_nm / turn, kMoteusState, frame);
+  } else {
+    encode_moteus_position(config_.moteus,
+                           {.position_rad = turn * (joint.position_rad - config_.zero_rad),
+                            .velocity_radps = turn * joint.velocity_radps,
+                            .kp_nmprad = joint.kp_nmprad / gear2,
+                            .kd_nmsprad = joint.kd_nmsprad / gear2,
+                            .torque_nm = joint.torque_nm / turn,
+                            .max_torque_nm = config_.max_torque_nm,
+                            .watchdog_s = timeout_s_},
+                           kMoteusState, frame);
+  }
+}
+
+bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
+                       CanFrame& frame) noexcept {
+  if (set_point == nullptr) {
+    phase_ = Phase::kOff;
+    set(DriveTrouble::kNotEnabled, false);
+    set(DriveTrouble::kSwitchedOff, false);
+    set(DriveTrouble::kBusOff, false);
+    off_frame(frame);
+  } else if (phase_ == Phase::kLost) {
+    return false;
+  } else if (phase_ == Phase::kOn) {
+    if ((trouble_ & static_cast<std::uint64_t>(DriveTrouble::kSwitchedOff)) != 0) {
+      off_frame(frame);
+    } else {
+      command_frame(*set_point, frame);
+    }
+  } else {
+    if (phase_ == Phase::kOff) {
+      phase_ = Phase::kEnabling;
+      enabling_since_ = tick;
+      replies_at_enable_ = replies_;
+      off_in_a_row_ = 0;
+    }
+    if (tick - enabling_since_ > kEnable_ticks) set(DriveTrouble::kNotEnabled, true);
+    enable_frame(frame);
+  }
+  ++sent_;
+  return true;
+}
+
+bool Drive::take(const CanFrame& frame, std::uint64_t tick) noexcept {
+  const bool taken = config_.protocol == Protocol::kMit ? take_mit(frame) : take_moteus(frame);
+  if (!taken) return false;
+  tick_ = tick;
+  judge_supply();
+  return true;
+}
+
+bool Drive::take_mit(const CanFrame& frame) noexcept {
+  MitReply reply;
+  const MitStatus status = decode_mit_reply(config_.mit, frame, reply);
+  if (status != MitStatus::kOk && status != MitStatus::kUnknownState) {
+    if (status == MitStatus::kWrongLength) ++bad_;
+    return false;
+  }
+  const double turn = config_.sign * config_.gear;
+  position_rad_ = reply.position_rad / turn + config_.zero_rad;
+  velocity_radps_ =
+      without_half_step(reply.velocity_radps, config_.mit.limits.velocity_radps) / turn;
+  torque_nm_ = reply.torque_nm * turn;
+  temperature_degc_ = std::fmax(reply.temperature_degc, reply.rotor_temperature_degc);
+  voltage_v_ = reply.bus_voltage_v;
+  maker_fault_ = reply.fault;
+  if (status == MitStatus::kUnknownState) maker_fault_ = 0xFF;
+  ++replies_;
+  judge_power(reply.power != MitPower::kUnknown, reply.power == MitPower::kEnabled);
+  return true;
+}
+
+bool Drive::take_moteus(const CanFrame& frame) noexcept {
+  MoteusReply reply;
+  const MoteusStatus status = decode_moteus_reply(config_.moteus, frame, reply);
+  if (status != MoteusStatus::kOk) {
+    if (status != MoteusStatus::kOtherId && status != MoteusStatus::kErrorFrame) ++bad_;
+    return false;
+  }
+  const double turn = config_.sign * config_.gear;
+  position_rad_ = reply.position_rad / turn + config_.zero_rad;
+  velocity_radps_ = reply.velocity_radps / turn;
+  torque_nm_ = reply.torque_nm * turn;
+  temperature_degc_ = std::fmax(reply.temperature_degc, reply.motor_temperature_degc);
+  voltage_v_ = reply.voltage_v;
+  maker_fault_ = reply.mode == MoteusMode::kFault ? reply.code : 0;
+  ++replies_;
+  judge_power(true, reply.mode == MoteusMode::kPosition || reply.mode == MoteusMode::kEnabling);
+  return true;
+}
+
+void Drive::judge_power(bool known, bool enabled) noexcept {
+  if (phase_ == Phase::kEnabling) {
+    if (known ? enabled : replies_ >= replies_at_enable_ + kRepliesToEnable) phase_ = Phase::kOn;
+  } else if (phase_ == Phase::kOn && known) {
+    off_in_a_row_ = enabled ? 0 : off_in_a_row_ + 1;
+    if (off_in_a_row_ >= kOffInARow) set(DriveTrouble::kSwitchedOff, true);
+  }
+}
+
+void Drive::judge_supply() noexcept {
+  // What a drive does not say (NaN) is neither.
+  set(DriveTrouble::kHot, temperature_degc_ > temperature_limit_degc_);
+  set(DriveTrouble::kVoltage, voltage_v_ < voltage_low_v_ || voltage_v_ > voltage_high_v_);
+}
+
+void Drive::lose_bus() noexcept {
+  if (phase_ == Phase::kOff) return;
+  phase_ = Phase::kLost;
+  set(DriveTrouble::kBusOff, true);
+}
+
+void Drive::set(DriveTrouble trouble, bool on) noexcept {
+  const auto bit = static_cast<std::uint64_t>(trouble);
+  trouble_ = on ? trouble_ | bit : trouble_ & ~bit;
+}
+
+std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault) {
+  std::string words;
+  const auto add = [&](const std::string& what) { words += (words.empty() ? "" : ", ") + what; };
+  const auto code = static_cast<std::uint8_t>(fault & 0xFF);
+  if (code != 0) {
+    add(config.protocol == Protocol::kMit ? mit_fault_words(config.mit.variant, code)
+                                          : moteus_fault_words(code));
+  }
+  const auto trouble = [&](DriveTrouble t, const char* what) {
+    if ((fault & static_cast<std::uint64_t>(t)) != 0) add(what);
+  };
+  trouble(DriveTrouble::kNotEnabled, "does not let itself be enabled");
+  trouble(DriveTrouble::kSwitchedOff, "switched off by itself");
+  trouble(DriveTrouble::kHot, "too hot");
+  trouble(DriveTrouble::kVoltage, "supply voltage out of range");
+  trouble(DriveTrouble::kBusOff, "its bus was off");
+  return words;
+}
+
+}  // namespace sandrunner

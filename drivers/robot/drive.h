@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "drivers/can/can_frame.h"
+#include "drivers/robot/hardware_config.h"
+
+namespace sandrunner {
+
+/// What the driver itself finds wrong with a drive; in JointState::drive_fault above the maker's
+/// own code, which has the low 8 bits.
+enum class DriveTrouble : std::uint64_t {
+  kNone = 0,
+  kNotEnabled = 1u << 8,   ///< told to enable, it did not within kEnable_s
+  kSwitchedOff = 1u << 9,  ///< it is off though nobody told it to: reboot, its time-out, its
+                           ///< maker's tool
+  kHot = 1u << 10,      ///< above HardwareConfig::temperature_limit_degc
+  kVoltage = 1u << 11,  ///< its supply is outside the range
+  kBusOff = 1u << 12,   ///< its bus was off since the drives were enabled
+};
+inline constexpr double kEnable_s = 0.1;
+
+/// What a drive is told in one exchange, at the joint.
+struct JointSetPoint {
+  double position_rad = 0.0;
+  double velocity_radps = 0.0;
+  double kp_nmprad = 0.0;
+  double kd_nmsprad = 0.0;
+  double torque_nm = 0.0;
+};
+
+/// The drive of one joint: makes its frames and reads its replies. Never enabled but by a set-point
+/// that follows a time in which the robot was to be off: a drive that comes back by itself (reboot,
+/// bus off and on again) stays off until then. Real-time safe.
+class Drive {
+ public:
+  Drive() = default;
+  Drive(const DriveConfig& config, const HardwareConfig& hardware) noexcept;
+
+  /// The frame that keeps the drive off; it answers with its state.
+  void off_frame(CanFrame& frame) const noexcept;
+  /// The frame that a drive which is on is sent.
+  void command_frame(const JointSetPoint& set_point, CanFrame& frame) const noexcept;
+  /// The frame of this exchange. `set_point` null: the drive is to be off. False: none may be sent,
+  /// as its bus was off.
+  bool next_frame(const JointSetPoint* set_point, std::uint64_t tick, CanFrame& frame) noexcept;
+
+  /// Reads `frame`, which came in control tick `tick`, if it is this drive's. False: it is not, or
+  /// is none that a drive could send (then it counts as bad()).
+  bool take(const CanFrame& frame, std::uint64_t tick) noexcept;
+
+  /// Its bus went off: nothing is sent until the robot was told to be off.
+  void lose_bus() noexcept;
+
+  // The newest state, at the joint.
+  double position_rad() const noexcept { return position_rad_; }
+  double velocity_radps() const noexcept { return velocity_radps_; }
+  double torque_nm() const noexcept { return torque_nm_; }
+  std::uint64_t fault() const noexcept { return maker_fault_ | trouble_; }
+  std::uint64_t tick() const noexcept { return tick_; }
+  double temperature_degc() const noexcept { return temperature_degc_; }  ///< NaN: it does not say
+  double voltage_v() const noexcept { return voltage_v_; }                ///< NaN: it does not say
+
+  std::uint64_t sent() const noexcept { return sent_; }
+  std::uint64_t replies() const noexcept { return replies_; }
+  std::uint64_t bad() const noexcept { return bad_; }
+  bool off() const noexcept { return phase_ == Phase::kOff; }
+
+ private:
+  enum class Phase : std::uint8_t { kOff, kEnabling, kOn, kLost };
+
+  void enable_frame(CanFrame& frame) const noexcept;
+  bool take_mit(const CanFrame& frame) noexcept;
+  bool take_moteus(const CanFrame& frame) noexcept;
+  void judge_power(bool known, bool enabled) noexcept;
+  void judge_supply() noexcept;
+  void set(DriveTrouble trouble, bool on) noexcept;
+
+  DriveConfig config_;
+  bool torque_only_ = false;
+  double temperature_limit_degc_ = 0.0, voltage_low_v_ = 0.0, voltage_high_v_ = 0.0;
+  double timeout_s_ = 0.0;
+
+  Phase phase_ = Phase::kOff;
+  std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0, off_in_a_row_ = 0;
+  double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
+  double temperature_degc_, voltage_v_;
+  std::uint64_t maker_fault_ = 0, trouble_ = 0, tick_ = 0;
+  std::uint64_t sent_ = 0, replies_ = 0, bad_ = 0;
+};
+
+/// What a joint's drive_fault means, for a person: "rotor over temperature", "switched off".
+std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault);
+
+}  // namespace sandrunner

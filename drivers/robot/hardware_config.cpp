@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/hardware_config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "drivers/can/mit_models.h"
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr int kMostBuses = 12;
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+
+BusConfig read_bus(ConfigTree& t, const std::vector<BusConfig>& before) {
+  BusConfig bus;
+  bus.interface = t.text("interface", "");
+  if (bus.interface.empty()) {
+    throw InputError(
+        fmt::format("hardware.bus[{}]: found no interface, expected a name (can0)", before.size()));
+  }
+  for (const BusConfig& other : before) {
+    if (other.interface == bus.interface) {
+      throw InputError(fmt::format("hardware.bus[{}].interface: '{}' stands twice", before.size(),
+                                   bus.interface));
+    }
+  }
+  const std::string protocol = t.choice("protocol", "", {"mit", "moteus"});
+  if (protocol.empty()) {
+    throw InputError(fmt::format("hardware.bus[{}] ({}): found no protocol, expected mit or moteus",
+                                 before.size(), bus.interface));
+  }
+  bus.protocol = protocol == "mit" ? Protocol::kMit : Protocol::kMoteus;
+  const bool fd = bus.protocol == Protocol::kMoteus || t.flag("fd", false);
+  bus.format = fd ? CanFormat::kFdWithBitRateSwitch : CanFormat::kClassic;
+  bus.rates.nominal_hz = t.number("bitrate_bps", bus.rates.nominal_hz, 1e4, 1e6);
+  if (fd) bus.rates.data_hz = t.number("data_bitrate_bps", bus.rates.data_hz, 1e4, 8e6);
+  return bus;
+}
+
+int bus_index(const std::vector<BusConfig>& buses, const std::string& name,
+              const std::string& joint) {
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    if (buses[i].interface == name) return static_cast<int>(i);
+  }
+  throw InputError(
+      fmt::format("hardware.drive of {}: bus '{}' is none of hardware.bus", joint, name));
+}
+
+MitDrive read_mit(ConfigTree& t, const std::string& where, CanFormat format) {
+  const std::string name = t.text("model", "");
+  const MitModel* const model = find_mit_model(name);
+  if (model == nullptr) {
+    std::vector<std::string_view> names;
+    for (const MitModel& m : mit_models()) names.push_back(m.name);
+    throw InputError(
+        fmt::format("{}: model '{}', expected one of {}", where, name, fmt::join(names, ", ")));
+  }
+  MitDrive drive;
+  drive.variant = model->variant;
+  drive.format = format;
+  drive.limits = model->limits;
+  drive.reply_id = static_cast<std::uint16_t>(t.integer("reply_id", 0, 0, 0x7FE));
+  // Whoever has changed them in the drive says so here.
+  MitLimits& l = drive.limits;
+  l.position_rad = t.number("position_rad", l.position_rad, 0.1, 1e3);
+  l.velocity_radps = t.number("velocity_radps", l.velocity_radps, 0.1, 1e3);
+  l.torque_nm = t.number("torque_nm", l.torque_nm, 0.1, 1e3);
+  l.reply_torque_nm = t.number("reply_torque_nm", l.torque_nm, 0.1, 1e3);
+  return drive;
+}
+
+MoteusDrive read_moteus(ConfigTree& t, const std::string& where, double& max_torque_nm) {
+  const auto required = [&](const char* key, double most) {
+    const double value = t.number(key, 0.0, 1e-6, most);
+    if (value == 0.0) {
+      throw InputError(
+          fmt::format("{}: found no {}, expected that of the drive's configuration", where, key));
+    }
+    return value;
+  };
+  MoteusDrive drive;
+  drive.kp_nmprev = required("kp_nmprev", 1e6);
+  drive.kd_nmsprev = required("kd_nmsprev", 1e5);
+  max_torque_nm = required("max_torque_nm", 300.0);
+  return drive;
+}
+
+DriveConfig read_drive(ConfigTree& t, const std::string& joint, const HardwareConfig& hardware) {
+  const std::string where = fmt::format("hardware.drive of {}", joint);
+  DriveConfig drive;
+  drive.bus = bus_index(hardware.buses, t.text("bus", ""), joint);
+  const BusConfig& bus = hardware.buses[drive.bus];
+  drive.protocol = bus.protocol;
+  const auto id = static_cast<std::uint8_t>(t.integer("id", 0, 1, 126));
+  if (id == 0) throw InputError(where + ": found no id, expected 1 to 126");
+  if (bus.protocol == Protocol::kMit) {
+    drive.mit = read_mit(t, where, bus.format);
+    drive.mit.motor_id = id;
+    drive.max_torque_nm = drive.mit.limits.torque_nm;
+  } else {
+    drive.moteus = read_moteus(t, where, drive.max_torque_nm);
+    drive.moteus.id = id;
+  }
+  drive.sign = static_cast<int>(t.integer("sign", 1, -1, 1));
+  if (drive.sign == 0) throw InputError(where + ": sign 0, expected 1 or -1");
+  drive.gear = t.number("gear", 1.0, 0.01, 100.0);
+  drive.zero_rad = t.number("zero_rad", 0.0, -10.0, 10.0);
+  return drive;
+}
+
+/// What a joint may be told must be within what its drive's numbers can say.
+void require_range(const DriveConfig& d, int j, const std::string& joint, double torque_scale,
+                   const GateConfig& gate) {
+  const auto check = [&](const char* what, double needed, double range, const char* unit) {
+    if (needed <= range) return;
+    throw InputError(
+        fmt::format("hardware.drive of {}: {} up to {:.4g} {} needed, {:.4g} is what "
+                    "the drive can be told",
+                    joint, what, needed, unit, range));
+  };
+  const bool mit = d.protocol == Protocol::kMit;
+  const MitLimits& l = d.mit.limits;
+  check("torque", torque_scale * gate.torque_limit_nm[j], d.gear * d.max_torque_nm, "N m");
+  check("kp", gate.kp_limit_nmprad,
+        d.gear * d.gear * (mit ? l.kp_nmprad : d.moteus.kp_nmprev / kTurn_rad), "N m/rad");
+  check("kd", gate.kd_limit_nmsprad,
+        d.gear * d.gear * (mit ? l.kd_nmsprad : d.moteus.kd_nmsprev / kTurn_rad), "N m s/rad");
+  if (!mit) return;
+  check("speed", gate.speed_limit_radps[j], l.velocity_radps / d.gear, "rad/s");
+  const double farthest_rad = std::max(std::fabs(gate.joint_lower_rad[j] - d.zero_rad),
+                                       std::fabs(gate.joint_upper_rad[j] - d.zero_rad));
+  check("position", farthest_rad, l.position_rad / d.gear, "rad from its zero");
+}
+
+void require_one_id_each(const HardwareConfig& h, const RobotDescription& robot) {
+  for (int a = 0; a < kNumJoints; ++a) {
+    for (int b = 0; b < a; ++b) {
+      if (h.drives[a].bus != h.drives[b].bus || h.drives[a].id() != h.drives[b].id()) continue;
+      throw InputError(fmt::format("hardware.drive of {}: id {} on {} is that of {}",
+                                   robot.joint_names[a], h.drives[a].id(),
+                                   h.buses[h.drives[a].bus].interface, robot.joint_names[b]));
+    }
+  }
+}
+
+void read_drives(ConfigTree& config, const RobotDescription& robot, const GateConfig& gate,
+                 HardwareConfig& h) {
+  std::array<bool, kNumJoints> seen{};
+  for (ConfigTree& t : config.tables("hardware.drive")) {
+    const std::string joint = t.text("joint", "");
+    const auto found = std::find(robot.joint_names.begin(), robot.joint_names.end(), joint);
+    if (found == robot.joint_names.end()) {
+      throw InputError(fmt::format("hardware.drive: joint '{}', expected one of {}", joint,
+                                   fmt::join(robot.joint_names, ", ")));
+    }
+    const auto j = static_cast<int>(found - robot.joint_names.begin());
+    if (seen[j]) throw InputError(fmt::format("hardware.drive: joint {} stands twice", joint));
+    seen[j] = true;
+    h.drives[j] = read_drive(t, joint, h);
+    require_range(h.drives[j], j, joint, h.torque_scale, gate);
+  }
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (seen[j]) continue;
+    throw InputError(fmt::format("hardware.drive: found none of joint {}", robot.joint_names[j]));
+  }
+  require_one_id_each(h, robot);
+}
+
+MipImuConfig read_imu(ConfigTree& config) {
+  MipImuConfig imu;
+  imu.device = config.text("hardware.imu.device", "");
+  if (imu.device.empty()) {
+    throw InputError("hardware.imu.device: found none, expected a serial line (/dev/ttyS0)");
+  }
+  imu.baud = static_cast<unsigned>(config.integer("hardware.imu.baud", imu.baud, 9600, 4'000'000));
+  imu.rate_hz = static_cast<int>(config.integer("hardware.imu.rate_hz", imu.rate_hz, 100, 1000));
+  imu.quaternion_rate_hz = static_cast<int>(
+      config.integer("hardware.imu.quaternion_rate_hz", std::min(imu.rate_hz, 500), 100, 1000));
+  const std::vector<double> rpy_deg =
+      config.numbers("hardware.imu.mounting_rpy_deg", {0.0, 0.0, 0.0}, 3, -360.0, 360.0);
+  Vector3 rpy_rad;
+  for (int i = 0; i < 3; ++i) rpy_rad[i] = rpy_deg[i] * std::numbers::pi / 180.0;
+  imu.mounting = ImuMounting::from_rpy(rpy_rad);
+  check(imu);
+  return imu;
+}
+
+}  // namespace
+
+HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
+                                    const GateConfig& gate) {
+  HardwareConfig h;
+  h.mode = config.choice("hardware.mode", "gains", {"gains", "torque"}) == "gains"
+               ? DriveMode::kGains
+               : DriveMode::kTorque;
+  h.rate_hz = static_cast<int>(config.integer("hardware.rate_hz", h.rate_hz, 200, kControlHz));
+  if (kControlHz % h.rate_hz != 0) {
+    throw InputError(
+        fmt::format("hardware.rate_hz: {}, expected a whole part of {} (4000, 2000, "
+                    "1000, 800, 500, ...)",
+                    h.rate_hz, kControlHz));
+  }
+  h.drive_timeout_s = config.number("hardware.drive_timeout_s", h.drive_timeout_s, 0.005, 0.1);
+  h.timeout_unverified = config.flag("hardware.timeout_unverified", false);
+  h.temperature_limit_degc =
+      config.number("hardware.temperature_limit_degc", h.temperature_limit_degc, 0.0, 150.0);
+  h.voltage_low_v = config.number("hardware.voltage_low_v", h.voltage_low_v, 0.0, 1e3);
+  h.voltage_high_v = config.number("hardware.voltage_high_v", h.voltage_high_v, 0.0, 1e3);
+  h.torque_scale = config.number("hardware.torque_scale", h.torque_scale, 0.0, 1.0);
+  h.hanging = config.flag("hardware.hanging", false);
+  for (ConfigTree& bus : config.tables("hardware.bus")) {
+    h.buses.push_back(read_bus(bus, h.buses));
+  }
+  if (h.buses.empty() || h.buses.size() > kMostBuses) {
+    throw InputError(
+        fmt::format("hardware.bus: found {} buses, expected 1 to {}", h.buses.size(), kMostBuses));
+  }
+  read_drives(config, robot, gate, h);
+  h.imu = read_imu(config);
+  return h;
+}
+
+void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
+  const auto ticks = static_cast<std::uint64_t>(h.ticks_per_exchange());
+  // A value is sent for in one exchange, comes in the ticks up to the next one, and may be lost:
+  // two losses in a row are a fault.
+  gate.joints_limit_ticks = std::max(gate.joints_limit_ticks, ticks + 2);
+  gate.joints_fault_ticks = std::max(gate.joints_fault_ticks, 3 * ticks);
+  const auto imu_ticks = static_cast<std::uint64_t>(kControlHz / h.imu.rate_hz);
+  gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
+  for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
+  gate.hanging = h.hanging;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/can/bus_load.h"
+#include "drivers/can/mit.h"
+#include "drivers/can/moteus.h"
+#include "drivers/imu/mip_imu.h"
+#include "rt/base/config_tree.h"
+#include "rt/core/gate_config.h"
+#include "rt/core/messages.h"
+#include "rt/core/robot_description.h"
+
+namespace sandrunner {
+
+/// What a bus speaks.
+enum class Protocol : std::uint8_t { kMit, kMoteus };
+
+/// Who closes the joint's loop.
+enum class DriveMode : std::uint8_t {
+  kGains,  ///< the drive, by the whole JointCommand
+  kTorque  ///< the host: drives get a torque
+};
+
+/// One CAN bus. The bit rates are the interface's own (`ip link`); here they serve the plan of its
+/// load.
+struct BusConfig {
+  std::string interface;
+  Protocol protocol = Protocol::kMit;
+  CanFormat format = CanFormat::kClassic;
+  BusRates rates;
+};
+
+/// One drive and the joint that it moves: joint = sign x drive / gear + zero, torques and gains
+/// accordingly.
+struct DriveConfig {
+  Protocol protocol = Protocol::kMit;
+  int bus = 0;                 ///< index into HardwareConfig::buses
+  MitDrive mit;                ///< if it speaks that ...
+  MoteusDrive moteus;          ///< ... or this
+  double max_torque_nm = 0.0;  ///< that it can be told, at its output
+  int sign = 1;
+  double gear = 1.0;      ///< turns of the drive's output for one of the joint
+  double zero_rad = 0.0;  ///< joint's position where the drive's is zero
+
+  int id() const noexcept { return protocol == Protocol::kMit ? mit.motor_id : moteus.id; }
+};
+
+/// Table [hardware]: the drives of a robot, which joint each moves, and its IMU.
+struct HardwareConfig {
+  DriveMode mode = DriveMode::kGains;
+  int rate_hz = 1000;               ///< of the exchange with every drive; divides the control rate
+  double drive_timeout_s = 0.05;    ///< after which a drive without commands lets go
+  bool timeout_unverified = false;  ///< drives that cannot tell theirs are taken at the user's word
+  double temperature_limit_degc = 80.0;              ///< a hotter drive is a fault
+  double voltage_low_v = 0.0, voltage_high_v = 1e3;  ///< a supply outside is a fault
+  double torque_scale = 1.0;                         ///< of every torque limit, for first walks
+  bool hanging = false;  ///< the robot hangs in a frame: falls and tilts are not judged
+  std::vector<BusConfig> buses;
+  JointArray<DriveConfig> drives;
+  MipImuConfig imu;
+
+  int ticks_per_exchange() const noexcept { return kControlHz / rate_hz; }
+};
+
+/// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu]. Drives are
+/// named by the joints of `robot`, each exactly once. Throws InputError: a joint without a drive or
+/// with two, two drives of one identifier, an unknown protocol or model, a rate that does not
+/// divide the control rate, a drive whose range is below what `gate` lets through (torque, speed,
+/// positions).
+HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
+                                    const GateConfig& gate);
+
+/// What hardware changes of the gate's thresholds: ages follow the rate of the exchange.
+void adapt_gate(const HardwareConfig& hardware, GateConfig& gate) noexcept;
+
+}  // namespace sandrunner

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/drive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/drivers/robot/example.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr JointSetPoint kPoint{0.5, 0.0, 50.0, 0.5, 0.0};
+
+/// A drive of MIT's protocol with the drive itself at its other end.
+class MitPair {
+ public:
+  explicit MitPair(const std::string& model = "AK10-9",
+                   const std::vector<std::string>& assignments = {}) {
+    config_ = example_hardware("mit", assignments);
+    config_.drives[0].mit.variant = model == "AK10-9" ? MitVariant::kCubeMars : MitVariant::kDamiao;
+    drive = Drive(config_.drives[0], config_);
+    state.temperature_degc = state.rotor_temperature_degc = 30.0;
+  }
+
+  DriveConfig& config() { return config_.drives[0]; }
+  void apply() { drive = Drive(config_.drives[0], config_); }
+
+  /// One exchange; what the drive was sent.
+  MitRequest exchange(const JointSetPoint* point, bool answered = true) {
+    CanFrame frame;
+    MitRequest request;
+    if (!drive.next_frame(point, tick_, frame)) {
+      ADD_FAILURE() << "nothing sent";
+      return request;
+    }
+    EXPECT_EQ(decode_mit_request(config().mit, frame, request), MitStatus::kOk);
+    tick_ += 5;
+    if (answered) {
+      CanFrame reply;
+      EXPECT_EQ(encode_mit_reply(config().mit, state, reply), MitStatus::kOk);
+      EXPECT_TRUE(drive.take(reply, tick_));
+    }
+    return request;
+  }
+  bool said(DriveTrouble trouble) const {
+    return (drive.fault() & static_cast<std::uint64_t>(trouble)) != 0;
+  }
+
+  MitReply state;
+  Drive drive;
+
+ private:
+  HardwareConfig config_;
+  std::uint64_t tick_ = 0;
+};
+
+void expect_special(const MitRequest& request, MitSpecial special) {
+  EXPECT_TRUE(request.is_special);
+  EXPECT_EQ(static_cast<int>(request.special), static_cast<int>(special));
+}
+
+TEST(DriveTest, IsToldToBeOffUntilThereIsASetPoint) {
+  MitPair pair;
+  for (int i = 0; i < 10; ++i) expect_special(pair.exchange(nullptr), MitSpecial::kDisable);
+  EXPECT_TRUE(pair.drive.off());
+}
+
+TEST(DriveTest, GetsSetPointsOnceItHasAnsweredAsEnabled) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kDisabled;
+  pair.exchange(nullptr);
+  for (int i = 0; i < 5; ++i) expect_special(pair.exchange(&kPoint), MitSpecial::kEnable);
+  pair.state.power = MitPower::kEnabled;
+  expect_special(pair.exchange(&kPoint), MitSpecial::kEnable);
+  const MitRequest request = pair.exchange(&kPoint);
+  ASSERT_FALSE(request.is_special);
+  EXPECT_NEAR(request.command.position_rad, 0.5, 4e-4);
+  EXPECT_NEAR(request.command.kp_nmprad, 50.0, 0.13);
+}
+
+TEST(DriveTest, ThatDoesNotSayWhetherItIsEnabledIsTakenToBeAfterThreeReplies) {
+  MitPair pair;
+  pair.exchange(nullptr);
+  for (int i = 0; i < 3; ++i) expect_special(pair.exchange(&kPoint), MitSpecial::kEnable);
+  EXPECT_FALSE(pair.exchange(&kPoint).is_special);
+}
+
+TEST(DriveTest, ThatDoesNotLetItselfBeEnabledIsAFault) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kDisabled;
+  for (int i = 0; i < 80; ++i) pair.exchange(&kPoint);
+  EXPECT_FALSE(pair.said(DriveTrouble::kNotEnabled)) << "after 99 ms";
+  for (int i = 0; i < 5; ++i) pair.exchange(&kPoint);
+  EXPECT_TRUE(pair.said(DriveTrouble::kNotEnabled));
+  pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.fault(), 0u);
+}
+
+TEST(DriveTest, ThatSwitchesItselfOffIsAFaultAndIsNotEnabledAgainUntilTheRobotWasOff) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kEnabled;
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  EXPECT_FALSE(pair.exchange(&kPoint).is_special);
+  pair.state.power = MitPower::kDisabled;  // it was rebooted
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  EXPECT_TRUE(pair.said(DriveTrouble::kSwitchedOff));
+  pair.state.power = MitPower::kEnabled;
+  for (int i = 0; i < 5; ++i) expect_special(pair.exchange(&kPoint), MitSpecial::kDisable);
+  pair.exchange(nullptr);
+  expect_special(pair.exchange(&kPoint), MitSpecial::kEnable);
+}
+
+TEST(DriveTest, WhoseBusWasOffIsSentNothingUntilTheRobotWasOff) {
+  MitPair pair;
+  for (int i = 0; i < 5; ++i) pair.exchange(&kPoint);
+  pair.drive.lose_bus();
+  CanFrame frame;
+  EXPECT_FALSE(pair.drive.next_frame(&kPoint, 100, frame));
+  EXPECT_TRUE(pair.said(DriveTrouble::kBusOff));
+  expect_special(pair.exchange(nullptr), MitSpecial::kDisable);
+  EXPECT_EQ(pair.drive.fault(), 0u);
+  expect_special(pair.exchange(&kPoint), MitSpecial::kEnable);
+}
+
+TEST(DriveTest, SignGearAndZeroTurnTheJointIntoTheDrive) {
+  MitPair pair;
+  pair.config().sign = -1;
+  pair.config().gear = 2.0;
+  pair.config().zero_rad = 0.3;
+  pair.apply();
+  pair.state.position_rad = 1.0;
+  pair.state.velocity_radps = 2.0;
+  pair.state.torque_nm = 4.0;
+  const JointSetPoint point{0.8, 1.0, 40.0, 2.0, 6.0};
+  for (int i = 0; i < 4; ++i) pair.exchange(&point);
+  EXPECT_NEAR(pair.drive.position_rad(), 0.3 - 0.5, 2e-4);
+  EXPECT_NEAR(pair.drive.velocity_radps(), -1.0, 7e-3);
+  EXPECT_NEAR(pair.drive.torque_nm(), -8.0, 0.04);
+  const MitCommand told = pair.exchange(&point).command;
+  EXPECT_NEAR(told.position_rad, -2.0 * 0.5, 4e-4);
+  EXPECT_NEAR(told.velocity_radps, -2.0, 0.02);
+  EXPECT_NEAR(told.kp_nmprad, 10.0, 0.13);
+  EXPECT_NEAR(told.kd_nmsprad, 0.5, 2e-3);
+  EXPECT_NEAR(told.torque_nm, -3.0, 0.04);
+}
+
+TEST(DriveTest, AJointAtRestHasNoSpeed) {
+  MitPair pair;
+  pair.state.velocity_radps = 0.0;  // which no code of the protocol means
+  pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.velocity_radps(), 0.0);
+  pair.state.velocity_radps = 0.05;
+  pair.exchange(nullptr);
+  EXPECT_NEAR(pair.drive.velocity_radps(), 0.05, 0.013);
+}
+
+TEST(DriveTest, HeatIsAFaultAsLongAsItLasts) {
+  MitPair pair;
+  pair.state.temperature_degc = 79.0;
+  pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.fault(), 0u);
+  pair.state.temperature_degc = 81.0;
+  pair.exchange(nullptr);
+  EXPECT_TRUE(pair.said(DriveTrouble::kHot));
+  EXPECT_EQ(drive_fault_words(pair.config(), pair.drive.fault()), "too hot");
+  pair.state.temperature_degc = 60.0;
+  pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.fault(), 0u);
+}
+
+TEST(DriveTest, FramesOfOthersAreNotTakenAndWrongLengthsCounted) {
+  MitPair pair;
+  CanFrame reply;
+  ASSERT_EQ(encode_mit_reply(pair.config().mit, pair.state, reply), MitStatus::kOk);
+  CanFrame other = reply;
+  other.data[0] = 2;
+  EXPECT_FALSE(pair.drive.take(other, 1));
+  EXPECT_EQ(pair.drive.bad(), 0u);
+  CanFrame cut = reply;
+  cut.length = 6;
+  EXPECT_FALSE(pair.drive.take(cut, 1));
+  EXPECT_EQ(pair.drive.bad(), 1u);
+  EXPECT_TRUE(pair.drive.take(reply, 1));
+}
+
+/// A moteus, and what it answers.
+class MoteusPair {
+ public:
+  explicit MoteusPair(const std::vector<std::string>& assignments = {})
+      : config_(example_hardware("moteus", assignments)), drive(config_.drives[0], config_) {
+    state.position_rad = state.velocity_radps = state.torque_nm = 0.0;
+  }
+  MoteusRequest exchange(const JointSetPoint* point) {
+    CanFrame frame, reply;
+    MoteusRequest request;
+    EXPECT_TRUE(drive.next_frame(point, tick_, frame));
+    tick_ += 4;
+    EXPECT_EQ(decode_moteus_request(config_.drives[0].moteus, frame, request), MoteusStatus::kOk);
+    EXPECT_EQ(encode_moteus_reply(config_.drives[0].moteus, request, state, reply),
+              MoteusStatus::kOk);
+    EXPECT_TRUE(drive.take(reply, tick_));
+    return request;
+  }
+
+  MoteusReply state;
+
+ private:
+  HardwareConfig config_;
+  std::uint64_t tick_ = 0;
+
+ public:
+  Drive drive;
+};
+
+TEST(DriveTest, MoteusIsStoppedUntilThereIsASetPointAndToldWhenToLetGo) {
+  MoteusPair pair;
+  EXPECT_EQ(pair.exchange(nullptr).mode, MoteusMode::kStopped);
+  const MoteusRequest first = pair.exchange(&kPoint);
+  EXPECT_EQ(first.mode, MoteusMode::kPosition);
+  EXPECT_EQ(first.kp_scale, 0.0) << "its first command gives no torque";
+  EXPECT_EQ(first.torque_nm, 0.0);
+  pair.state.mode = MoteusMode::kPosition;
+  pair.exchange(&kPoint);
+  const MoteusRequest request = pair.exchange(&kPoint);
+  EXPECT_NEAR(request.position_rad, 0.5, 4e-4);
+  EXPECT_NEAR(request.kp_scale * 1300.0 / (2.0 * M_PI), 50.0, 0.01);
+  EXPECT_NEAR(request.watchdog_s, 0.05, 1e-3);
+  EXPECT_NEAR(request.max_torque_nm, 65.0, 0.01);
+}
+
+TEST(DriveTest, MoteusDampsByItsOwnGainAloneWithoutAPosition) {
+  MoteusPair pair;
+  pair.state.mode = MoteusMode::kPosition;
+  const JointSetPoint damping{0.0, 0.0, 0.0, 2.0, 0.0};
+  for (int i = 0; i < 3; ++i) pair.exchange(&damping);
+  const MoteusRequest request = pair.exchange(&damping);
+  EXPECT_TRUE(std::isnan(request.position_rad));
+  EXPECT_NEAR(request.kd_scale * 26.0 / (2.0 * M_PI), 2.0, 0.01);
+}
+
+TEST(DriveTest, MoteusThatTimedOutIsAFaultAndStopped) {
+  MoteusPair pair;
+  pair.state.mode = MoteusMode::kPosition;
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  pair.state.mode = MoteusMode::kTimeout;
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  EXPECT_NE(pair.drive.fault(), 0u);
+  EXPECT_EQ(pair.exchange(&kPoint).mode, MoteusMode::kStopped);
+}
+
+TEST(DriveTest, MoteusGetsTorqueAloneWhereTheHostClosesTheLoop) {
+  MoteusPair pair({"hardware.mode=torque"});
+  pair.state.mode = MoteusMode::kPosition;
+  const JointSetPoint point{.torque_nm = 12.0};
+  for (int i = 0; i < 3; ++i) pair.exchange(&point);
+  const MoteusRequest request = pair.exchange(&point);
+  EXPECT_NEAR(request.torque_nm, 12.0, 0.01);
+  EXPECT_EQ(request.kp_scale, 0.0);
+  EXPECT_EQ(request.kd_scale, 0.0);
+}
+
+}  // namespace
+}  // namespace sandrunner

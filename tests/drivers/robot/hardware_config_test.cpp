@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/hardware_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/drivers/robot/example.h"
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+namespace {
+
+using testing::HasSubstr;
+
+std::string text_of(const std::string& name) {
+  std::ifstream file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + name + ".toml");
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// What reading says of an example in which the first `from` became `to`.
+std::string refusal(const std::string& name, const std::string& from, const std::string& to) {
+  std::string text = text_of(name);
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  ConfigTree tree;
+  tree.add_text(text, "test.toml");
+  try {
+    read_hardware_config(tree, example_robot(), example_gate());
+    tree.reject_unknown();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(HardwareConfigTest, ExamplesNameEveryJointOnce) {
+  for (const char* name : {"mit", "moteus"}) {
+    const HardwareConfig config = example_hardware(name);
+    EXPECT_EQ(config.buses.size(), 4u);
+    for (int j = 0; j < kNumJoints; ++j) {
+      EXPECT_EQ(config.drives[j].bus, j / 3);
+      EXPECT_EQ(config.drives[j].id(), j % 3 + 1);
+    }
+  }
+  EXPECT_EQ(example_hardware("moteus").ticks_per_exchange(), 4);
+  EXPECT_EQ(example_hardware("mit").ticks_per_exchange(), 5);
+}
+
+TEST(HardwareConfigTest, RefusesWhatCannotWork) {
+  EXPECT_THAT(refusal("mit", "\"LF_HFE\"", "\"LF_HAA\""), HasSubstr("LF_HAA stands twice"));
+  EXPECT_THAT(refusal("mit", "\"LF_HFE\"", "\"LF_TOE\""), HasSubstr("'LF_TOE', expected one of"));
+  EXPECT_THAT(refusal("mit", "id = 2", "id = 1"), HasSubstr("id 1 on can0 is that of LF_HAA"));
+  EXPECT_THAT(refusal("mit", "\"mit\"", "\"canopen\""), HasSubstr("canopen"));
+  EXPECT_THAT(refusal("mit", "protocol = \"mit\"", ""), HasSubstr("found no protocol"));
+  EXPECT_THAT(refusal("mit", "model = \"AK10-9\"", ""), HasSubstr("expected one of AK80-6 V1.0"));
+  EXPECT_THAT(refusal("mit", "\"AK10-9\"", "\"AK80-9 V2\""),
+              HasSubstr("torque up to 63.45 N m needed, 18"));
+  EXPECT_THAT(refusal("mit", "bus = \"can0\"", "bus = \"can9\""), HasSubstr("bus 'can9' is none"));
+  EXPECT_THAT(refusal("mit", "\"can1\"", "\"can0\""), HasSubstr("'can0' stands twice"));
+  EXPECT_THAT(refusal("mit", "sign = 1", "sign = 0"), HasSubstr("sign 0"));
+  EXPECT_THAT(refusal("mit", "sign = 1", "position_rad = 2.0"), HasSubstr("rad from its zero needed"));
+  EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate_hz = 900"), HasSubstr("whole part of 4000"));
+  EXPECT_THAT(refusal("mit", "baud = 921600", "baud = 115200"), HasSubstr("115200"));
+  EXPECT_THAT(refusal("mit", "device = \"/dev/ttyS1\"", ""), HasSubstr("hardware.imu.device"));
+  EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate = 800"), HasSubstr("rate"));
+  EXPECT_THAT(refusal("moteus", "kp_nmprev = 1300.0", ""), HasSubstr("found no kp_nmprev"));
+  EXPECT_THAT(refusal("moteus", "kp_nmprev = 1300.0", "kp_nmprev = 600.0"),
+              HasSubstr("kp up to 200 N m/rad needed, 95.49"));
+  EXPECT_THAT(refusal("moteus", "max_torque_nm = 65.0", ""), HasSubstr("found no max_torque_nm"));
+}
+
+TEST(HardwareConfigTest, AJointWithoutADriveIsNamed) {
+  std::string text = text_of("mit");
+  text.resize(text.rfind("[[hardware.drive]]"));
+  ConfigTree tree;
+  tree.add_text(text, "test.toml");
+  try {
+    read_hardware_config(tree, example_robot(), example_gate());
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("found none of joint RH_KFE"));
+  }
+}
+
+TEST(HardwareConfigTest, AgesOfTheGateFollowTheRateOfTheExchange) {
+  GateConfig gate = example_gate();
+  adapt_gate(example_hardware("moteus", {"hardware.rate_hz=500", "hardware.torque_scale=0.5"}),
+             gate);
+  EXPECT_EQ(gate.joints_limit_ticks, 10u);
+  EXPECT_EQ(gate.joints_fault_ticks, 24u);
+  EXPECT_DOUBLE_EQ(gate.torque_limit_nm[3], 0.5 * 63.45);
+  EXPECT_FALSE(gate.hanging);
+}
+
+TEST(HardwareConfigTest, EveryTorqueCommandOfAScaledRobotFitsASmallerDrive) {
+  EXPECT_EQ(example_hardware("mit", {"hardware.torque_scale=0.2"}).torque_scale, 0.2);
+}
+
+}  // namespace
+}  // namespace sandrunner
