@@ -13,7 +13,8 @@ import sys
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
-    ["rt/plot", "policy", "estimator", "drivers/imu"],
+    ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
+    ["drivers/robot"],
     ["sim/lanes"],
     ["sim/robot"],
     ["sim/ground"],
@@ -29,7 +30,7 @@ LAYERS = [
     ["tools/bench", "tools/ctl", "tools/evaluate", "tools/policy", "tools/replay", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
-NO_SIMULATOR = ("rt/core/", "rt/loop/", "rt/realtime/", "rt/report/", "rt/telemetry/")
+NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/realtime/", "rt/report/", "rt/telemetry/")
 TOP_FOLDERS = ("rt", "drivers", "policy", "estimator", "sim", "tools")
 
 

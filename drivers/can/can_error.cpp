@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/can/can_error.h"
+
+#include <linux/can.h>
+#include <linux/can/error.h>
+
+namespace sandrunner {
+namespace {
+
+// Newer than the kernel headers of Debian 12 in some releases.
+constexpr std::uint32_t kCountersValid = 0x200;
+
+}  // namespace
+
+CanError decode_can_error(const CanFrame& frame) noexcept {
+  CanError error;
+  if (!frame.error) return error;
+  const auto says = [&](std::uint32_t bits) { return (frame.id & bits) != 0; };
+  error.bus_off = says(CAN_ERR_BUSOFF);
+  error.restarted = says(CAN_ERR_RESTARTED);
+  error.send_timeout = says(CAN_ERR_TX_TIMEOUT);
+  error.no_acknowledge = says(CAN_ERR_ACK);
+  error.lost_arbitration = says(CAN_ERR_LOSTARB);
+  error.protocol_violation = says(CAN_ERR_PROT);
+  error.transceiver = says(CAN_ERR_TRX);
+  error.bus_error = says(CAN_ERR_BUSERROR);
+  if (frame.length < CAN_ERR_DLC) return error;  // the details are missing
+  if (says(CAN_ERR_CRTL)) {
+    const std::uint8_t detail = frame.data[1];
+    error.receive_overflow = (detail & CAN_ERR_CRTL_RX_OVERFLOW) != 0;
+    error.send_overflow = (detail & CAN_ERR_CRTL_TX_OVERFLOW) != 0;
+    error.error_warning = (detail & (CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING)) != 0;
+    error.error_passive = (detail & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0;
+    error.error_active = (detail & CAN_ERR_CRTL_ACTIVE) != 0;
+  }
+  error.has_counters = says(kCountersValid);
+  if (error.has_counters) {
+    error.send_errors = frame.data[6];
+    error.receive_errors = frame.data[7];
+  }
+  return error;
+}
+
+const char* words(const CanError& error) noexcept {
+  if (error.bus_off) return "bus-off";
+  if (error.restarted) return "restarted after bus-off";
+  if (error.transceiver) return "transceiver fault";
+  if (error.no_acknowledge) return "nobody acknowledges";
+  if (error.error_passive) return "error passive";
+  if (error.send_timeout) return "send timeout";
+  if (error.receive_overflow) return "receive overflow";
+  if (error.send_overflow) return "send overflow";
+  if (error.error_warning) return "many errors";
+  if (error.protocol_violation) return "bit, form or stuff error";
+  if (error.bus_error) return "bus error";
+  if (error.lost_arbitration) return "lost arbitration";
+  if (error.error_active) return "errors gone";
+  return "";
+}
+
+}  // namespace sandrunner
