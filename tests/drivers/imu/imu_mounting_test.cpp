@@ -68,7 +68,7 @@ TEST(ImuMountingTest, DeviceTurnedAQuarterAboutEachOfItsAxes) {
 TEST(ImuMountingTest, GravityAgreesWithAttitudeInEveryMountingAndPose) {
   for (int m = 0; m < 64; ++m) {
     const ImuMounting mounting =
-        ImuMounting::from_rpy({kQuarter * (m % 4), kQuarter * (m / 4 % 4), 0.3 + m / 16});
+        ImuMounting::from_rpy({kQuarter * (m % 4), kQuarter * (m / 4 % 4), 0.3 * m});
     for (int i = 0; i < 50; ++i) {
       std::array<double, 4> pose{std::sin(i + 0.1), std::sin(2.0 * i + 1), std::cos(3.0 * i), 0.3};
       const double norm =
