@@ -85,12 +85,12 @@ void BlackBox::work() {
 void BlackBox::keep(const TickQueue::Batch& batch) {
   note_faults(batch);
   newest_tick_ = batch.back().input.sensors.tick;
-  window_.push_back(std::make_shared<const Block>(
-      Block{batch.front().input.sensors.tick, newest_tick_, batch.size(), compressed(batch)}));
+  window_.push_back(
+      std::make_shared<const Block>(Block{batch.front().input.sensors.tick, newest_tick_,
+                                          batch.size(), compressed(batch), replay(batch)}));
   bytes_ += window_.back()->bytes.size();
   result_.peak_bytes = std::max(result_.peak_bytes, bytes_);
   while (window_.front()->last_tick + kept_ticks_ < newest_tick_) {
-    let_go(*window_.front());
     bytes_ -= window_.front()->bytes.size();
     window_.pop_front();
   }
@@ -107,12 +107,15 @@ void BlackBox::note_faults(const TickQueue::Batch& batch) {
   }
 }
 
-void BlackBox::let_go(const Block& block) {
-  if (result_.difference) return;  // no replay gets past it
-  for (const TickRecord& tick : uncompressed(block.bytes, block.ticks)) {
+// Returns the state before these ticks.
+std::string BlackBox::replay(const TickQueue::Batch& batch) {
+  if (result_.difference) return {};  // no replay gets past it
+  std::string state = replay_state_bytes(replay_.state());
+  for (const TickRecord& tick : batch) {
     result_.difference = replay_.check(tick);
-    if (result_.difference) return;
+    if (result_.difference) break;
   }
+  return state;
 }
 
 void BlackBox::write_marked(std::uint64_t ticks_after) {
@@ -128,15 +131,15 @@ void BlackBox::write_marked(std::uint64_t ticks_after) {
 }
 
 void BlackBox::write(const Mark& mark) {
-  const ReplayState state = replay_.state();
+  const Block& first = *window_.front();
   BlackBoxFile file;
   file.fault = mark.fault;
   file.fault_tick = mark.tick;
   file.path = fmt::format("{}/black-box-{}.mcap", folder_, mark.tick);
-  file.has_start = !result_.difference.has_value();
+  file.has_start = !first.state.empty();
   RecordingInfo info = info_;
-  info.first_tick = file.has_start ? state.next_tick : window_.front()->first_tick;
-  if (file.has_start && info.first_tick > 0) info.state = replay_state_bytes(state);
+  info.first_tick = first.first_tick;
+  if (info.first_tick > 0) info.state = first.state;
   file.before_s =
       (static_cast<double>(mark.tick) - static_cast<double>(info.first_tick)) * kControlPeriod_s;
   try {
@@ -160,7 +163,13 @@ void BlackBox::write_recording(const std::string& path, const RecordingInfo& inf
   RecordingWriter writer(path, info);
   // The run goes on meanwhile, and the disk may be slow: these blocks outlive the window.
   const std::vector<std::shared_ptr<const Block>> blocks(window_.begin(), window_.end());
+  std::uint64_t bytes_at_state = 0;
   for (const std::shared_ptr<const Block>& block : blocks) {
+    // The first in a chunk: none is needed behind ticks that can be read.
+    if (!block->state.empty() && writer.bytes_written() != bytes_at_state) {
+      writer.write_state(block->first_tick, block->state);
+      bytes_at_state = writer.bytes_written();
+    }
     writer.write(uncompressed(block->bytes, block->ticks));
     keep_queued();
   }

@@ -311,6 +311,14 @@ TEST_F(BlackBoxTest, DamagedStateIsBadInput) {
   refused([](std::string& state) { state[16] = 77; }, "mode 77");
 }
 
+TEST_F(BlackBoxTest, DamagedChunkCostsItsOwnSpanOnly) {
+  open(dir());
+  walk_to(24000, {20000});
+  box_->close();
+  constexpr std::uint64_t kBlock = 400;  // states are known where blocks begin
+  expect_damage_costs_its_own_span(path(20000), read_ticks(path(20000)).ticks, kBlock);
+}
+
 // With two threads, answers come late, so that at any tick the policy may still be at work.
 TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   box_.emplace(dir(), info_, config_.controller, &policy_, 0.3);

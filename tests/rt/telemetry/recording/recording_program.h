@@ -5,13 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <regex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "rt/loop/tick_fields.h"
 #include "rt/telemetry/recording/recorder.h"
 #include "rt/telemetry/recording/recording_file.h"
+#include "tests/rt/telemetry/mcap_content.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -64,6 +69,11 @@ inline void flip(const std::string& from, const std::string& to, std::uint64_t t
   });
 }
 
+/// Places and sizes of the chunks in a file.
+inline std::vector<std::pair<std::size_t, std::size_t>> chunks_of(const std::string& bytes) {
+  return records_of_type(bytes, 0x06);
+}
+
 class RecordingProgramTest : public testing::Test {
  protected:
   /// Runs `sandrunner` or `sandrunner-replay`; returns the exit code.
@@ -79,6 +89,44 @@ class RecordingProgramTest : public testing::Test {
     return run(program, arguments, "trap '' XFSZ && ulimit -f 1172 && ");
   }
   const std::string& output() const { return output_; }
+
+  /// Damages the recording's third chunk: its ticks are lost and said to be, all others agree, but
+  /// for `next` at most, behind the damage, that are said not to be compared.
+  void expect_damage_costs_its_own_span(const std::string& path, std::uint64_t ticks,
+                                        std::uint64_t next = 0) {
+    const std::string whole = read_file(path), damaged = folder_.path("damaged.mcap");
+    const auto chunks = chunks_of(whole);
+    ASSERT_GT(chunks.size(), 4u);
+    // In its compressed bytes, and in its length: then where the next record begins is not known.
+    for (const std::size_t at : {chunks[2].first + 200, chunks[2].first + 3}) {
+      std::string bytes = whole;
+      bytes[at] ^= 0x10;
+      write_file(damaged, bytes);
+      const std::string plots = folder_.path("plots");
+      EXPECT_EQ(run(SANDRUNNER_REPLAY, damaged + " --plot '" + plots + "'"), 2);
+      const std::string text = output();
+      std::smatch span;
+      ASSERT_TRUE(
+          std::regex_search(text, span, std::regex("LOST by damage: tick (\\d+) .* to (\\d+) ")))
+          << text;
+      const std::uint64_t lost = std::stoull(span[2]) - std::stoull(span[1]) + 1;
+      EXPECT_GT(lost, 40u);
+      EXPECT_LT(lost, 2200u);  // half a second, the most that a chunk holds
+      std::smatch left_out;
+      const std::uint64_t not_compared =
+          std::regex_search(text, left_out, std::regex("(\\d+) ticks behind the damage"))
+              ? std::stoull(left_out[1])
+              : 0;
+      EXPECT_LE(not_compared, next) << text;
+      EXPECT_NE(text.find(std::to_string(ticks - lost - not_compared) + " ticks and "),
+                std::string::npos)
+          << text;
+      EXPECT_NE(text.find("every bit agrees\n"), std::string::npos) << text;
+      EXPECT_NE(text.find("sandrunner-replay: " + damaged), std::string::npos) << text;
+      EXPECT_TRUE(std::filesystem::exists(plots + "/run.png"));
+      std::filesystem::remove_all(plots);
+    }
+  }
 
   const TemporaryFolder folder_;  ///< of the recordings
 

@@ -227,38 +227,10 @@ TEST_F(RecordingTest, CutRecordingReadsUpToItsLastWholeChunk) {
   EXPECT_LT(ticks, 2000u);
 }
 
-/// Places and sizes of the chunks in a file.
-std::vector<std::pair<std::size_t, std::size_t>> chunks_of(const std::string& bytes) {
-  return records_of_type(bytes, 0x06);
-}
-
 TEST_F(RecordingTest, DamagedChunkCostsItsOwnSpanOnly) {
   ASSERT_EQ(
       run(SANDRUNNER_PROGRAM, "--start walk --duration 1 --record '" + folder_.path("") + "'"), 0);
-  const std::string whole = read_file(path());
-  const auto chunks = chunks_of(whole);
-  ASSERT_GT(chunks.size(), 4u);
-  const std::string damaged = folder_.path("damaged.mcap");
-  // In its compressed bytes, and in its length: then where the next record begins is not known.
-  for (const std::size_t at : {chunks[2].first + 200, chunks[2].first + 3}) {
-    std::string bytes = whole;
-    bytes[at] ^= 0x10;
-    write_file(damaged, bytes);
-    EXPECT_EQ(run(SANDRUNNER_REPLAY, damaged + " --plot '" + folder_.path("plots") + "'"), 2);
-    std::smatch span;
-    const std::string text = output();
-    ASSERT_TRUE(
-        std::regex_search(text, span, std::regex("LOST by damage: tick (\\d+) .* to (\\d+) ")))
-        << text;
-    const int lost = std::stoi(span[2]) - std::stoi(span[1]) + 1;
-    EXPECT_GT(lost, 40);
-    EXPECT_LT(lost, 2200);  // half a second, the most that a chunk holds
-    EXPECT_NE(text.find(std::to_string(4000 - lost) + " ticks and "), std::string::npos) << text;
-    EXPECT_NE(text.find("every bit agrees\n"), std::string::npos) << text;
-    EXPECT_NE(text.find("sandrunner-replay: " + damaged), std::string::npos) << text;
-    EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
-    std::filesystem::remove_all(folder_.path("plots"));
-  }
+  expect_damage_costs_its_own_span(path(), 4000);
 }
 
 TEST_F(RecordingTest, DamagedLastChunkIsSaidToBeLostToTheEnd) {
