@@ -37,7 +37,9 @@ struct CanSocketConfig {
 /// A frame and when the kernel received it.
 struct ReceivedFrame {
   CanFrame frame;
-  std::int64_t stamp_ns = 0;  ///< CLOCK_REALTIME: software stamps have no other clock; 0: no stamp
+  /// CLOCK_REALTIME: software stamps have no other clock. 0: no stamp, as in the first moment after
+  /// the first socket of the computer asked for them.
+  std::int64_t stamp_ns = 0;
 };
 
 enum class CanStatus : std::uint8_t {

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# tools/fuzz.sh MINUTES [NAME...]: builds the libFuzzer programs with clang and the sanitizers, and runs each, or those
+# named, for so long. What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with 1 at the
+# first finding, which lies in build/fuzz/findings.
+set -euo pipefail
+
+root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
+if ! [[ ${1:-} =~ ^[0-9]+$ ]]; then
+  echo "fuzz.sh: found '${1:-}', expected the number of minutes" >&2
+  exit 2
+fi
+seconds=$((60 * $1))
+shift
+
+bash "$root/tools/install_packages.sh" checks
+cd "$root"
+cmake --preset clang -B build/fuzz -D SANDRUNNER_FUZZ=ON >&2
+cmake --build build/fuzz --target "${@:-fuzz}" >&2
+(($#)) || set -- $(cd build/fuzz/bin && echo *_fuzz)
+mkdir -p build/fuzz/findings
+for name; do
+  mkdir -p "build/fuzz/corpus/$name"
+  echo "== $name" >&2
+  "build/fuzz/bin/$name" -max_total_time="$seconds" -max_len=16384 -artifact_prefix="build/fuzz/findings/$name-" \
+    -verbosity=0 -print_final_stats=1 "build/fuzz/corpus/$name" || exit 1
+done
