@@ -20,8 +20,7 @@ constexpr int kBitsPerByte = 10;  // start bit, 8 data bits, stop bit
 constexpr int kQuaternionSize = 18;
 constexpr int kPacketSize = 62;  // acceleration, angular rate, quaternion, reference time
 constexpr std::uint8_t kMainPort = 1;
-constexpr int kReply_ms =
-    200;  // devices take some ms, converters up to 16; the machine may be busy
+constexpr int kReply_ms = 200;        // some ms of device and converter; the machine may be busy
 constexpr int kSpeedChange_ms = 250;  // user manual, "Comm Port Speed (0x01,0x09)"
 constexpr int kFirstSample_ms = 500;
 constexpr std::int64_t kLimit_ns = 10'000'000;

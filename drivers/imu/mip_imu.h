@@ -14,7 +14,7 @@
 
 namespace sandrunner {
 
-/// A MicroStrain IMU that knows the commands of the 3DM-CV7 and later (the GX5 does not).
+/// A MicroStrain IMU that knows the commands of the 3DM-CV7 and later (a GX5's manual has others).
 struct MipImuConfig {
   std::string device;            ///< better its name in /dev/serial/by-id than /dev/ttyUSB0
   unsigned baud = 921600;        ///< of kMipBauds; the device is told to use it
@@ -89,8 +89,8 @@ class MipImu {
   /// Sends the command and waits for its answer. False: none came within the time.
   bool ask(const mip::Packet& command, int timeout_ms, mip::Reply& reply,
            std::span<std::uint8_t> response = {});
-  /// The same, twice if need be; InputError where there is none, or it is a refusal. `what` the
-  /// command was to do, for the message.
+  /// The same, three times if need be; InputError where there is no answer, or a refusal. `what`:
+  /// what the command was to do, for the message.
   void demand(const mip::Packet& command, const char* what, std::span<std::uint8_t> response = {});
   /// The speed at which the device answers.
   unsigned find_speed();
