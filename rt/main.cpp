@@ -30,6 +30,7 @@
 #include "rt/run/run.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
+#include "rt/telemetry/view/view_page.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 
@@ -52,14 +53,15 @@ std::string recording_line(const RecordingResult& r, const std::string& dir) {
 
 // Writes the files of --out; returns the line that names them. Throws InputError.
 std::string write_results(const RunResult& result, const RunInfo& info,
-                          const std::string& effective, const std::string& folder) {
+                          const std::string& effective, ViewPage& page, const std::string& folder) {
   const std::string dir = folder + "/";
   write_file(dir + "summary.json", summary_json(result, info));
   write_file(dir + "config.toml", effective);
   write_csv(result.record, dir + "run.csv");
   draw_run_plot(result.record, dir + "run.png");
-  std::string line =
-      fmt::format("wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.png", dir);
+  write_file(dir + "run.html", page.html());
+  std::string line = fmt::format(
+      "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.html, {0}run.png", dir);
   if (result.record.has_truth()) {
     draw_run_strip(result.record, dir + "strip.png");
     line += fmt::format(", {}strip.png", dir);
@@ -111,13 +113,15 @@ struct Listeners {
   std::optional<DdsBridge> dds;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<BlackBox> black_box;
+  std::optional<ViewPage> page;
 
   TickTap tap() {
-    if (!recorder && !black_box && !dds) return {};
+    if (!recorder && !black_box && !dds && !page) return {};
     return [this](const TickRecord& tick) {
       if (recorder) recorder->add(tick);
       if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
+      if (page) page->add(tick);
     };
   }
   void begin(std::int64_t start_ns) {
@@ -160,6 +164,9 @@ int run(int argc, char** argv) {
   TheRobot robot = make_robot(*options, config);
   signals.cut_in_a_crash(robot.io());
 
+  const RunScene scene = scene_of(config, policy.spec().name);
+  if (out) listeners.page.emplace(scene, config.robot.description);
+
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunParts parts{
       .robot = robot.io(),
@@ -168,7 +175,7 @@ int run(int argc, char** argv) {
       .command = command,
       .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
       .live = listeners.dds ? listeners.dds->op() : nullptr,
-      .scene = scene_of(config, policy.spec().name),
+      .scene = scene,
       .keep_record = out,
       .progress = terminal ? show_progress : std::function<void(const RunSample&)>(),
       .tap = listeners.tap(),
@@ -191,7 +198,9 @@ int run(int argc, char** argv) {
   std::string written;
   std::exception_ptr not_written;
   try {
-    if (out) written = write_results(result, info, config.effective, options->out_dir);
+    if (out) {
+      written = write_results(result, info, config.effective, *listeners.page, options->out_dir);
+    }
   } catch (const InputError&) {
     not_written = std::current_exception();
   }

@@ -23,6 +23,7 @@ LAYERS = [
     ["rt/loop"],
     ["rt/realtime", "rt/telemetry", "rt/telemetry/mcap"],
     ["rt/telemetry/dds", "rt/telemetry/recording", "rt/report"],
+    ["rt/telemetry/view"],
     ["rt/run"],
     ["rt"],
     ["tools/train/data", "tools/train/kernels"],

@@ -85,7 +85,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->allow_extra_args(false)
       ->always_capture_default(false);
   app.add_option("--out", o.out_dir,
-                 "folder for summary.json, config.toml, run.csv, run.png, strip.png")
+                 "folder for summary.json, config.toml, run.csv, run.html, run.png, strip.png")
       ->type_name("DIR");
   app.add_option(
          "--record", o.record_dir,

@@ -26,6 +26,7 @@
 #include "rt/run/process_config.h"
 #include "rt/run/scene.h"
 #include "rt/telemetry/recording/recording_file.h"
+#include "rt/telemetry/view/view_page.h"
 #include "sim/robot/robot_model.h"
 
 namespace sandrunner {
@@ -48,7 +49,8 @@ std::optional<Arguments> parse(int argc, char** argv) {
   app.add_option("FILE", a.file, "recording (run.mcap, black-box-TICK.mcap)")->required();
   app.add_option("--from", a.from_s, "first second that is compared and drawn")->type_name("S");
   app.add_option("--to", a.to_s, "last second")->type_name("S");
-  app.add_option("--plot", a.plot_dir, "folder for run.csv, run.png, strip.png")->type_name("DIR");
+  app.add_option("--plot", a.plot_dir, "folder for run.csv, run.html, run.png, strip.png")
+      ->type_name("DIR");
   app.add_option("--set", a.assignments, "what if: one setting otherwise; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -97,15 +99,17 @@ struct Player {
       }
     }
     if (arguments.plot_dir.empty()) return;
-    observer = std::make_unique<RunObserver>(scene_of(config, policy ? policy->spec().name : ""),
-                                             true, std::function<void(const RunSample&)>());
+    const RunScene scene = scene_of(config, policy ? policy->spec().name : "");
+    observer = std::make_unique<RunObserver>(scene, true, std::function<void(const RunSample&)>());
+    page.emplace(scene, config.robot.description);
   }
 
   ProcessConfig config;
   std::optional<Policy> policy;
-  std::optional<Replay> replay;  ///< nothing: the recording has no state to start from
-  bool in_step = true;           ///< false: behind damage, until the next state
-  std::unique_ptr<RunObserver> observer;
+  std::optional<Replay> replay;           ///< nothing: the recording has no state to start from
+  bool in_step = true;                    ///< false: behind damage, until the next state
+  std::unique_ptr<RunObserver> observer;  ///< these two: with --plot
+  std::optional<ViewPage> page;
 };
 
 std::string seconds(std::uint64_t tick) {
@@ -118,8 +122,9 @@ void write_plots(Player& player, const std::string& folder) {
   prepare_folder(folder, "--plot");
   write_csv(record, dir + "run.csv");
   draw_run_plot(record, dir + "run.png");
+  write_file(dir + "run.html", player.page->html());
   if (record.has_truth()) draw_run_strip(record, dir + "strip.png");
-  fmt::print("wrote {0}run.csv, {0}run.png{1}\n", dir,
+  fmt::print("wrote {0}run.csv, {0}run.html, {0}run.png{1}\n", dir,
              record.has_truth() ? fmt::format(", {}strip.png", dir) : "");
 }
 
@@ -149,7 +154,10 @@ int run(int argc, char** argv) {
     if (t_s < arguments->from_s) return true;
     ++(compares ? compared : not_compared);
     ++drawn;
-    if (player->observer) player->observer->add(recorded);
+    if (player->observer) {
+      player->observer->add(recorded);
+      player->page->add(recorded);
+    }
     if (found && !difference) difference = std::move(found);
     // A picture wants the rest too.
     return (!difference && player->replay) || player->observer;

@@ -96,8 +96,8 @@ TEST_F(CommandLineTest, RunWritesItsResults) {
   const int code = run("--policy policy --start walk --duration 0.5 --seed 3 --out deep/results");
   ASSERT_TRUE(code == 0 || code == 1) << error();
   EXPECT_EQ(error(), "");
-  EXPECT_EQ(files_in("deep/results"), (std::set<std::string>{"summary.json", "config.toml",
-                                                             "run.csv", "run.png", "strip.png"}));
+  EXPECT_EQ(files_in("deep/results"), (std::set<std::string>{"summary.json", "config.toml", "run.csv",
+                                                             "run.html", "run.png", "strip.png"}));
   for (const char* name : {"run.png", "strip.png"}) {
     EXPECT_EQ(read_file(folder_.path("deep/results/") + name).substr(0, 8), "\x89PNG\r\n\x1a\n");
   }

@@ -209,6 +209,7 @@ TEST_F(RecordingTest, RangeIsComparedAndDrawn) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
   EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/strip.png")));
   EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.csv")));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.html")));
 }
 
 TEST_F(RecordingTest, CutRecordingReadsUpToItsLastWholeChunk) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The plots beside the scene, from the fields of the frames.
+import { Strip } from './plots.js';
+
+const kAsked = '#8a949e', kTrue = '#1d5c99', kBelieved = '#f07c12';
+// Legs of a pair often move alike: left ones are wide and light, right ones narrow and dark on top.
+export const kLegColors = ['#93c2ee', '#12518f', '#f2bd7c', '#a84a08'];
+const kDeadline_us = 250, kGravity = 9.81, kJointsPerLeg = 3;
+export const kSpan_s = 6;
+
+export function makeCharts({ hello, frames }, robot, parent) {
+  const at = (field, k = 0, scale = 1) => (i) => scale * frames.at(i, field, k);
+  const legs = (value) => hello.legs.map((name, l) => ({ name, color: kLegColors[l], wide: l % 2 === 0, value: value(l) }));
+  const asked = (k) => ({ name: 'asked', color: kAsked, dash: [4, 3], value: at('asked', k) });
+  const strip = (...args) => {
+    const canvas = document.createElement('canvas');
+    parent.append(canvas);
+    return new Strip(canvas, ...args);
+  };
+  const joints = (what, field, unit, limit) => ['first joint', 'second joint', 'knee'].map((joint, k) => {
+    const name = jointKind(hello, k) ?? joint, most = robot.limits[k]?.[limit];
+    return strip(`${what} ${name}`, unit, legs((l) => at(field, kJointsPerLeg * l + k)),
+      { limits: Number.isFinite(most) && most > 0 ? [-most, most] : [], least: 1, zero: true });
+  });
+  const charts = [
+    strip('Forward speed', 'm/s', [asked(0), { name: 'true', color: kTrue, value: at('motion', 0) },
+      { name: 'believed', color: kBelieved, value: at('estimate', 1) }], { least: 0.5, zero: true }),
+    strip('Yaw rate', 'rad/s', [asked(2), { name: 'true', color: kTrue, value: at('motion', 2) }], { least: 0.5, zero: true }),
+    strip('Body height', 'm', [{ name: 'true', color: kTrue, value: at('truth', 0) },
+      { name: 'believed', color: kBelieved, value: at('estimate', 0) }], { least: 0.1 }),
+    strip('Sinkage', 'mm', legs((l) => (i) => Math.max(0, 1000 * frames.at(i, 'penetration_m', l))), { least: 10, zero: true }),
+    ...joints('Torque', 'peak_torque_nm', 'N m, peaks', 'torque'),
+    ...joints('Speed', 'velocity_radps', 'rad/s', 'speed'),
+    strip('Mechanical power', 'W', [{ name: '', color: kTrue, value: at('power_w') }], { least: 20, zero: true }),
+    strip('Cost of transport', 'over 1 s', [{ name: '', color: kTrue, value: costOfTransport(hello, frames) }], { least: 1, zero: true }),
+  ];
+  if (frames.columns.tick_us[0].some((us) => us > 0)) {
+    charts.push(strip('Worst times of the control loop', 'µs', [
+      { name: 'late', color: '#2a9d8f', value: at('late_us') }, { name: 'control step', color: kTrue, value: at('control_us') },
+      { name: 'tick', color: kBelieved, value: at('tick_us') }], { limits: [kDeadline_us], least: 50, zero: true }));
+  }
+  return charts;
+}
+
+/** "HAA" where the k-th joint of every leg is called LEG_HAA. */
+function jointKind(hello, k) {
+  const kinds = new Set(hello.legs.map((leg, l) => hello.joints[kJointsPerLeg * l + k].replace(leg, '').replace(/^_/, '')));
+  return kinds.size === 1 ? [...kinds][0] : null;
+}
+
+/** (P_mech + sum tau^2/k_m^2) / (m g |vx|), each the mean of the last second; none below 0.05 m/s. */
+function costOfTransport(hello, frames) {
+  const rows = hello.rate_hz, sums = { power_w: [0], torque_squared_nm2: [0], motion: [0] };
+  for (const field of Object.keys(sums)) {
+    for (let i = 0; i < frames.count; ++i) sums[field].push(sums[field][i] + (frames.at(i, field) || 0));
+  }
+  return (i) => {
+    if (i < rows) return NaN;
+    const mean = (field) => (sums[field][i + 1] - sums[field][i + 1 - rows]) / rows, speed = Math.abs(mean('motion'));
+    if (speed < 0.05) return NaN;
+    return (mean('power_w') + mean('torque_squared_nm2') / hello.motor_constant ** 2) / (hello.mass_kg * kGravity * speed);
+  };
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The source of a page that holds a whole run: hello, frames, footprints and ground in its own elements.
+import { Table } from './table.js';
+
+const text = (id) => document.getElementById(id).textContent;
+
+async function inflate(id) {
+  const packed = Uint8Array.from(atob(text(id)), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/**
+ * Puts the planes of pack_rows (view_pack.h) together.
+ * @param {object[]} fields of the rows, as hello has them
+ * @param {Uint8Array} planes
+ */
+function unpack(fields, planes) {
+  const kWidth = { f64: 8, f32: 4, u32: 4, i32: 4, i16: 2 };
+  const perRow = fields.reduce((sum, f) => sum + f.count * kWidth[f.type], 0);
+  const rows = planes.length / perRow;
+  const columns = {};
+  let from = 0;
+  for (const { name, type, count } of fields) {
+    const width = kWidth[type];
+    columns[name] = [];
+    for (let k = 0; k < count; ++k) {
+      const bytes = new Uint8Array(rows * width);
+      for (let b = 0; b < width; ++b) for (let row = 0; row < rows; ++row) bytes[row * width + b] = planes[from++];
+      columns[name].push(new Table.kTypes[type](bytes.buffer));
+    }
+  }
+  return new Table(rows, columns);
+}
+
+export const hasRun = () => document.getElementById('frames') !== null;
+
+/** @returns what main.js draws: {hello, frames, footprints, tiles}, the last three as Tables */
+export async function readRun() {
+  const hello = JSON.parse(text('hello'));
+  const [frames, footprints, tiles] = await Promise.all(['frames', 'footprints', 'tiles'].map(inflate));
+  return {
+    hello,
+    frames: unpack(hello.frame_fields, frames),
+    footprints: unpack(hello.footprint_fields, footprints),
+    tiles: unpack(hello.tile_fields, tiles),
+  };
+}

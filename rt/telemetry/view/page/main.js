@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page: takes a run from its source and draws it over time.
+import './three_notice.js';
+import { kSpan_s, makeCharts } from './charts.js';
+import { readRun } from './file.js';
+import { momentAt } from './moment.js';
+import { kColors } from './overlays.js';
+import { Player } from './player.js';
+import { Robot } from './robot.js';
+import { Scene } from './scene.js';
+import { SideView } from './side.js';
+import { State } from './state.js';
+import { Timeline } from './timeline.js';
+
+const element = (id) => document.getElementById(id);
+const kLongestStep_s = 0.1;  // after a pause of the browser the run goes on where it was
+
+function makeView(run, robot) {
+  const light = location.hash === '#light';
+  try {
+    return new Scene(element('scene'), run, robot, light ? 3 : 0);
+  } catch (error) {
+    // A canvas that was asked for WebGL gives nothing else.
+    const canvas = element('scene').cloneNode();
+    element('scene').replaceWith(canvas);
+    element('note').textContent = `${run.hello.note} This browser has no WebGL: the robot is drawn from its right side.`.trim();
+    return new SideView(canvas, run, robot);
+  }
+}
+
+function makeLegend(view) {
+  const entries = [['force', 'contact forces', [kColors.force]], ['belief', 'what the network believes', [kColors.belief]],
+    ['path', 'path: true, dead-reckoned', [kColors.truth, kColors.belief]]];
+  for (const [kind, text, colors] of view.overlays ? entries : []) {
+    const label = document.createElement('label'), box = document.createElement('input');
+    box.type = 'checkbox';
+    box.checked = true;
+    box.onchange = () => { view.overlays.kinds[kind].visible = box.checked; };
+    label.append(box, ...colors.map((color) => {
+      const bar = document.createElement('i');
+      bar.style.background = color;
+      return bar;
+    }), text);
+    element('legend').append(label);
+  }
+}
+
+function savePicture(view, t) {
+  view.picture((blob) => {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(blob);
+    link.download = `sandrunner-${t.toFixed(2)}s.png`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  });
+}
+
+function show(run) {
+  const { hello, frames } = run;
+  if (frames.count === 0) {
+    element('note').textContent = hello.note;
+    window.sandrunner = { ready_ms: performance.now(), frames: 0 };
+    return;
+  }
+  const robot = new Robot(hello.urdf, hello.base, hello.joints);
+  const state = new State(hello, (frames.at(0, 'flags') & 1) !== 0);
+  robot.pose(momentAt(frames, frames.time(0)));
+  const view = makeView(run, robot), player = new Player(frames);
+  const timeline = new Timeline(element('time'), run, player);
+  const charts = makeCharts(run, robot, element('plots'));
+  makeLegend(view);
+  element('play').onclick = () => player.toggle();
+  element('rate').onchange = () => { player.rate = Number(element('rate').value); };
+  element('camera').onclick = () => view.resetCamera();
+  element('picture').onclick = () => savePicture(view, player.t);
+  window.addEventListener('keydown', (event) => { if (event.key === 'c' && !event.ctrlKey) view.resetCamera(); });
+
+  let drawn = 0, before = performance.now();
+  const inSight = (canvas) => {
+    const plots = element('plots'), top = canvas.offsetTop - plots.offsetTop - plots.scrollTop;
+    return top < plots.clientHeight && top + canvas.clientHeight > 0;
+  };
+  const draw = () => {
+    const moment = momentAt(frames, player.t);
+    robot.pose(moment);
+    view.draw(moment);
+    state.show(moment);
+    timeline.draw();
+    // Plots are read, not watched: every third picture is enough while the run plays.
+    if (!player.playing || drawn % 3 === 0) {
+      for (const chart of charts) if (inSight(chart.canvas)) chart.draw(frames, player.t, kSpan_s);
+    }
+    const label = player.playing ? 'pause' : 'play';
+    if (element('play').textContent !== label) element('play').textContent = label;
+    ++drawn;
+  };
+  const step = (now) => {
+    requestAnimationFrame(step);
+    player.advance(Math.min(kLongestStep_s, Math.max(0, (now - before) / 1000)));
+    before = now;
+    draw();
+  };
+  draw();
+  requestAnimationFrame(step);
+
+  // For tests and for who is curious in the console.
+  window.sandrunner = {
+    ready_ms: performance.now(),
+    kind: view instanceof Scene ? '3d' : 'side',
+    frames: frames.count,
+    hello, run, player, view, robot,
+    get drawn() { return drawn; },
+    get quality() { return view.quality; },
+    seek(t) {
+      player.seek(t);
+      draw();
+    },
+    feet: () => hello.feet.map((foot) => robot.where(foot).toArray()),
+  };
+}
+
+readRun().then(show);

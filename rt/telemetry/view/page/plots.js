@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A strip chart: lines over the seconds before the shown time, on a canvas.
+
+/** A canvas's 2D context for drawing in CSS pixels; its size follows the element's. */
+export function context2d(canvas) {
+  const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  const g = canvas.getContext('2d');
+  g.setTransform(ratio, 0, 0, ratio, 0, 0);
+  g.clearRect(0, 0, width, height);
+  return { g, width, height };
+}
+
+/** The distance of marks on an axis that has about `wanted` of them. */
+export function markStep(range, wanted) {
+  const rough = range / wanted, power = 10 ** Math.floor(Math.log10(rough));
+  return power * ([1, 2, 5, 10].find((m) => m * power >= rough) ?? 10);
+}
+
+const kLeft = 40, kRight = 8, kTop = 21, kBottom = 7, kFont = 'system-ui, sans-serif';
+
+export class Strip {
+  /**
+   * @param {object[]} lines {name, color, value(row), dash?, wide?}
+   * @param {object} more limits: values of dashed red lines, always in sight; least: smallest range of the axis;
+   *   zero: the axis holds 0
+   */
+  constructor(canvas, title, unit, lines, more = {}) {
+    Object.assign(this, { canvas, title, unit, lines, limits: [], least: 0.1, zero: false, ...more });
+  }
+
+  draw(frames, t, span) {
+    const { g, width, height } = context2d(this.canvas);
+    if (width === 0) return;
+    const from = t - span, first = Math.max(0, frames.countUntil(from) - 1), behind = frames.countUntil(t);
+    const every = Math.max(1, Math.floor((behind - first) / (width - kLeft - kRight)));
+    const series = this.lines.map(({ value }) => {
+      const points = [];
+      for (let i = first; i < behind; i += every) points.push(value(i));
+      return points;
+    });
+    const [low, high] = this.#range(series);
+    const x = (at) => kLeft + (width - kLeft - kRight) * (at - from) / span;
+    const y = (value) => kTop + (height - kTop - kBottom) * (high - value) / (high - low);
+    this.#axis(g, width, low, high, y);
+    g.save();
+    g.beginPath();
+    g.rect(kLeft, kTop - 2, width - kLeft - kRight, height - kTop - kBottom + 4);
+    g.clip();
+    this.lines.forEach(({ color, dash, wide }, n) => {
+      g.strokeStyle = color;
+      g.lineWidth = wide ? 3.5 : 1.4;
+      g.setLineDash(dash ?? []);
+      g.beginPath();
+      let drawing = false;
+      series[n].forEach((value, k) => {
+        if (Number.isFinite(value)) g[drawing ? 'lineTo' : 'moveTo'](x(frames.time(first + k * every)), y(value));
+        drawing = Number.isFinite(value);
+      });
+      g.stroke();
+    });
+    g.restore();
+    this.#head(g, width);
+  }
+
+  #range(series) {
+    let low = this.zero ? 0 : Infinity, high = this.zero ? 0 : -Infinity;
+    for (const value of [...series.flat(), ...this.limits]) {
+      if (!Number.isFinite(value)) continue;
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+    if (low > high) [low, high] = [0, 1];
+    const missing = Math.max(0, this.least - (high - low)) / 2, pad = 0.06 * (high - low + 2 * missing);
+    return [low - missing - pad, high + missing + pad];
+  }
+
+  #axis(g, width, low, high, y) {
+    const step = markStep(high - low, 4), digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    g.font = `10px ${kFont}`;
+    g.textAlign = 'right';
+    g.lineWidth = 1;
+    const line = (value, color, dash) => {
+      g.strokeStyle = color;
+      g.setLineDash(dash);
+      g.beginPath();
+      g.moveTo(kLeft, Math.round(y(value)) + 0.5);
+      g.lineTo(width - kRight, Math.round(y(value)) + 0.5);
+      g.stroke();
+    };
+    for (let n = Math.ceil(low / step); n * step <= high; ++n) {
+      line(n * step, n === 0 ? '#b9c2ca' : '#e8ecef', []);
+      g.fillStyle = '#66717c';
+      g.fillText((n * step).toFixed(digits), kLeft - 5, y(n * step) + 3.5);
+    }
+    for (const limit of this.limits) line(limit, '#d8322f', [5, 3]);
+    g.setLineDash([]);
+  }
+
+  #head(g, width) {
+    g.textAlign = 'left';
+    g.fillStyle = '#22282f';
+    g.font = `600 11.5px ${kFont}`;
+    g.fillText(this.title, 8, 14);
+    let x = 8 + g.measureText(this.title).width + 5;
+    g.font = `10.5px ${kFont}`;
+    g.fillStyle = '#66717c';
+    g.fillText(this.unit, x, 14);
+    g.textAlign = 'right';
+    x = width - kRight;
+    for (const { name, color } of [...this.lines].reverse()) {
+      if (!name) continue;
+      g.fillStyle = color;
+      g.fillText(name, x, 14);
+      x -= g.measureText(name).width + 9;
+    }
+  }
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The time line: where the run is in what mode, how fast it went, faults, and the shown time; pointer and keys move it.
+import { context2d, markStep } from './plots.js';
+
+export const kModeColors = { passive: '#e3e7eb', damping: '#f3d9b1', stand_up: '#d5e3d0', stand: '#bfdcb8', walk: '#a9c9ea', fault: '#f0a9a4' };
+const kInset = 8;
+
+export class Timeline {
+  /** @param {object} player {t, begin, end, seek(t), toggle()} */
+  constructor(canvas, { hello, frames }, player) {
+    Object.assign(this, { canvas, frames, player });
+    this.spans = spansOf(hello, frames);
+    this.top = 0.5;
+    for (let i = 0; i < frames.count; ++i) this.top = Math.max(this.top, Math.abs(frames.at(i, 'motion', 0)) || 0);
+    const seek = (event) => {
+      const { left, width } = canvas.getBoundingClientRect();
+      const share = (event.clientX - left - kInset) / (width - 2 * kInset);
+      player.seek(player.begin + share * (player.end - player.begin));
+    };
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      seek(event);
+    });
+    canvas.addEventListener('pointermove', (event) => { if (event.buttons) seek(event); });
+    window.addEventListener('keydown', (event) => this.#key(event));
+  }
+
+  #key(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === 'SELECT') return;
+    const { player, frames } = this, row = frames.countUntil(player.t) - 1;
+    const by = (frameStep, s) => (event.shiftKey ? player.seek(player.t + s)
+      : player.seek(frames.time(Math.min(frames.count - 1, Math.max(0, row + frameStep)))));
+    const actions = {
+      ' ': () => player.toggle(),
+      ArrowLeft: () => by(-1, -1),
+      ArrowRight: () => by(1, 1),
+      Home: () => player.seek(player.begin),
+      End: () => player.seek(player.end),
+    };
+    if (!actions[event.key]) return;
+    event.preventDefault();
+    actions[event.key]();
+  }
+
+  draw() {
+    const { g, width, height } = context2d(this.canvas), { begin, end, t } = this.player;
+    const x = (at) => kInset + (width - 2 * kInset) * (end > begin ? (at - begin) / (end - begin) : 0);
+    const bottom = height - 13;
+    for (const { name, from, to } of this.spans) {
+      g.fillStyle = kModeColors[name] ?? '#e3e7eb';
+      g.fillRect(x(from), 0, Math.max(1, x(to) - x(from)), bottom);
+      g.fillStyle = '#3d4650';
+      g.font = '10px system-ui, sans-serif';
+      g.textAlign = 'left';
+      if (g.measureText(name).width + 8 < x(to) - x(from)) g.fillText(name.replace('_', ' '), x(from) + 4, 10);
+    }
+    g.strokeStyle = '#1d5c99';
+    g.beginPath();
+    const every = Math.max(1, Math.floor(this.frames.count / width));
+    for (let i = 0; i < this.frames.count; i += every) {
+      const speed = Math.abs(this.frames.at(i, 'motion', 0));
+      if (Number.isFinite(speed)) g.lineTo(x(this.frames.time(i)), bottom - 1 - (bottom - 13) * speed / this.top);
+    }
+    g.stroke();
+    this.#seconds(g, x, width, height);
+    g.fillStyle = '#22282f';
+    g.fillRect(Math.round(x(t)) - 1, 0, 2, height - 11);
+    g.beginPath();
+    g.arc(x(t), bottom, 5, 0, 2 * Math.PI);
+    g.fill();
+    this.canvas.setAttribute('aria-valuetext', `${t.toFixed(2)} s`);
+  }
+
+  #seconds(g, x, width, height) {
+    const { begin, end } = this.player, step = Math.max(1, markStep(Math.max(end - begin, 1e-3), width / 70));
+    g.fillStyle = '#66717c';
+    g.textAlign = 'center';
+    g.font = '10px system-ui, sans-serif';
+    for (let n = Math.ceil(begin / step); n * step <= end; ++n) {
+      g.fillText(`${n * step} s`, Math.min(width - 14, Math.max(12, x(n * step))), height - 1);
+    }
+  }
+}
+
+function spansOf(hello, frames) {
+  const spans = [];
+  for (let i = 0; i < frames.count; ++i) {
+    const name = hello.modes[frames.at(i, 'mode')] ?? '', t = frames.time(i);
+    const last = spans[spans.length - 1];
+    if (last) last.to = t;
+    if (last?.name !== name) spans.push({ name, from: t, to: t });
+  }
+  return spans;
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/view/view_hello.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "rt/base/build.h"
+#include "rt/core/faults.h"
+#include "rt/core/mode_machine.h"
+#include "rt/telemetry/view/view_frame.h"
+#include "rt/telemetry/view/view_tiles.h"
+
+namespace sandrunner {
+namespace {
+
+/// The link of each foot: that of the outline which hangs below the leg's last joint, but is not
+/// the link that this joint turns (the outline has the knee there).
+std::array<std::string, kNumLegs> feet_of(const RobotDescription& robot) {
+  std::array<std::string, kNumLegs> feet;
+  for (int l = 0; l < kNumLegs; ++l) {
+    const auto shank =
+        std::ranges::find(robot.frames, kJointsPerLeg * (l + 1) - 1, &RobotFrame::joint);
+    if (shank == robot.frames.end()) continue;
+    const auto hangs_below = [&](std::string link) {
+      for (bool below = false;; below = true) {
+        const auto frame = std::ranges::find(robot.frames, link, &RobotFrame::name);
+        if (frame == robot.frames.end()) return false;
+        if (frame->name == shank->name) return below;
+        link = frame->parent;
+      }
+    };
+    for (const OutlinePoint& point : robot.outline) {
+      if (hangs_below(point.frame)) feet[l] = point.frame;
+    }
+  }
+  return feet;
+}
+
+nlohmann::ordered_json layout(std::span<const ViewField> fields) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const ViewField& f : fields) {
+    json.push_back({{"name", f.name}, {"type", f.type}, {"offset", f.offset}, {"count", f.count}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string view_hello(const RunScene& scene, const RobotDescription& robot, int rate_hz,
+                       const std::string& note) {
+  nlohmann::ordered_json json = {{"robot", robot.name},
+                                 {"terrain", scene.terrain},
+                                 {"policy", scene.policy},
+                                 {"build", build_name()},
+                                 {"note", note},
+                                 {"rate_hz", rate_hz},
+                                 {"granular", scene.granular_ground},
+                                 {"foot_radius_m", scene.foot_radius_m},
+                                 {"mass_kg", scene.mass_kg},
+                                 {"motor_constant", scene.motor_constant},
+                                 {"legs", robot.leg_names},
+                                 {"joints", robot.joint_names},
+                                 {"feet", feet_of(robot)},
+                                 {"base", robot.base_frame},
+                                 {"frame_fields", layout(view_frame_fields())},
+                                 {"footprint_fields", layout(view_footprint_fields())},
+                                 {"tile_fields", layout(view_tile_fields())},
+                                 {"tile_side", kViewTileSide},
+                                 {"tile_step_m", kViewTileStep_m},
+                                 {"modes", nlohmann::ordered_json::array()},
+                                 {"faults", nlohmann::ordered_json::array()},
+                                 {"urdf", robot.ros_urdf}};
+  for (int mode = 0; mode <= static_cast<int>(Mode::kFault); ++mode) {
+    json["modes"].push_back(mode_name(static_cast<Mode>(mode)));
+  }
+  for (const FaultRow& row : kFaultTable) {
+    json["faults"].push_back({{"name", row.name}, {"meaning", row.meaning}});
+  }
+  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "rt/core/robot_description.h"
+#include "rt/report/run_record.h"
+
+namespace sandrunner {
+
+/// What a page is told once, before any frame, as JSON: the robot (its URDF with shapes, which also
+/// has its limits), names, ground, layout of frames and footprints, names of modes and faults.
+/// `rate_hz`: of the frames. `note`: a line for whoever looks at the page; may be empty. All
+/// characters that HTML could take for its own are escaped.
+std::string view_hello(const RunScene& scene, const RobotDescription& robot, int rate_hz,
+                       const std::string& note);
+
+}  // namespace sandrunner

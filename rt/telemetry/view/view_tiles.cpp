@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/view/view_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <utility>
+
+namespace sandrunner {
+namespace {
+
+constexpr double kTile_m = kViewTileSide * kViewTileStep_m;
+constexpr std::int32_t kReach = 3;  // tiles to each side of the robot's own
+
+constexpr std::array kFields = {
+    ViewField{"tile_x", "i32", offsetof(ViewTile, tile_x), 1},
+    ViewField{"tile_y", "i32", offsetof(ViewTile, tile_y), 1},
+    ViewField{"height_tenth_mm", "i16", offsetof(ViewTile, height_tenth_mm),
+              kViewTileSide* kViewTileSide},
+};
+
+ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y) {
+  ViewTile tile{.tile_x = tile_x, .tile_y = tile_y};
+  for (std::int32_t j = 0; j < kViewTileSide; ++j) {
+    for (std::int32_t i = 0; i < kViewTileSide; ++i) {
+      const double height_m = scene.ground_height_m(kViewTileStep_m * (kViewTileSide * tile_x + i),
+                                                    kViewTileStep_m * (kViewTileSide * tile_y + j));
+      tile.height_tenth_mm[static_cast<std::size_t>(kViewTileSide * j + i)] =
+          static_cast<std::int16_t>(std::lround(1e4 * std::clamp(height_m, -3.0, 3.0)));
+    }
+  }
+  return tile;
+}
+
+}  // namespace
+
+std::span<const ViewField> view_tile_fields() { return kFields; }
+
+std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const ViewFrame> way,
+                                 std::size_t most) {
+  std::vector<ViewTile> tiles;
+  if (!scene.ground_height_m) return tiles;
+  std::set<std::pair<std::int32_t, std::int32_t>> seen;
+  for (auto frame = way.rbegin(); frame != way.rend(); ++frame) {
+    const Vector3& p = frame->position_m;
+    constexpr double kFarthest_m = 1e6;
+    if (!(std::abs(p[0]) < kFarthest_m && std::abs(p[1]) < kFarthest_m)) continue;
+    const auto x = static_cast<std::int32_t>(std::floor(p[0] / kTile_m));
+    const auto y = static_cast<std::int32_t>(std::floor(p[1] / kTile_m));
+    for (std::int32_t j = y - kReach; j <= y + kReach; ++j) {
+      for (std::int32_t i = x - kReach; i <= x + kReach; ++i) {
+        if (tiles.size() == most) return tiles;
+        if (seen.insert({i, j}).second) tiles.push_back(tile_at(scene, i, j));
+      }
+    }
+  }
+  return tiles;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rt/report/run_record.h"
+#include "rt/telemetry/view/view_frame.h"
+
+namespace sandrunner {
+
+inline constexpr std::int32_t kViewTileSide = 32;  ///< heights along each side of a tile
+inline constexpr double kViewTileStep_m = 0.05;    ///< between two of them
+
+/// A square of undisturbed ground that is not flat. Height (i, j), row by row along y, is at
+/// x = (32 tile_x + i) 0.05 m, y = (32 tile_y + j) 0.05 m.
+struct ViewTile {
+  std::int32_t tile_x = 0, tile_y = 0;
+  std::array<std::int16_t, kViewTileSide * kViewTileSide> height_tenth_mm{};
+};
+
+std::span<const ViewField> view_tile_fields();
+
+/// The ground within sight of a robot on its way, at most `most` tiles, the last ones; none if the
+/// ground is flat.
+std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const ViewFrame> way,
+                                 std::size_t most);
+
+}  // namespace sandrunner

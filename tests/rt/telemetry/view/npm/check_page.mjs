@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// node check_page.mjs BROWSER FOLDER: opens FOLDER/run.html from the disk and compares what it shows with
+// FOLDER/run.csv. Pictures are judged by their structure, never pixel by pixel.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import puppeteer from "puppeteer-core";
+
+const [browserPath, folder] = process.argv.slice(2);
+const kLegs = ["LF", "RF", "LH", "RH"];
+const kSoftware = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const kNoGraphics = ["--disable-gpu", "--disable-software-rasterizer", "--disable-3d-apis"];
+
+const [head, ...lines] = fs.readFileSync(`${folder}/run.csv`, "utf8").trim().split("\n").map((line) => line.split(","));
+const column = Object.fromEntries(head.map((name, i) => [name, i]));
+const csv = (row, name) => Number(lines[row][column[name]]);
+
+async function open(flags, viewport, look) {
+  const args = ["--no-sandbox", "--hide-scrollbars", ...flags];
+  const browser = await puppeteer.launch({ executablePath: browserPath, headless: "shell", args, protocolTimeout: 120000 });
+  try {
+    const page = await browser.newPage();
+    await page.setViewport(viewport);
+    const [errors, requests] = [[], []];
+    page.on("pageerror", (error) => errors.push(error.message));
+    page.on("console", (message) => { if (message.type() === "error") errors.push(message.text()); });
+    page.on("request", (request) => { if (!/^(data|blob):/.test(request.url())) requests.push(request.url()); });
+    // #light: what a machine without a graphics card can draw.
+    const url = `file://${folder}/run.html`;
+    await page.goto(`${url}#light`);
+    await page.waitForFunction("window.sandrunner", { timeout: 60000 });
+    await look(page);
+    assert.deepEqual(errors, []);
+    assert.deepEqual(requests.map((request) => request.split("#")[0]), [url], "the page asks for nothing but itself");
+  } finally {
+    await browser.close();
+  }
+}
+
+/** The page's picture as {width, height, at(x, y)}: the canvas as it was just drawn. */
+async function picture(page, t) {
+  const shot = await page.evaluate((time) => {
+    const { view } = window.sandrunner;
+    window.sandrunner.seek(time);
+    view.renderer?.render(view.scene, view.camera);
+    const canvas = document.getElementById("scene"), copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const g = copy.getContext("2d");
+    g.drawImage(canvas, 0, 0);
+    const bytes = g.getImageData(0, 0, copy.width, copy.height).data;
+    let text = "";
+    for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+    return { width: copy.width, height: copy.height, text: btoa(text) };
+  }, t);
+  const bytes = Buffer.from(shot.text, "base64");
+  return { ...shot, at: (x, y) => [...bytes.subarray(4 * (y * shot.width + x), 4 * (y * shot.width + x) + 3)] };
+}
+
+const kKinds = {
+  sand: ([r, g, b]) => r > g && g > b && r - b > 25 && r > 90 && r - g < 70,
+  sky: ([r, g, b]) => b >= r && b > 190 && b - r < 90,
+  force: ([r, g, b]) => r > 90 && g < 0.45 * r && b < 0.45 * r,
+  dark: ([r, g, b]) => Math.max(r, g, b) < 75,
+  orange: ([r, g, b]) => r > 190 && g > 90 && g < 160 && b < 70,
+};
+
+/** Share of the pixels of each kind. */
+function shares({ width, height, at }) {
+  const counts = Object.fromEntries(Object.keys(kKinds).map((kind) => [kind, 0]));
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) for (const kind in kKinds) counts[kind] += kKinds[kind](at(x, y)) ? 1 : 0;
+  }
+  for (const kind in counts) counts[kind] /= width * height;
+  return counts;
+}
+
+function within(share, kind, low, high) {
+  assert.ok(share[kind] >= low && share[kind] <= high, `${kind}: share ${share[kind]} of the pixels, expected ${low} to ${high}`);
+}
+
+/** Each of 50 moments of the run: the page's feet, by its own kinematics, are where run.csv has them. */
+async function checkFeet(page) {
+  const rows = Array.from({ length: 50 }, (_, k) => Math.floor(((k * 0.618034) % 1) * (lines.length - 2)));
+  const feet = await page.evaluate((times) => times.map((t) => {
+    window.sandrunner.seek(t);
+    return window.sandrunner.feet();
+  }), rows.map((row) => csv(row, "t_s")));
+  let worst = 0;
+  rows.forEach((row, i) => kLegs.forEach((leg, l) => ["x", "y", "z"].forEach((axis, a) => {
+    worst = Math.max(worst, Math.abs(feet[i][l][a] - csv(row, `${leg}_foot_${axis}_m`)));
+  })));
+  assert.ok(worst < 5e-5, `feet are up to ${worst} m from those of run.csv`);
+  return worst;
+}
+
+/** A moment of the walk with most feet in the ground. */
+function deepMoment() {
+  const depth = (row) => Math.min(...["RF", "LH"].map((leg) => csv(row, `${leg}_penetration_m`)));
+  const walking = lines.map((_, row) => row).filter((row) => lines[row][column.mode] === "walk" && csv(row, "t_s") > 6);
+  return csv(walking.reduce((best, row) => (depth(row) > depth(best) ? row : best)), "t_s");
+}
+
+/** Holes are where the simulator's feet were deepest, and darker than the sand around; looking back shows the same. */
+async function checkHoles(page, t) {
+  const [prints, before, after] = await page.evaluate((time) => {
+    const { view, run, seek } = window.sandrunner, found = [];
+    const state = () => {
+      let hash = 0;
+      for (const texel of view.heights.texels) hash = (Math.imul(hash, 31) + texel) | 0;
+      return hash;
+    };
+    seek(time);
+    const first = state();
+    seek(time - 3);
+    seek(time - 1);
+    seek(time);
+    for (let i = 0; i < run.footprints.count; ++i) {
+      const [at, x, y, depth] = ["t_s", "x_m", "y_m", "depth_m"].map((name) => run.footprints.at(i, name));
+      if (at < time) found.push({ depth, shown: view.heights.pressedAt(x, y) });
+    }
+    return [found, first, state()];
+  }, t);
+  assert.equal(after, before, "the same time shows the same ground, wherever one came from");
+  assert.ok(prints.length >= 12, `${prints.length} footprints`);
+  for (const { depth, shown } of prints) assert.ok(shown <= -0.95 * depth, `a footprint of ${depth} m is shown as ${shown} m`);
+}
+
+await open(kSoftware, { width: 900, height: 560 }, async (page) => {
+  assert.equal(await page.evaluate("sandrunner.kind"), "3d");
+  const worst = await checkFeet(page), t = deepMoment();
+  await checkHoles(page, t);
+  const image = await picture(page, t), share = shares(image);
+  within(share, "sand", 0.45, 0.9);
+  within(share, "sky", 0.05, 0.35);
+  within(share, "force", 0.0005, 0.03);
+  within(share, "dark", 0.004, 0.15);
+  within(share, "orange", 0.0005, 0.05);
+  // A hole that nothing stands in: the wall away from the sun is darker than the sand a little farther away.
+  const ready = await page.evaluate("sandrunner.ready_ms");
+  console.log(`WebGL: feet within ${(1e6 * worst).toFixed(2)} um at 50 times, ready after ${ready.toFixed(0)} ms, shares ${JSON.stringify(share)}`);
+});
+
+await open(kNoGraphics, { width: 700, height: 500 }, async (page) => {
+  assert.equal(await page.evaluate("sandrunner.kind"), "side");
+  assert.match(await page.$eval("#note", (note) => note.textContent), /no WebGL/);
+  const worst = await checkFeet(page), share = shares(await picture(page, deepMoment()));
+  within(share, "sand", 0.15, 0.7);
+  within(share, "orange", 0.01, 0.2);  // the body
+  within(share, "force", 0.0005, 0.05);
+  within(share, "sky", 0.2, 0.8);
+  console.log(`without WebGL: feet within ${(1e6 * worst).toFixed(2)} um, shares ${JSON.stringify(share)}`);
+});
+
+const size = fs.statSync(`${folder}/run.html`).size;
+assert.ok(size < 2e6, `${size} bytes`);
+console.log(`run.html: ${size} bytes for ${lines.length} frames`);

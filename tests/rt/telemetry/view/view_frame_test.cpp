@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/view/view_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "rt/telemetry/view/view_pack.h"
+#include "tests/rt/telemetry/example_tick.h"
+#include "tests/rt/telemetry/view/packed.h"
+
+namespace sandrunner {
+namespace {
+
+/// A tick of a robot that tells its truth and stands with its feet on the surface.
+TickRecord true_tick(std::uint64_t number) {
+  TickRecord tick = example_tick(number);
+  tick.has_truth = 1;
+  tick.truth.position_m = {1.0 + 1e-4 * static_cast<double>(number), 2.0, 0.5};
+  tick.truth.velocity_mps = {0.8, 0.1, 0.0};
+  tick.truth.joint_torque_nm = all_joints(3.0);
+  tick.truth.joint_velocity_radps = all_joints(2.0);
+  tick.before.state.body_height_m = 0.45;
+  return tick;
+}
+
+std::vector<ViewFrame> frames_of(ViewFrameMaker& maker, std::uint64_t first, std::uint64_t last,
+                                 const auto& change) {
+  std::vector<ViewFrame> frames;
+  for (std::uint64_t i = first; i <= last; ++i) {
+    TickRecord tick = true_tick(i);
+    change(tick);
+    if (const auto frame = maker.add(tick)) frames.push_back(*frame);
+  }
+  return frames;
+}
+
+void unchanged(TickRecord&) {}
+
+TEST(ViewFrameTest, FieldsCoverTheFrameWithoutOverlapAndWithNamesOfTheirOwn) {
+  for (const auto& [fields, size] : {std::pair{view_frame_fields(), sizeof(ViewFrame)},
+                                     std::pair{view_footprint_fields(), sizeof(ViewFootprint)}}) {
+    std::set<std::string> names;
+    std::size_t end = 0;
+    for (const ViewField& f : fields) {
+      EXPECT_TRUE(names.insert(f.name).second) << f.name;
+      EXPECT_EQ(f.offset, end) << f.name;
+      end = f.offset + f.count * f.width();
+    }
+    EXPECT_LT(size - end, 8u);  // nothing behind the last but padding
+  }
+}
+
+TEST(ViewFrameTest, AFrameComesWithTheAnswerToItsOwnSensors) {
+  ViewFrameMaker maker(example_robot());
+  std::optional<ViewFrame> frame;
+  for (std::uint64_t i = 0; i < 40; ++i) EXPECT_FALSE(maker.add(true_tick(i)));
+  TickRecord next = true_tick(40);
+  EXPECT_TRUE(maker.add(next));  // the one of tick 0 was never answered
+  next = true_tick(41);
+  next.input.policy.sequence = 6;
+  next.input.policy.input_tick = 40;
+  frame = maker.add(next);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->t_s, 0.01);
+  EXPECT_EQ(frame->flags, kViewHasTruth | kViewHasEstimate);
+  EXPECT_FLOAT_EQ(frame->estimate[0], 0.45f);
+  EXPECT_FLOAT_EQ(frame->estimate[1], 0.8f);
+  EXPECT_FLOAT_EQ(frame->truth[0], 0.45f);
+  EXPECT_DOUBLE_EQ(frame->position_m[0], 1.004);
+}
+
+TEST(ViewFrameTest, AnUnansweredFrameHasNoEstimate) {
+  ViewFrameMaker maker(example_robot());
+  const auto frames = frames_of(maker, 0, 40, unchanged);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].flags, kViewHasTruth);
+  EXPECT_TRUE(std::isnan(frames[0].estimate[0]));
+  EXPECT_TRUE(maker.take_last());
+  EXPECT_FALSE(maker.take_last());
+}
+
+TEST(ViewFrameTest, PeaksAndMeansAreOfTheTicksSinceTheFrameBefore) {
+  ViewFrameMaker maker(example_robot());
+  const auto frames = frames_of(maker, 0, 120, [](TickRecord& tick) {
+    if (tick.input.sensors.tick == 55) tick.truth.joint_torque_nm[4] = -40.0;
+    if (tick.input.sensors.tick == 60) tick.timing.late_ns = 90'000;
+    tick.skipped = tick.input.sensors.tick == 70 ? 2 : 0;
+  });
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(frames[1].peak_torque_nm[4], 3.0f);
+  EXPECT_EQ(frames[2].peak_torque_nm[4], -40.0f);
+  EXPECT_EQ(frames[2].torque_nm[4], 3.0f);
+  EXPECT_EQ(frames[2].peak_torque_nm[5], 3.0f);
+  EXPECT_FLOAT_EQ(frames[1].power_w, 12 * 3.0f * 2.0f);
+  EXPECT_FLOAT_EQ(frames[1].torque_squared_nm2, 12 * 9.0f);
+  EXPECT_FLOAT_EQ(frames[1].late_us, 2.0f);
+  EXPECT_FLOAT_EQ(frames[2].late_us, 90.0f);
+  EXPECT_FLOAT_EQ(frames[2].tick_us, 12.0f);
+  EXPECT_EQ(frames[1].skipped, 0u);
+  EXPECT_EQ(frames[2].skipped, 2u);
+}
+
+TEST(ViewFrameTest, AFootprintIsWhereTheFootWasDeepestInAStance) {
+  ViewFrameMaker maker(example_robot());
+  const auto frames = frames_of(maker, 1, 200, [](TickRecord& tick) {
+    const double t = static_cast<double>(tick.input.sensors.tick);
+    tick.truth.foot_penetration_m.fill(-0.1);
+    // Leg 2 is in the ground from tick 50 to 150, deepest at 100. Leg 3 only touches it.
+    if (t >= 50 && t <= 150) tick.truth.foot_penetration_m[2] = 0.05 - 1e-3 * std::abs(t - 100.0);
+    if (t >= 50 && t <= 60) tick.truth.foot_penetration_m[3] = 0.04;
+    tick.truth.foot_centre_m[2] = {1e-3 * t, -2e-3 * t, 0.0};
+  });
+  EXPECT_EQ(frames[0].stance_m[2][2], 0.0f);  // tick 40
+  EXPECT_FLOAT_EQ(frames[1].stance_m[2][2], 0.03f);
+  EXPECT_FLOAT_EQ(frames[2].stance_m[2][0], 0.1f);  // tick 120: deepest at 100
+  const auto prints = maker.take_footprints();
+  ASSERT_EQ(prints.size(), 1u);
+  EXPECT_EQ(prints[0].leg, 2u);
+  EXPECT_DOUBLE_EQ(prints[0].x_m, 0.1);
+  EXPECT_DOUBLE_EQ(prints[0].y_m, -0.2);
+  EXPECT_FLOAT_EQ(prints[0].depth_m, 0.05f);
+  EXPECT_DOUBLE_EQ(prints[0].t_s, 152.0 / kControlHz);
+  EXPECT_TRUE(maker.take_footprints().empty());
+}
+
+TEST(ViewFrameTest, ARobotWithoutTruthIsShownAsItMeasuresItself) {
+  ViewFrameMaker maker(example_robot());
+  std::vector<ViewFrame> frames;
+  for (std::uint64_t i = 0; i <= 400; ++i) {
+    if (const auto frame = maker.add(example_tick(i))) frames.push_back(*frame);
+  }
+  const ViewFrame& frame = frames.back();
+  EXPECT_EQ(frame.flags & kViewHasTruth, 0u);
+  EXPECT_FLOAT_EQ(frame.position_rad[11], static_cast<float>(1.1 + 1e-6 * 360));
+  EXPECT_FLOAT_EQ(frame.peak_torque_nm[0], -2.0f);
+  EXPECT_EQ(frame.position_m[1], frame.odometry[1]);
+  EXPECT_GT(frame.position_m[1], 0.01);  // it walks to the left by its own reckoning
+  EXPECT_NEAR(frame.odometry[2], 1.5707963, 1e-6);
+  EXPECT_TRUE(std::isnan(frame.penetration_m[0]));
+  EXPECT_TRUE(std::isnan(frame.truth[0]));
+}
+
+TEST(ViewFrameTest, WhatIsNotANumberStaysInItsOwnPlaceWhenPacked) {
+  ViewFrameMaker maker(example_robot());
+  const auto frames = frames_of(maker, 0, 400, [](TickRecord& tick) {
+    if (tick.input.sensors.tick == 80) {
+      tick.truth.joint_position_rad[3] = std::numeric_limits<double>::quiet_NaN();
+    }
+  });
+  const auto back =
+      unpacked<ViewFrame>(view_frame_fields(), pack_rows(view_frame_fields(), frames));
+  ASSERT_EQ(back.size(), frames.size());
+  int missing = 0;
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    EXPECT_EQ(back[i].t_s, frames[i].t_s);
+    EXPECT_EQ(back[i].position_m, frames[i].position_m);
+    EXPECT_EQ(back[i].torque_nm, frames[i].torque_nm);
+    EXPECT_EQ(back[i].flags, frames[i].flags);
+    for (const float q : back[i].position_rad) missing += std::isnan(q) ? 1 : 0;
+  }
+  EXPECT_EQ(missing, 1);
+  EXPECT_TRUE(std::isnan(back[2].position_rad[3]));
+}
+
+}  // namespace
+}  // namespace sandrunner
