@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""tools/evaluate/corners.py POLICY...: holds a policy's own envelope against falls. From each of its corners to each other
+as a step and back, through the whole controller (sandrunner), on every preset and on sand of 1/0.15 MN/m^3, from the
+nominal pose, disturbed starts and after standing up. Prints runs and falls for each ground and corner, and how each fall
+is repeated; ends with 1 if there was one. The envelope is that of the policy file (sandrunner-policy envelope)."""
+
+import argparse
+import collections
+import concurrent.futures
+import itertools
+import os
+import pathlib
+import random
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+TREE = pathlib.Path(__file__).resolve().parents[2]
+SOFT = ['--set', 'terrain.sigma_flat_npm3=1e6', '--set', 'terrain.sigma_cone_npm3=0.15e6']
+GROUNDS = {name: ['--terrain', name] for name in
+           ['dry-sand', 'wet-sand', 'grass', 'athletic-track', 'vinyl', 'rigid']} | {'1/0.15': SOFT}
+STARTS = {'nominal': ['--start', 'walk'], 'disturbed': ['--start', 'walk', '--seed', '1'], 'lying': []}
+
+
+def envelope(programs, policy):
+    """Largest vx, -vx, |vy|, |yaw rate| that the policy file allows."""
+    text = subprocess.run([programs / 'sandrunner-policy', 'info', policy], check=True, capture_output=True,
+                          text=True).stdout
+    found = re.search(r'^commands +vx -([\d.]+) to ([\d.]+), vy \+-([\d.]+) m/s, yaw rate \+-([\d.]+)', text, re.M)
+    if not found:
+        sys.exit(f'corners.py: {policy}: found no envelope, expected one (sandrunner-policy envelope)')
+    back, forward, lateral, yaw = map(float, found.groups())
+    return forward, back, lateral, yaw
+
+
+def corners(forward, back, lateral, yaw):
+    """Name -> command; diagonal ones on the ellipse within which the controller holds vx and vy."""
+    d = 0.5 ** 0.5
+    return {'forward': (forward, 0, 0), 'back': (-back, 0, 0), 'left': (0, lateral, 0), 'right': (0, -lateral, 0),
+            'ccw': (0, 0, yaw), 'cw': (0, 0, -yaw), 'forward left': (d * forward, d * lateral, 0),
+            'forward right': (d * forward, -d * lateral, 0), 'back left': (-d * back, d * lateral, 0),
+            'back right': (-d * back, -d * lateral, 0), 'forward ccw': (forward, 0, yaw),
+            'forward left cw': (d * forward, d * lateral, -yaw), 'back ccw': (-back, 0, yaw),
+            'left cw': (0, lateral, -yaw)}
+
+
+def run(programs, policy, job, commands, folder):
+    """Exit code of one run, and how to repeat it."""
+    ground, start, first, second = job
+    a, b, zero = commands[first], commands[second], (0, 0, 0)
+    rows = [(0.0, zero), (0.5, zero), (0.5, a), (3, a), (3, b), (5.5, b), (5.5, a), (7, a), (7, zero)]
+    file = folder / f'{first} {second}.csv'.replace(' ', '-')
+    if not file.exists():
+        # Two rows at one time are a step; the controller makes of it what the envelope's accelerations allow.
+        lines = [f'{t + 1e-6 * i:.6f},{v[0]:g},{v[1]:g},{v[2]:g}\n' for i, (t, v) in enumerate(rows)]
+        part = file.with_suffix(f'.{start}-{ground.replace("/", "-")}')
+        part.write_text('t_s,vx,vy,wz\n' + ''.join(lines))
+        part.replace(file)
+    words = [str(programs / 'sandrunner'), '--policy', str(policy), '--command', str(file), '--duration', '8',
+             *GROUNDS[ground], *STARTS[start]]
+    return subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode, shlex.join(words)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='tools/evaluate/corners.py', description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('policy', type=pathlib.Path)
+    parser.add_argument('--bin', type=pathlib.Path, default=TREE / 'build/release/bin', help='folder of the programs')
+    parser.add_argument('--runs', type=int, help='so many of them, drawn by chance (default: all 3,822)')
+    options = parser.parse_args()
+    commands = corners(*envelope(options.bin, options.policy))
+    jobs = [(ground, start, first, second) for ground in GROUNDS for start in STARTS
+            for first, second in itertools.permutations(commands, 2)]
+    if options.runs is not None:
+        jobs = random.Random(1).sample(jobs, min(options.runs, len(jobs)))
+    runs, falls = collections.Counter(), collections.Counter()
+    folder = pathlib.Path(tempfile.mkdtemp(prefix='corners-'))
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        done = pool.map(lambda job: (job, *run(options.bin, options.policy, job, commands, folder)), jobs)
+        for job, code, words in done:
+            if code not in (0, 1):
+                sys.exit(f'corners.py: exit {code}: {words}')
+            for what in (job[0], f'from {job[2]}', f'to {job[3]}'):
+                runs[what] += 1
+                falls[what] += code
+            if code:
+                print(f'fell ({", ".join(job)}): {words}', flush=True)
+    fallen = sum(falls[ground] for ground in GROUNDS)
+    for what in [*GROUNDS, *sorted(set(runs) - set(GROUNDS))]:
+        print(f'{what:22}{runs[what]:6} runs{falls[what]:5} falls')
+    print(f'{len(jobs)} runs, {fallen} falls')
+    if not fallen:
+        shutil.rmtree(folder)
+    return 1 if fallen else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
