@@ -8,8 +8,9 @@
 
 namespace sandrunner {
 
-/// A motor as its maker sells it. The limits are those that it is delivered with; who has changed
-/// them in the drive states his own.
+/// A motor as its maker sells it. The limits are those that it is delivered with; where they were
+/// changed in the drive, the changed ones count. So does the variant that a drive really answers
+/// in: firmwares of one motor differ, a frame of the other one is MitStatus::kWrongLength.
 struct MitModel {
   std::string_view name;
   MitVariant variant;
