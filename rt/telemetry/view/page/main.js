@@ -25,6 +25,7 @@ function makeView(run, robot) {
     const canvas = element('scene').cloneNode();
     element('scene').replaceWith(canvas);
     element('note').textContent = `${run.hello.note} This browser has no WebGL: the robot is drawn from its right side.`.trim();
+    element('camera').hidden = true;
     return new SideView(canvas, run, robot, surface);
   }
 }
@@ -76,7 +77,7 @@ function show(run) {
   element('picture').onclick = () => savePicture(view, player.t);
   // A button that was clicked does not take the space key.
   window.addEventListener('click', (event) => { if (event.detail > 0) document.activeElement?.blur(); });
-  window.addEventListener('keydown', (event) => { if (event.key === 'c' && !event.ctrlKey) view.resetCamera(); });
+  window.addEventListener('keydown', (event) => { if (event.key === 'c' && !event.ctrlKey) view.resetCamera?.(); });
 
   // Nothing is drawn again while nothing changes.
   let drawn = 0, before = performance.now(), shown_s = NaN, changed = true;

@@ -122,5 +122,4 @@ export class SideView {
   }
 
   picture(done) { this.canvas.toBlob(done, 'image/png'); }
-  resetCamera() {}
 }
