@@ -43,6 +43,7 @@ CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
     off_frames_[config.drives[j].bus].push_back(frame);
   }
   require_drives(config, robot, gate, sockets_);
+  switch_off();  // the first tick is to know where the joints are
 }
 
 CanRobot::~CanRobot() = default;
@@ -154,7 +155,9 @@ void CanRobot::cut_drives() noexcept {
   for (std::size_t b = 0; b < sockets_.size(); ++b) sockets_[b]->send(off_frames_[b]);
 }
 
-void CanRobot::shut_down() noexcept {
+void CanRobot::shut_down() noexcept { switch_off(); }
+
+void CanRobot::switch_off() noexcept {
   JointArray<std::uint64_t> before;
   for (int j = 0; j < kNumJoints; ++j) before[j] = drives_[j].replies();
   for (int i = 0; i < 50; ++i) {

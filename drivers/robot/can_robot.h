@@ -45,7 +45,6 @@ class CanRobot final : public RobotIo {
   void write(const SafeCommand& command) noexcept override;
   void skip(std::uint64_t, const SafeCommand&) noexcept override {}  // it went on without us
   void cut_drives() noexcept override;
-  /// Tells all drives to be off until each has answered, for 0.1 s at most.
   void shut_down() noexcept override;
 
   const std::vector<BusCounters>& bus_counters() const noexcept { return counters_; }
@@ -54,6 +53,8 @@ class CanRobot final : public RobotIo {
 
  private:
   void find_drives(const RobotDescription& robot, const GateConfig& gate);
+  /// Tells all drives to be off until each has answered, for 0.1 s at most.
+  void switch_off() noexcept;
   void receive(std::uint64_t tick) noexcept;
   void take(int bus, const ReceivedFrame& received, std::uint64_t tick,
             std::int64_t now_ns) noexcept;
