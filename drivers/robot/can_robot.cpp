@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "drivers/robot/bring_up.h"
+#include "drivers/robot/bus_plan.h"
 #include "rt/core/joint_pd.h"
 
 namespace sandrunner {
@@ -27,14 +28,19 @@ std::uint64_t tick_of(std::int64_t age_ns, std::uint64_t tick) noexcept {
   return tick - std::min(ago, tick);
 }
 
+const HardwareConfig& within_capacity(const HardwareConfig& config) {
+  require_capacity(config);
+  return config;
+}
+
 }  // namespace
 
 CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
                    const GateConfig& gate)
-    : config_(config),
+    : config_(within_capacity(config)),
+      imu_(config.imu),
       sockets_(open_buses(config)),
       counters_(config.buses.size()),
-      imu_(config.imu),
       off_frames_(config.buses.size()) {
   for (int j = 0; j < kNumJoints; ++j) {
     drives_[j] = Drive(config.drives[j], config);
