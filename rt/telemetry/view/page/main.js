@@ -31,9 +31,12 @@ function makeView(run, robot) {
 }
 
 function makeLegend(view) {
-  const entries = [['force', 'contact forces', [kColors.force]], ['belief', 'what the network believes', [kColors.belief]],
-    ['path', 'path: true, dead-reckoned', [kColors.truth, kColors.belief]]];
-  for (const [kind, text, colors] of view.overlays ? entries : []) {
+  if (!view.overlays) return;
+  const belief = ['belief', 'what the network believes', [kColors.belief]];
+  const entries = view.overlays.hasTruth
+    ? [['force', 'contact forces', [kColors.force]], belief, ['path', 'path: true, dead-reckoned', [kColors.truth, kColors.belief]]]
+    : [belief, ['path', 'path, dead-reckoned', [kColors.belief]]];
+  for (const [kind, text, colors] of entries) {
     const label = document.createElement('label'), box = document.createElement('input');
     box.type = 'checkbox';
     box.checked = true;
