@@ -15,6 +15,7 @@ LAYERS = [
     ["rt/base"],
     ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/robot"],
+    ["drivers/check"],
     ["sim/lanes"],
     ["sim/robot"],
     ["sim/ground"],
