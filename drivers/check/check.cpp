@@ -109,9 +109,9 @@ class Check {
       std::string line = watch(look, ignored);
       if (line.empty()) {
         to_standard_error(
-            fmt::format("{}: turn it by hand by about {:.0f} degrees so that, seen in the "
+            fmt::format("{}: turn it by hand by about 30 degrees so that, seen in the "
                         "standing pose, {}; hold it there and press Enter\n",
-                        joint, kAsked_rad * 57.3, motion));
+                        joint, motion));
         line = watch(look, trace);
       }
       if (!line.empty()) {

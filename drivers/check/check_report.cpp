@@ -113,7 +113,7 @@ std::string joint_table(const HardwareConfig& config, const RobotDescription& ro
                         config.buses[drive.bus].interface, drive.id(),
                         fmt::format("{}/{}", d.replies, d.requests));
     if (d.replies == 0) {
-      text += "  silent\n";
+      text += d.requests == 0 ? "  not looked at: its bus is not there\n" : "  silent\n";
       continue;
     }
     text += fmt::format("  {:>5.2f} {:>5.2f}   {:>8.4f} {:<17}{:>5} {:>5}     {}\n",

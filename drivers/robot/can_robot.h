@@ -68,7 +68,6 @@ class CanRobot final : public RobotIo {
   JointArray<Drive> drives_;
   std::vector<std::vector<CanFrame>> off_frames_;  ///< of each bus, for cut_drives()
   std::uint64_t tick_ = 0, next_exchange_ = 0;
-  std::uint64_t imu_tick_ = 0;
   bool enabled_ = false;
   std::atomic<bool> cut_{false};
   static_assert(std::atomic<bool>::is_always_lock_free);
