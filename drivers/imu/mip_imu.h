@@ -34,7 +34,7 @@ double mip_line_load(int rate_hz, int quaternion_rate_hz, unsigned baud) noexcep
 void check(const MipImuConfig& config);
 
 /// The newest sample of an IMU that streams over a serial line. The constructor sets the device up
-/// and may wait for up to some seconds; `poll` belongs to the control thread.
+/// and may wait for up to some seconds; `poll` belongs to the thread that reads the line.
 ///
 /// After the line was gone, or the device lost its settings (power), a new object sets it up again.
 class MipImu {
@@ -70,8 +70,12 @@ class MipImu {
   };
 
   /// Reads what is there and takes the newest sample from it. True: there is a new one. `now_ns`:
-  /// CLOCK_MONOTONIC. Never waits, allocates or logs; one system call.
+  /// CLOCK_MONOTONIC. Never allocates or logs; one system call, which may wait for the kernel's
+  /// worker: see ImuThread.
   bool poll(std::int64_t now_ns) noexcept;
+
+  /// Waits until there is something to poll, for at most `timeout_ms`.
+  void wait(int timeout_ms) const noexcept { port_.wait_readable(timeout_ms); }
 
   /// The newest sample; `tick` is 0: who knows the loop's ticks makes it from sample_time_ns().
   /// With a quaternion rate below the rate, the orientation is up to that many samples older.

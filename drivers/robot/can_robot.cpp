@@ -66,10 +66,9 @@ void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
     frame.joints.torque_nm[j] = drive.torque_nm();
     frame.joints.tick[j] = drive.tick();
   }
-  const std::int64_t now = now_ns(CLOCK_MONOTONIC);
-  if (imu_.poll(now)) {
+  if (imu_.poll()) {
     frame.imu = imu_.sample();
-    frame.imu.tick = tick_of(now - imu_.sample_time_ns(), tick);
+    frame.imu.tick = tick_of(now_ns(CLOCK_MONOTONIC) - imu_.sample_time_ns(), tick);
   }
   frame.drives_cut = cut_.load(std::memory_order_relaxed) ? 1 : 0;
 }

@@ -9,7 +9,7 @@
 
 #include "drivers/can/can_error.h"
 #include "drivers/can/can_socket.h"
-#include "drivers/imu/mip_imu.h"
+#include "drivers/imu/imu_thread.h"
 #include "drivers/robot/drive.h"
 #include "drivers/robot/drive_look.h"
 #include "drivers/robot/hardware_config.h"
@@ -50,7 +50,7 @@ class CanRobot final : public RobotIo {
 
   const std::vector<BusCounters>& bus_counters() const noexcept { return counters_; }
   const JointArray<Drive>& drives() const noexcept { return drives_; }
-  const MipImu& imu() const noexcept { return imu_; }
+  const ImuThread& imu() const noexcept { return imu_; }
 
  private:
   /// Tells all drives to be off until each has answered, for 0.1 s at most.
@@ -62,7 +62,7 @@ class CanRobot final : public RobotIo {
   void send(int bus, std::span<const CanFrame> frames) noexcept;
 
   HardwareConfig config_;
-  MipImu imu_;  // before the buses: without it nothing is sent
+  ImuThread imu_;  // before the buses: without it nothing is sent
   CanSockets sockets_;
   std::vector<BusCounters> counters_;
   JointArray<Drive> drives_;

@@ -15,14 +15,15 @@
 namespace sandrunner::hil {
 
 ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
-                                     const std::string& log) {
+                                     const std::string& folder) {
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "log.txt", O_WRONLY | O_CREAT | O_TRUNC,
                                    0666);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   // Not the bench's priority: the controller has its own.

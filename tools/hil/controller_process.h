@@ -12,8 +12,8 @@ namespace sandrunner::hil {
 /// The controller as a process of its own.
 class ControllerProcess {
  public:
-  /// Starts it; what it prints goes into the file `log`. Throws InputError.
-  ControllerProcess(const std::vector<std::string>& command, const std::string& log);
+  /// Starts it in `folder`; what it prints goes into log.txt there. Throws InputError.
+  ControllerProcess(const std::vector<std::string>& command, const std::string& folder);
   /// Kills it if it still runs.
   ~ControllerProcess();
   ControllerProcess(const ControllerProcess&) = delete;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -37,23 +38,25 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// What its summary.json says of the end.
+/// What it printed of the end: "FAILED: joints_stale (LF_KFE) after 0.00 s of Walk".
 struct Diagnosis {
   std::string fault;
   std::set<std::string> joints;
 };
 
-Diagnosis diagnosis(const std::string& path) {
+Diagnosis diagnosis(const std::string& printed) {
+  constexpr std::string_view kFailed = "FAILED: ";
   Diagnosis d;
-  const nlohmann::json summary = nlohmann::json::parse(text_of(path), nullptr, false);
-  if (!summary.is_object()) return d;
-  if (const auto reason = summary.find("fall_reason");
-      reason != summary.end() && reason->is_string()) {
-    d.fault = reason->get<std::string>();
-  }
-  if (const auto joints = summary.find("fault_joints"); joints != summary.end()) {
-    for (const auto& joint : *joints) d.joints.insert(joint.get<std::string>());
-  }
+  const std::size_t at = printed.find(kFailed);
+  if (at == std::string::npos) return d;
+  std::string line =
+      printed.substr(at + kFailed.size(), printed.find('\n', at) - at - kFailed.size());
+  d.fault = line.substr(0, line.find(' '));
+  const std::size_t open = line.find('('), close = line.find(')');
+  if (open == std::string::npos || close == std::string::npos) return d;
+  line = line.substr(open + 1, close - open - 1);
+  std::replace(line.begin(), line.end(), ',', ' ');
+  d.joints = words_of(line);
   return d;
 }
 
@@ -93,7 +96,8 @@ void judge_bench(const FaultRun& run, const RunPlace& place, const BenchReport& 
 RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
   const std::string dir = place.out_dir + "/" + run.name;
   prepare_folder(dir, "--out");
-  const std::string hardware = fmt::format("{}/{}.toml", place.hardware_dir, run.hardware);
+  const std::string hardware =
+      std::filesystem::absolute(fmt::format("{}/{}.toml", place.hardware_dir, run.hardware));
   std::vector<std::string> assignments = place.assignments;
   assignments.push_back("hardware.imu.device=" + place.imu_link);
   const ProcessConfig config = read_bench_config(hardware, place.terrain, {}, assignments);
@@ -105,12 +109,11 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
 
   std::vector<std::string> command = {
       place.controller, "--hardware", hardware,      "--arm",      "--command",
-      place.command,    "--terrain",  place.terrain, "--duration", fmt::format("{}", place.walk_s),
-      "--out",          dir};
+      place.command,    "--terrain",  place.terrain, "--duration", fmt::format("{}", place.walk_s)};
   for (const std::string& assignment : assignments) {
     command.insert(command.end(), {"--set", assignment});
   }
-  ControllerProcess controller(command, dir + "/log.txt");
+  ControllerProcess controller(command, dir);
   std::uint64_t questions = 0, afterwards = 0;
   const BenchReport report = bench.play(
       [&] {
@@ -129,7 +132,8 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
         ended ? fmt::format("the controller ended with {}, expected {}", *ended, run.exit_code)
               : "the controller does not end");
   }
-  const Diagnosis found = diagnosis(dir + "/summary.json");
+  const std::string printed = text_of(dir + "/log.txt");
+  const Diagnosis found = diagnosis(printed);
   if (found.fault != run.bit) {
     verdict.wrong.push_back(fmt::format("fault '{}', expected '{}'", found.fault, run.bit));
   }
@@ -137,7 +141,7 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
     verdict.wrong.push_back(fmt::format("joints {}, expected {}", fmt::join(found.joints, " "),
                                         *run.joints != '\0' ? run.joints : "none"));
   }
-  if (text_of(dir + "/log.txt").find(run.says) == std::string::npos) {
+  if (printed.find(run.says) == std::string::npos) {
     verdict.wrong.push_back(fmt::format("its output does not say '{}'", run.says));
   }
   return verdict;

@@ -14,7 +14,7 @@ struct RunPlace {
   std::string controller = "sandrunner";
   std::string hardware_dir = ".";  ///< where mit.toml and moteus.toml lie
   std::string imu_link = "/tmp/imu";
-  std::string out_dir;  ///< gets a folder for each run: log.txt, bench.json, and the controller's
+  std::string out_dir;  ///< gets a folder for each run: log.txt, bench.json, black boxes
   std::string terrain = "dry-sand";
   std::string command = "1,0,0";
   double walk_s = 10.0;                  ///< of the runs that walk to their end

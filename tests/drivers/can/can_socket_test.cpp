@@ -315,9 +315,7 @@ TEST_F(CanSocketTest, AFullQueueIsABusThatIsDownAndWorksAgainOnceItDrains) {
     for (int i = 0; i < 5000 && result.status != CanStatus::kOk; ++i) {
       std::array<char, 4096> text;
       pollfd ready{master, POLLIN, 0};
-      poll(&ready, 1, 10);
-      if (read(master, text.data(), text.size()) < 0) {
-        ASSERT_EQ(errno, EAGAIN);
+      while (poll(&ready, 1, 10) > 0 && read(master, text.data(), text.size()) > 0) {
       }
       result = socket.send(frames);
     }
