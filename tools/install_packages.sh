@@ -12,10 +12,11 @@ packages=(
   liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
   esbuild libjs-three
 )
-# Trainer, benches, tests and the Debian package. The last line is a DDS peer that is not ours, and what generates its
+# Trainer, benches, tests and the Debian package; the emulated machine of tools/hil. The last line is a DDS peer that is not ours, and what generates its
 # code.
 [[ ${1:-all} == sandrunner ]] || packages+=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file
+  qemu-system-x86 busybox-static cpio xz-utils strace
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
 [[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev chromium-headless-shell)

@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/hil/emulated_robot.h"
 
+#include <algorithm>
+
 namespace sandrunner::hil {
+namespace {
+
+/// Of the contact solver: a robot that lies on base, knees and feet would take longer than a tick
+/// on the emulated machine.
+constexpr int kMostSweeps = 20;
+
+}  // namespace
 
 EmulatedRobot::EmulatedRobot(const sim::Robot& robot, const sim::SimulatorConfig& config)
     : simulator_(robot, config),
       foot_(make_foot_profile(config.terrain, robot.model)),
       settings_(config.step) {
+  settings_.max_sweeps = std::min(settings_.max_sweeps, kMostSweeps);
   simulator_.reset_lying();
   state_ = simulator_.state().robot;
 }
