@@ -15,9 +15,9 @@ enum class DriveTrouble : std::uint64_t {
   kNotEnabled = 1u << 8,   ///< told to enable, it did not within kEnable_s
   kSwitchedOff = 1u << 9,  ///< it is off though nobody told it to: reboot, its time-out, its
                            ///< maker's tool
-  kHot = 1u << 10,      ///< above HardwareConfig::temperature_limit_degc
-  kVoltage = 1u << 11,  ///< its supply is outside the range
-  kBusOff = 1u << 12,   ///< its bus was off since the drives were enabled
+  kHot = 1u << 10,         ///< above HardwareConfig::temperature_limit_degc
+  kVoltage = 1u << 11,     ///< its supply is outside the range
+  kBusOff = 1u << 12,      ///< its bus was off since the drives were enabled
 };
 inline constexpr double kEnable_s = 0.1;
 
