@@ -4,13 +4,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
 
+#include "drivers/check/check.h"
+#include "drivers/robot/bus_plan.h"
 #include "drivers/robot/can_robot.h"
+#include "drivers/robot/dry_run.h"
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
@@ -69,10 +73,16 @@ std::string write_results(const RunResult& result, const RunInfo& info,
   return line + "\n";
 }
 
-ProcessConfig read_config(const Options& options, const PolicySpec& spec) {
+// `hardware`: text in place of the hardware file's own; null: that. `spec` may be null.
+ProcessConfig read_config(const Options& options, const PolicySpec* spec,
+                          const std::string* hardware = nullptr) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, options.terrain);
-  if (!options.hardware_path.empty()) tree.add_file(options.hardware_path);
+  if (hardware) {
+    tree.add_text(*hardware, options.hardware_path);
+  } else if (!options.hardware_path.empty()) {
+    tree.add_file(options.hardware_path);
+  }
   for (const std::string& file : options.config_files) tree.add_file(file);
   for (const std::string& assignment : options.assignments) tree.set(assignment);
   if (options.live) tree.set("dds.enabled=true");
@@ -80,7 +90,7 @@ ProcessConfig read_config(const Options& options, const PolicySpec& spec) {
     tree.set_text("dds.security_dir", options.dds_security_dir, "--dds-security");
   }
   if (!options.robot_path.empty()) tree.set_text("robot", options.robot_path, "--robot");
-  ProcessConfig config = read_process_config(tree, &spec);
+  ProcessConfig config = read_process_config(tree, spec);
   if (!options.hardware_path.empty() && !config.hardware) {
     throw InputError(fmt::format("{}: found no table [hardware]", options.hardware_path));
   }
@@ -131,6 +141,41 @@ struct Listeners {
   }
 };
 
+int check(const Options& options) {
+  const ProcessConfig config = read_config(options, nullptr);
+  if (options.check.plan) {
+    const std::vector<PlannedBus> plan = plan_buses(*config.hardware);
+    fmt::print("{}", plan_table(*config.hardware, plan));
+    const bool fits = std::ranges::none_of(plan, &PlannedBus::overloaded);
+    return fits ? kExitOk : kExitRobotFailed;
+  }
+  CheckTask task{.path = options.hardware_path,
+                 .config = *config.hardware,
+                 .robot = config.robot.description,
+                 .gate = config.controller.gate,
+                 .nominal_rad = config.robot.nominal_rad,
+                 .move = options.check.move,
+                 .zero_pose_rad = {},
+                 .read = [&](const std::string& text) {
+                   return *read_config(options, nullptr, &text).hardware;
+                 }};
+  if (options.check.zero == "lying") task.zero_pose_rad = config.robot.lying_rad;
+  if (options.check.zero == "nominal") task.zero_pose_rad = config.robot.nominal_rad;
+  return run_check(task);
+}
+
+// The frames that a standing robot would be sent.
+std::string dry_run(const ProcessConfig& config) {
+  const auto& stand = config.controller.stand;
+  JointArray<JointSetPoint> points;
+  for (int j = 0; j < kNumJoints; ++j) {
+    points[j] = {.position_rad = stand.nominal_rad[j],
+                 .kp_nmprad = stand.kp_nmprad,
+                 .kd_nmsprad = stand.kd_nmsprad};
+  }
+  return dry_run(*config.hardware, config.robot.description, points);
+}
+
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
@@ -138,6 +183,7 @@ int run(int argc, char** argv) {
     print_rt_report();
     return kExitOk;
   }
+  if (options->check.asked) return check(*options);
   const CommandSource command(options->live ? "0,0,0" : options->command);
   const std::string policy_text = options->policy_path.empty()
                                       ? std::string(shipped_policy_text())
@@ -145,7 +191,11 @@ int run(int argc, char** argv) {
   Policy policy =
       load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
                                                                  : options->policy_path);
-  const ProcessConfig config = read_config(*options, policy.spec());
+  const ProcessConfig config = read_config(*options, &policy.spec());
+  if (options->dry_run) {
+    fmt::print("{}", dry_run(config));
+    return kExitOk;
+  }
   if (!policy.spec().has_envelope) {
     to_standard_error(
         fmt::format("sandrunner: policy '{}' does not say which commands it can follow: they are "

@@ -15,6 +15,7 @@ LAYERS = [
     ["rt/base"],
     ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/robot"],
+    ["drivers/check"],
     ["sim/lanes"],
     ["sim/robot"],
     ["sim/ground"],
@@ -28,7 +29,7 @@ LAYERS = [
     ["rt"],
     ["tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
-    ["tools/bench", "tools/ctl", "tools/evaluate", "tools/policy", "tools/replay", "tools/train"],
+    ["tools/bench", "tools/ctl", "tools/evaluate", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
 NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/realtime/", "rt/report/", "rt/telemetry/")

@@ -18,7 +18,7 @@ packages=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
-[[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev)
+[[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev chromium-headless-shell)
 
 fail() {
   echo "install_packages.sh: $1" >&2

@@ -10,26 +10,11 @@
 #include <thread>
 
 #include "drivers/can/damiao_registers.h"
-#include "drivers/robot/bus_plan.h"
 #include "drivers/robot/drive.h"
 #include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {
-
-using Clock = std::chrono::system_clock;  // that of the kernel's stamps
-constexpr std::chrono::milliseconds kExchange{5};
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
-      .count();
-}
-
-std::string name_of(const HardwareConfig& config, const RobotDescription& robot, int j) {
-  const DriveConfig& drive = config.drives[j];
-  return fmt::format("{} ({} id {})", robot.joint_names[j], config.buses[drive.bus].interface,
-                     drive.id());
-}
 
 /// What a Damiao's register holds after it was written, if `value` is given. Nothing if it does not
 /// answer.
@@ -59,33 +44,74 @@ std::optional<double> damiao_register(const MitDrive& drive, CanSocket& socket, 
 }
 
 /// The protection against a drive whose numbers mean something else: what it can tell, it is asked.
-void require_damiao(const HardwareConfig& config, const std::string& name, const MitDrive& drive,
-                    CanSocket& socket) {
-  const auto require = [&](DamiaoRegister reg, const char* what, double configured,
-                           std::optional<double> value) {
+/// What is wrong, empty if nothing is.
+std::string damiao_problem(const HardwareConfig& config, const MitDrive& drive, CanSocket& socket) {
+  const auto problem = [&](DamiaoRegister reg, const char* what, double configured,
+                           std::optional<double> value) -> std::string {
     const std::optional<double> told = damiao_register(drive, socket, reg, value);
     if (!told) {
-      throw InputError(
-          fmt::format("{}: does not tell its {} (register {})", name, what, static_cast<int>(reg)));
+      return fmt::format("does not tell its {} (register {})", what, static_cast<int>(reg));
     }
-    if (std::fabs(*told - configured) > 1e-3 * configured) {
-      throw InputError(
-          fmt::format("{}: its {} is {:.6g}, configured is {:.6g}", name, what, *told, configured));
-    }
+    if (std::fabs(*told - configured) <= 1e-3 * configured) return "";
+    return fmt::format("its {} is {:.6g}, configured is {:.6g}", what, *told, configured);
   };
-  require(DamiaoRegister::kPositionMax, "position range (PMAX)", drive.limits.position_rad, {});
-  require(DamiaoRegister::kVelocityMax, "velocity range (VMAX)", drive.limits.velocity_radps, {});
-  require(DamiaoRegister::kTorqueMax, "torque range (TMAX)", drive.limits.torque_nm, {});
   const double timeout = std::round(config.drive_timeout_s / kDamiaoTimeoutUnit_s);
-  require(DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, timeout);
+  std::string found =
+      problem(DamiaoRegister::kPositionMax, "position range (PMAX)", drive.limits.position_rad, {});
+  if (found.empty()) {
+    found = problem(DamiaoRegister::kVelocityMax, "velocity range (VMAX)",
+                    drive.limits.velocity_radps, {});
+  }
+  if (found.empty()) {
+    found = problem(DamiaoRegister::kTorqueMax, "torque range (TMAX)", drive.limits.torque_nm, {});
+  }
+  if (found.empty()) {
+    found = problem(DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, timeout);
+  }
   // The answer to a write may be an echo.
-  require(DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, {});
+  if (found.empty()) {
+    found = problem(DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, {});
+  }
+  return found;
+}
+
+/// What is wrong with the drive of joint `j`, empty if nothing is.
+std::string problem_of(const HardwareConfig& config, const GateConfig& gate,
+                       const CanSockets& sockets, const FoundDrive& found, int j) {
+  const DriveConfig& drive = config.drives[j];
+  // The first answer may come after the exchange; one in twenty lost is a bad bus.
+  if (found.replies < found.requests - found.requests / 20) {
+    return fmt::format(
+        "{} of {} requests answered; look at its power, its id, its bus, and who else has that id",
+        found.replies, found.requests);
+  }
+  if (found.replies > found.requests) {
+    return fmt::format("{} answers to {} requests: two drives have that id", found.replies,
+                       found.requests);
+  }
+  const double q = found.position_rad;
+  if (q < gate.joint_lower_rad[j] - gate.joint_fault_rad ||
+      q > gate.joint_upper_rad[j] + gate.joint_fault_rad) {
+    return fmt::format(
+        "is at {:.3f} rad, where the joint (from {:.3f} to {:.3f}) cannot be: its zero, sign or "
+        "gear, or another drive",
+        q, gate.joint_lower_rad[j], gate.joint_upper_rad[j]);
+  }
+  if (found.fault != 0) {
+    return fmt::format("reports a fault: {}", drive_fault_words(drive, found.fault));
+  }
+  if (drive.protocol == Protocol::kMoteus) return "";  // told its time-out with each command
+  if (drive.mit.variant == MitVariant::kDamiao) {
+    return damiao_problem(config, drive.mit, *sockets[drive.bus]);
+  }
+  if (config.timeout_unverified) return "";
+  return "cannot tell its time-out over CAN; set it in the drive, then set "
+         "hardware.timeout_unverified=true";
 }
 
 }  // namespace
 
 CanSockets open_buses(const HardwareConfig& config) {
-  require_capacity(config);
   CanSockets sockets;
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
     const BusConfig& bus = config.buses[b];
@@ -106,82 +132,28 @@ CanSockets open_buses(const HardwareConfig& config) {
   return sockets;
 }
 
-JointArray<FoundDrive> look_for_drives(const HardwareConfig& config, const CanSockets& sockets) {
-  JointArray<FoundDrive> found;
-  JointArray<Drive> drives;
-  for (int j = 0; j < kNumJoints; ++j) drives[j] = Drive(config.drives[j], config);
-  for (int exchange = 0; exchange < kLookExchanges; ++exchange) {
-    const std::int64_t sent_ns = now_ns();
-    for (int j = 0; j < kNumJoints; ++j) {
-      CanFrame frame;
-      drives[j].off_frame(frame);
-      sockets[config.drives[j].bus]->send({&frame, 1});
-    }
-    std::this_thread::sleep_for(kExchange);
-    for (std::size_t b = 0; b < sockets.size(); ++b) {
-      std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
-      const CanResult result = sockets[b]->receive(received);
-      for (int i = 0; i < result.frames; ++i) {
-        for (int j = 0; j < kNumJoints; ++j) {
-          if (config.drives[j].bus != static_cast<int>(b)) continue;
-          if (!drives[j].take(received[i].frame, 0)) continue;
-          FoundDrive& f = found[j];
-          ++f.replies;
-          const double trip_s = 1e-9 * static_cast<double>(received[i].stamp_ns - sent_ns);
-          f.round_trip_s = std::max(f.round_trip_s, trip_s);
-          break;
-        }
-      }
-    }
-  }
+std::vector<std::string> drive_problems(const HardwareConfig& config, const RobotDescription& robot,
+                                        const GateConfig& gate, const CanSockets& sockets,
+                                        const JointArray<FoundDrive>& found) {
+  std::vector<std::string> problems;
   for (int j = 0; j < kNumJoints; ++j) {
-    found[j].position_rad = drives[j].position_rad();
-    found[j].fault = drives[j].fault();
-    found[j].temperature_degc = drives[j].temperature_degc();
-    found[j].voltage_v = drives[j].voltage_v();
+    const DriveConfig& drive = config.drives[j];
+    if (!sockets[drive.bus]) continue;
+    const std::string problem = problem_of(config, gate, sockets, found[j], j);
+    if (problem.empty()) continue;
+    problems.push_back(fmt::format("{} ({} id {}): {}", robot.joint_names[j],
+                                   config.buses[drive.bus].interface, drive.id(), problem));
   }
-  return found;
+  return problems;
 }
 
 void require_drives(const HardwareConfig& config, const RobotDescription& robot,
                     const GateConfig& gate, const CanSockets& sockets) {
-  const JointArray<FoundDrive> found = look_for_drives(config, sockets);
-  for (int j = 0; j < kNumJoints; ++j) {
-    const std::string name = name_of(config, robot, j);
-    // The first answer may come after the exchange; one in twenty lost is a bad bus.
-    if (found[j].replies < kLookExchanges - kLookExchanges / 20) {
-      throw InputError(
-          fmt::format("{}: {} of {} requests answered; its power, its id, its bus, and "
-                      "who else has that id",
-                      name, found[j].replies, kLookExchanges));
-    }
-    if (found[j].replies > kLookExchanges) {
-      throw InputError(fmt::format("{}: {} answers to {} requests: two drives have that id", name,
-                                   found[j].replies, kLookExchanges));
-    }
-    const double q = found[j].position_rad;
-    if (q < gate.joint_lower_rad[j] - gate.joint_fault_rad ||
-        q > gate.joint_upper_rad[j] + gate.joint_fault_rad) {
-      throw InputError(
-          fmt::format("{}: is at {:.3f} rad, where the joint (from {:.3f} to {:.3f}) "
-                      "cannot be: its zero, sign or gear, or another drive",
-                      name, q, gate.joint_lower_rad[j], gate.joint_upper_rad[j]));
-    }
-    if (found[j].fault != 0) {
-      throw InputError(fmt::format("{}: reports a fault: {}", name,
-                                   drive_fault_words(config.drives[j], found[j].fault)));
-    }
-    const DriveConfig& drive = config.drives[j];
-    if (drive.protocol == Protocol::kMoteus) continue;  // told with each command
-    if (drive.mit.variant == MitVariant::kDamiao) {
-      require_damiao(config, name, drive.mit, *sockets[drive.bus]);
-    } else if (!config.timeout_unverified) {
-      throw InputError(
-          fmt::format("{}: cannot tell its time-out over CAN; set it in the drive, then set "
-                      "hardware.timeout_unverified=true",
-                      name));
-    }
-  }
+  DriveLook look(config, sockets);
+  for (int exchange = 0; exchange < kLookExchanges; ++exchange) look.exchange();
+  const std::vector<std::string> problems =
+      drive_problems(config, robot, gate, sockets, look.drives());
+  if (!problems.empty()) throw InputError(problems.front());
 }
 
 }  // namespace sandrunner

@@ -35,12 +35,6 @@ std::array<FrameShape, 2> shapes_of(const DriveConfig& config, const HardwareCon
   return {shape_of(command), shape_of(reply)};
 }
 
-/// Interfaces of the kernel's own (vcan) stand on no device.
-bool is_virtual(const std::string& interface) {
-  std::error_code absent;
-  return !std::filesystem::exists("/sys/class/net/" + interface + "/device", absent);
-}
-
 }  // namespace
 
 std::vector<PlannedBus> plan_buses(const HardwareConfig& hardware) {
@@ -90,14 +84,25 @@ std::string plan_table(const HardwareConfig& hardware, const std::vector<Planned
   return table;
 }
 
-void require_capacity(const HardwareConfig& hardware) {
+bool is_virtual(const std::string& interface) {
+  const std::filesystem::path net = "/sys/class/net/" + interface;
+  std::error_code absent;
+  return std::filesystem::exists(net, absent) && !std::filesystem::exists(net / "device", absent);
+}
+
+std::string overload(const HardwareConfig& hardware, const PlannedBus& bus) {
+  if (!bus.overloaded()) return "";
+  return fmt::format(
+      "hardware.bus {}: {} drives at {} Hz load it by {:.0f} % in the worst case, at most {:.0f} % "
+      "leave room for a lost frame; {} drives fit, or {:g} Hz (sandrunner check --plan)",
+      bus.interface, bus.drives, hardware.rate_hz, 100.0 * bus.load.worst, 100.0 * kMaxBusLoad,
+      bus.most_drives, bus.most_rate_hz);
+}
+
+void require_capacity(const HardwareConfig& hardware,
+                      bool (*is_free)(const std::string& interface)) {
   for (const PlannedBus& bus : plan_buses(hardware)) {
-    if (!bus.overloaded() || is_virtual(bus.interface)) continue;
-    throw InputError(fmt::format(
-        "hardware.bus {}: {} drives at {} Hz load it by {:.0f} % in the worst case, at most {:.0f} "
-        "% leave room for a lost frame; {} drives fit, or {:g} Hz (sandrunner check --plan)",
-        bus.interface, bus.drives, hardware.rate_hz, 100.0 * bus.load.worst, 100.0 * kMaxBusLoad,
-        bus.most_drives, bus.most_rate_hz));
+    if (bus.overloaded() && !is_free(bus.interface)) throw InputError(overload(hardware, bus));
   }
 }
 

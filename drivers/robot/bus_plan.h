@@ -25,8 +25,16 @@ std::vector<PlannedBus> plan_buses(const HardwareConfig& hardware);
 /// The plan as a table, for a person.
 std::string plan_table(const HardwareConfig& hardware, const std::vector<PlannedBus>& plan);
 
-/// Throws InputError for a real bus that is overloaded, in one line with what would fit. Interfaces
-/// that the kernel emulates (vcan) have no bit rate and are let through.
-void require_capacity(const HardwareConfig& hardware);
+/// Whether the kernel emulates this interface (vcan): it has no bit rate. One that is not there is
+/// not emulated.
+bool is_virtual(const std::string& interface);
+
+/// What is wrong with a planned bus that stands on an adapter, in one line with what would fit;
+/// empty if nothing is.
+std::string overload(const HardwareConfig& hardware, const PlannedBus& bus);
+
+/// Throws InputError for the first bus that is overloaded and for which `is_free` is false.
+void require_capacity(const HardwareConfig& hardware,
+                      bool (*is_free)(const std::string& interface) = is_virtual);
 
 }  // namespace sandrunner

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "drivers/robot/bring_up.h"
+#include "drivers/robot/bus_plan.h"
 #include "rt/core/joint_pd.h"
 
 namespace sandrunner {
@@ -27,14 +28,19 @@ std::uint64_t tick_of(std::int64_t age_ns, std::uint64_t tick) noexcept {
   return tick - std::min(ago, tick);
 }
 
+const HardwareConfig& within_capacity(const HardwareConfig& config) {
+  require_capacity(config);
+  return config;
+}
+
 }  // namespace
 
 CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
                    const GateConfig& gate)
-    : config_(config),
+    : config_(within_capacity(config)),
+      imu_(config.imu),
       sockets_(open_buses(config)),
       counters_(config.buses.size()),
-      imu_(config.imu),
       off_frames_(config.buses.size()) {
   for (int j = 0; j < kNumJoints; ++j) {
     drives_[j] = Drive(config.drives[j], config);
@@ -43,6 +49,7 @@ CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
     off_frames_[config.drives[j].bus].push_back(frame);
   }
   require_drives(config, robot, gate, sockets_);
+  switch_off();  // the first tick is to know where the joints are
 }
 
 CanRobot::~CanRobot() = default;
@@ -154,7 +161,9 @@ void CanRobot::cut_drives() noexcept {
   for (std::size_t b = 0; b < sockets_.size(); ++b) sockets_[b]->send(off_frames_[b]);
 }
 
-void CanRobot::shut_down() noexcept {
+void CanRobot::shut_down() noexcept { switch_off(); }
+
+void CanRobot::switch_off() noexcept {
   JointArray<std::uint64_t> before;
   for (int j = 0; j < kNumJoints; ++j) before[j] = drives_[j].replies();
   for (int i = 0; i < 50; ++i) {

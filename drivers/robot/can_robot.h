@@ -11,6 +11,7 @@
 #include "drivers/can/can_socket.h"
 #include "drivers/imu/mip_imu.h"
 #include "drivers/robot/drive.h"
+#include "drivers/robot/drive_look.h"
 #include "drivers/robot/hardware_config.h"
 #include "rt/core/robot_io.h"
 
@@ -45,7 +46,6 @@ class CanRobot final : public RobotIo {
   void write(const SafeCommand& command) noexcept override;
   void skip(std::uint64_t, const SafeCommand&) noexcept override {}  // it went on without us
   void cut_drives() noexcept override;
-  /// Tells all drives to be off until each has answered, for 0.1 s at most.
   void shut_down() noexcept override;
 
   const std::vector<BusCounters>& bus_counters() const noexcept { return counters_; }
@@ -53,7 +53,8 @@ class CanRobot final : public RobotIo {
   const MipImu& imu() const noexcept { return imu_; }
 
  private:
-  void find_drives(const RobotDescription& robot, const GateConfig& gate);
+  /// Tells all drives to be off until each has answered, for 0.1 s at most.
+  void switch_off() noexcept;
   void receive(std::uint64_t tick) noexcept;
   void take(int bus, const ReceivedFrame& received, std::uint64_t tick,
             std::int64_t now_ns) noexcept;
@@ -61,13 +62,12 @@ class CanRobot final : public RobotIo {
   void send(int bus, std::span<const CanFrame> frames) noexcept;
 
   HardwareConfig config_;
-  std::vector<std::unique_ptr<CanSocket>> sockets_;
+  MipImu imu_;  // before the buses: without it nothing is sent
+  CanSockets sockets_;
   std::vector<BusCounters> counters_;
   JointArray<Drive> drives_;
-  MipImu imu_;
   std::vector<std::vector<CanFrame>> off_frames_;  ///< of each bus, for cut_drives()
   std::uint64_t tick_ = 0, next_exchange_ = 0;
-  std::uint64_t imu_tick_ = 0;
   bool enabled_ = false;
   std::atomic<bool> cut_{false};
   static_assert(std::atomic<bool>::is_always_lock_free);

@@ -14,7 +14,11 @@ namespace sandrunner {
 namespace {
 
 constexpr int kMostBuses = 12;
+constexpr int kLeastRate_hz = 400;  // three exchanges within the gate's ceiling of an age
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+// What the int16 registers of a moteus hold (moteus_frame.h): 1e-4 turns, 2.5e-4 turns/s.
+constexpr double kMoteusPosition_rad = 32767 * 1e-4 * kTurn_rad;
+constexpr double kMoteusSpeed_radps = 32767 * 2.5e-4 * kTurn_rad;
 
 BusConfig read_bus(ConfigTree& t, const std::vector<BusConfig>& before) {
   BusConfig bus;
@@ -35,7 +39,13 @@ BusConfig read_bus(ConfigTree& t, const std::vector<BusConfig>& before) {
                                  before.size(), bus.interface));
   }
   bus.protocol = protocol == "mit" ? Protocol::kMit : Protocol::kMoteus;
-  const bool fd = bus.protocol == Protocol::kMoteus || t.flag("fd", false);
+  const bool moteus = bus.protocol == Protocol::kMoteus;
+  const bool fd = t.flag("fd", moteus);
+  if (moteus && !fd) {
+    throw InputError(
+        fmt::format("hardware.bus[{}] ({}): moteus drives speak CAN FD alone, found fd = false",
+                    before.size(), bus.interface));
+  }
   bus.format = fd ? CanFormat::kFdWithBitRateSwitch : CanFormat::kClassic;
   bus.rates.nominal_hz = t.number("bitrate_bps", bus.rates.nominal_hz, 1e4, 1e6);
   if (fd) bus.rates.data_hz = t.number("data_bitrate_bps", bus.rates.data_hz, 1e4, 8e6);
@@ -59,6 +69,10 @@ MitDrive read_mit(ConfigTree& t, const std::string& where, CanFormat format) {
     for (const MitModel& m : mit_models()) names.push_back(m.name);
     throw InputError(
         fmt::format("{}: model '{}', expected one of {}", where, name, fmt::join(names, ", ")));
+  }
+  if (format != CanFormat::kClassic && model->variant != MitVariant::kDamiao) {
+    throw InputError(fmt::format(
+        "{}: {} speaks classic CAN alone, its bus is set to CAN FD (fd = true)", where, name));
   }
   MitDrive drive;
   drive.variant = model->variant;
@@ -100,6 +114,10 @@ DriveConfig read_drive(ConfigTree& t, const std::string& joint, const HardwareCo
   if (id == 0) throw InputError(where + ": found no id, expected 1 to 126");
   if (bus.protocol == Protocol::kMit) {
     drive.mit = read_mit(t, where, bus.format);
+    if (drive.mit.variant == MitVariant::kDamiao && id > 15) {
+      throw InputError(
+          fmt::format("{}: id {}, but a Damiao names only 1 to 15 in its replies", where, id));
+    }
     drive.mit.motor_id = id;
     drive.max_torque_nm = drive.mit.limits.torque_nm;
   } else {
@@ -130,20 +148,30 @@ void require_range(const DriveConfig& d, int j, const std::string& joint, double
         d.gear * d.gear * (mit ? l.kp_nmprad : d.moteus.kp_nmprev / kTurn_rad), "N m/rad");
   check("kd", gate.kd_limit_nmsprad,
         d.gear * d.gear * (mit ? l.kd_nmsprad : d.moteus.kd_nmsprev / kTurn_rad), "N m s/rad");
-  if (!mit) return;
-  check("speed", gate.speed_limit_radps[j], l.velocity_radps / d.gear, "rad/s");
+  check("speed", gate.speed_limit_radps[j], (mit ? l.velocity_radps : kMoteusSpeed_radps) / d.gear,
+        "rad/s");
   const double farthest_rad = std::max(std::fabs(gate.joint_lower_rad[j] - d.zero_rad),
                                        std::fabs(gate.joint_upper_rad[j] - d.zero_rad));
-  check("position", farthest_rad, l.position_rad / d.gear, "rad from its zero");
+  check("position", farthest_rad, (mit ? l.position_rad : kMoteusPosition_rad) / d.gear,
+        "rad from its zero");
 }
 
 void require_one_id_each(const HardwareConfig& h, const RobotDescription& robot) {
   for (int a = 0; a < kNumJoints; ++a) {
-    for (int b = 0; b < a; ++b) {
-      if (h.drives[a].bus != h.drives[b].bus || h.drives[a].id() != h.drives[b].id()) continue;
-      throw InputError(fmt::format("hardware.drive of {}: id {} on {} is that of {}",
-                                   robot.joint_names[a], h.drives[a].id(),
-                                   h.buses[h.drives[a].bus].interface, robot.joint_names[b]));
+    for (int b = 0; b < kNumJoints; ++b) {
+      const DriveConfig& drive = h.drives[a];
+      if (drive.bus != h.drives[b].bus) continue;
+      const std::string& bus = h.buses[drive.bus].interface;
+      if (b < a && drive.id() == h.drives[b].id()) {
+        throw InputError(fmt::format("hardware.drive of {}: id {} on {} is that of {}",
+                                     robot.joint_names[a], drive.id(), bus, robot.joint_names[b]));
+      }
+      // Its replies would be commands to the other.
+      if (drive.protocol == Protocol::kMit && drive.mit.reply_id == h.drives[b].id()) {
+        throw InputError(fmt::format("hardware.drive of {}: reply_id {} on {} is the id of {}",
+                                     robot.joint_names[a], drive.mit.reply_id, bus,
+                                     robot.joint_names[b]));
+      }
     }
   }
 }
@@ -198,7 +226,8 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
   h.mode = config.choice("hardware.mode", "gains", {"gains", "torque"}) == "gains"
                ? DriveMode::kGains
                : DriveMode::kTorque;
-  h.rate_hz = static_cast<int>(config.integer("hardware.rate_hz", h.rate_hz, 200, kControlHz));
+  h.rate_hz =
+      static_cast<int>(config.integer("hardware.rate_hz", h.rate_hz, kLeastRate_hz, kControlHz));
   if (kControlHz % h.rate_hz != 0) {
     throw InputError(
         fmt::format("hardware.rate_hz: {}, expected a whole part of {} (4000, 2000, "
@@ -211,6 +240,10 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
       config.number("hardware.temperature_limit_degc", h.temperature_limit_degc, 0.0, 150.0);
   h.voltage_low_v = config.number("hardware.voltage_low_v", h.voltage_low_v, 0.0, 1e3);
   h.voltage_high_v = config.number("hardware.voltage_high_v", h.voltage_high_v, 0.0, 1e3);
+  if (h.voltage_low_v > h.voltage_high_v) {
+    throw InputError(fmt::format("hardware.voltage_low_v: {} is above hardware.voltage_high_v, {}",
+                                 h.voltage_low_v, h.voltage_high_v));
+  }
   h.torque_scale = config.number("hardware.torque_scale", h.torque_scale, 0.0, 1.0);
   h.hanging = config.flag("hardware.hanging", false);
   for (ConfigTree& bus : config.tables("hardware.bus")) {
@@ -233,6 +266,7 @@ void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.joints_fault_ticks = std::max(gate.joints_fault_ticks, 3 * ticks);
   const auto imu_ticks = static_cast<std::uint64_t>(kControlHz / h.imu.rate_hz);
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
+  gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
   gate.hanging = h.hanging;
 }

@@ -26,6 +26,30 @@ std::uint64_t seed_of(const std::string& text) {
   return seed;
 }
 
+/// The subcommand `check`, which takes the options of the program too, before or after its name.
+CLI::App* add_check(CLI::App& app, Options& o) {
+  CLI::App* const check = app.add_subcommand(
+      "check",
+      "looks at the buses, drives and IMU of a real robot and reports; powers nothing "
+      "(drivers/robot/README.md)");
+  check->fallthrough();
+  check->add_option("FILE", o.hardware_path, "TOML with the drives and the IMU, as of --hardware")
+      ->required()
+      ->type_name("");
+  CLI::Option* const plan =
+      check->add_flag("--plan", o.check.plan, "the load of the buses alone; opens nothing");
+  check->add_flag("--move", o.check.move, "asks somebody to turn each joint by hand")
+      ->excludes(plan);
+  check
+      ->add_option("--zero", o.check.zero,
+                   "takes the pose in which the robot is held for this one, and writes the zeros "
+                   "of the drives into FILE")
+      ->check(CLI::IsMember({"lying", "nominal"}))
+      ->type_name("lying|nominal")
+      ->excludes(plan);
+  return check;
+}
+
 }  // namespace
 
 std::optional<Options> parse_options(int argc, const char* const* argv) {
@@ -48,6 +72,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("FILE")
       ->always_capture_default(false);
   app.add_flag("--arm", o.arm, "with --hardware: the run itself may move the robot");
+  app.add_flag("--dry-run", o.dry_run,
+               "with --hardware: prints the frames that would be sent, and opens nothing");
   app.add_option(
          "--terrain", o.terrain,
          fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
@@ -94,14 +120,23 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("DIR");
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
+  CLI::App* const check = add_check(app, o);
   app.footer(
       "Examples:\n"
       "  sandrunner --command 3,0,0 --out results\n"
       "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
       "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
-      "  sandrunner --clock realtime --command dds");
+      "  sandrunner --clock realtime --command dds\n"
+      "  sandrunner check robot.toml");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = start == "walk";
+  if (check->parsed()) {
+    if (app.count("--hardware") > 0 || o.arm || o.dry_run) {
+      throw InputError("check: reads its own FILE, expected no --hardware, --arm or --dry-run");
+    }
+    o.check.asked = true;
+    return o;
+  }
   const bool hardware = !o.hardware_path.empty();
   if (hardware && (o.start_walking || (app.count("--clock") > 0 && clock == "lockstep"))) {
     throw InputError(
@@ -123,7 +158,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
   }
-  if (hardware && !o.live && !o.arm) {
+  if (o.dry_run && !hardware) throw InputError("--dry-run: expected --hardware with it");
+  if (hardware && !o.live && !o.arm && !o.dry_run) {
     throw InputError(
         "--hardware: this command would move the robot by itself: expected --arm, or --command dds "
         "(operators decide)");

@@ -14,6 +14,7 @@ struct Options {
   std::string robot_path;     ///< map of a robot; empty: the robot that ships
   std::string hardware_path;  ///< TOML of its drives and IMU; empty: the simulator
   bool arm = false;           ///< the script may move the real robot
+  bool dry_run = false;       ///< says what would be sent to it
   std::string terrain = "dry-sand";
   std::string command = "1.5,0,0";
   bool live = false;         ///< --command dds
@@ -21,6 +22,12 @@ struct Options {
   bool start_walking = false;
   bool realtime = false;   ///< --clock realtime
   bool rt_report = false;  ///< the subcommand
+  /// The subcommand `check`; its file is `hardware_path`.
+  struct Check {
+    bool asked = false;
+    bool plan = false, move = false;
+    std::string zero;  ///< pose in which the robot is held: "lying", "nominal"; empty: none
+  } check;
   std::uint64_t seed = 0;
   std::vector<std::string> config_files;
   std::vector<std::string> assignments;  ///< of --set

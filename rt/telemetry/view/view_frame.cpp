@@ -22,9 +22,12 @@ constexpr double kShallowest_m = 0.002;  // hard ground takes no footprint
 template <typename T>
 struct Element {
   using Type = T;
+  static constexpr std::size_t kCount = 1;
 };
 template <typename T, std::size_t kSize>
-struct Element<std::array<T, kSize>> : Element<T> {};
+struct Element<std::array<T, kSize>> : Element<T> {
+  static constexpr std::size_t kCount = kSize * Element<T>::kCount;
+};
 
 template <typename Member>
 constexpr ViewField field(const char* name, std::size_t offset) {
@@ -34,7 +37,7 @@ constexpr ViewField field(const char* name, std::size_t offset) {
   const char* type = std::is_same_v<Type, double>  ? "f64"
                      : std::is_same_v<Type, float> ? "f32"
                                                    : "u32";
-  return {name, type, offset, sizeof(Member) / sizeof(Type)};
+  return {name, type, offset, Element<Member>::kCount};
 }
 
 // The compiler finds place, size and type of a member: a name cannot stand for another's values.

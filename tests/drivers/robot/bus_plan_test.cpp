@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rt/base/errors.h"
 #include "tests/drivers/robot/example.h"
 
 namespace sandrunner {
@@ -47,8 +48,23 @@ TEST(BusPlanTest, TableSaysWhatWouldFit) {
   EXPECT_THAT(table, testing::HasSubstr("800 Hz"));
 }
 
-TEST(BusPlanTest, AnInterfaceOfTheKernelsOwnIsNotRefused) {
-  EXPECT_NO_THROW(require_capacity(example_hardware("mit", {"hardware.rate_hz=1000"})));
+TEST(BusPlanTest, AnOverloadedBusIsRefusedUnlessTheKernelEmulatesIt) {
+  const HardwareConfig config = example_hardware("mit", {"hardware.rate_hz=1000"});
+  EXPECT_NO_THROW(require_capacity(config, [](const std::string&) { return true; }));
+  try {
+    require_capacity(config, [](const std::string& bus) { return bus == "can0"; });
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "hardware.bus can1: 3 drives at 1000 Hz load it by 81 % in the worst case, at "
+                 "most 80 % leave room for a lost frame; 2 drives fit, or 800 Hz (sandrunner check "
+                 "--plan)");
+  }
+}
+
+TEST(BusPlanTest, AnInterfaceThatIsNotThereIsNotEmulated) {
+  EXPECT_FALSE(is_virtual("nosuch0"));
+  EXPECT_TRUE(is_virtual("lo"));
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/drivers/robot/example.h"
 #include "rt/base/errors.h"
+#include "tests/drivers/robot/example.h"
 
 namespace sandrunner {
 namespace {
@@ -65,7 +65,8 @@ TEST(HardwareConfigTest, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal("mit", "bus = \"can0\"", "bus = \"can9\""), HasSubstr("bus 'can9' is none"));
   EXPECT_THAT(refusal("mit", "\"can1\"", "\"can0\""), HasSubstr("'can0' stands twice"));
   EXPECT_THAT(refusal("mit", "sign = 1", "sign = 0"), HasSubstr("sign 0"));
-  EXPECT_THAT(refusal("mit", "sign = 1", "position_rad = 2.0"), HasSubstr("rad from its zero needed"));
+  EXPECT_THAT(refusal("mit", "sign = 1", "position_rad = 2.0"),
+              HasSubstr("rad from its zero needed"));
   EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate_hz = 900"), HasSubstr("whole part of 4000"));
   EXPECT_THAT(refusal("mit", "baud = 921600", "baud = 115200"), HasSubstr("115200"));
   EXPECT_THAT(refusal("mit", "device = \"/dev/ttyS1\"", ""), HasSubstr("hardware.imu.device"));
@@ -74,6 +75,24 @@ TEST(HardwareConfigTest, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal("moteus", "kp_nmprev = 1300.0", "kp_nmprev = 600.0"),
               HasSubstr("kp up to 200 N m/rad needed, 95.49"));
   EXPECT_THAT(refusal("moteus", "max_torque_nm = 65.0", ""), HasSubstr("found no max_torque_nm"));
+  EXPECT_THAT(refusal("moteus", "sign = 1", "gear = 9.0"), HasSubstr("speed up to 25.7 rad/s"));
+  EXPECT_THAT(
+      refusal("mit", "[hardware]\n", "[hardware]\nvoltage_low_v = 50.0\nvoltage_high_v = 40.0\n"),
+      HasSubstr("50 is above hardware.voltage_high_v, 40"));
+}
+
+TEST(HardwareConfigTest, RefusesADriveThatItsBusCannotCarry) {
+  EXPECT_THAT(refusal("moteus", "protocol = \"moteus\"", "protocol = \"moteus\"\nfd = false"),
+              HasSubstr("hardware.bus[0] (can0): moteus drives speak CAN FD alone"));
+  EXPECT_THAT(refusal("mit", "protocol = \"mit\"", "protocol = \"mit\"\nfd = true"),
+              HasSubstr("LF_HAA: AK10-9 speaks classic CAN alone"));
+}
+
+TEST(HardwareConfigTest, RefusesIdsThatAReplyCannotTellApart) {
+  EXPECT_THAT(refusal("mit", "id = 2\nmodel = \"AK10-9\"", "id = 16\nmodel = \"DM8009\""),
+              HasSubstr("LF_HFE: id 16, but a Damiao names only 1 to 15"));
+  EXPECT_THAT(refusal("mit", "reply_id = 0", "reply_id = 2"),
+              HasSubstr("LF_HAA: reply_id 2 on can0 is the id of LF_HFE"));
 }
 
 TEST(HardwareConfigTest, AJointWithoutADriveIsNamed) {
@@ -97,6 +116,19 @@ TEST(HardwareConfigTest, AgesOfTheGateFollowTheRateOfTheExchange) {
   EXPECT_EQ(gate.joints_fault_ticks, 24u);
   EXPECT_DOUBLE_EQ(gate.torque_limit_nm[3], 0.5 * 63.45);
   EXPECT_FALSE(gate.hanging);
+}
+
+TEST(HardwareConfigTest, TheSlowestRatesStayBelowTheGatesCeilings) {
+  GateConfig gate = example_gate();
+  adapt_gate(example_hardware("moteus", {"hardware.rate_hz=400", "hardware.imu.rate_hz=100",
+                                         "hardware.imu.quaternion_rate_hz=100"}),
+             gate);
+  EXPECT_EQ(gate.joints_fault_ticks, 30u);
+  EXPECT_EQ(gate.imu_limit_ticks, 44u);
+  EXPECT_EQ(gate.imu_fault_ticks, 120u);
+  const GateConfig bounded = below_ceilings(gate);
+  EXPECT_EQ(bounded.joints_fault_ticks, gate.joints_fault_ticks);
+  EXPECT_EQ(bounded.imu_fault_ticks, gate.imu_fault_ticks);
 }
 
 TEST(HardwareConfigTest, EveryTorqueCommandOfAScaledRobotFitsASmallerDrive) {

@@ -45,10 +45,10 @@ TEST_F(CommandLineTest, HelpNamesEveryOption) {
        match != std::sregex_iterator(); ++match) {
     options.insert((*match)[1]);
   }
-  EXPECT_EQ(options,
-            (std::set<std::string>{"--help", "--version", "--policy", "--robot", "--terrain",
-                                   "--command", "--dds-security", "--duration", "--start",
-                                   "--clock", "--seed", "--config", "--set", "--out", "--record"}))
+  EXPECT_EQ(options, (std::set<std::string>{
+                         "--help", "--version", "--policy", "--robot", "--hardware", "--arm",
+                         "--dry-run", "--terrain", "--command", "--dds-security", "--duration",
+                         "--start", "--clock", "--seed", "--config", "--set", "--out", "--record"}))
       << output();
   for (const char* text : {"rt-report", "dry-sand", "athletic-track"}) {
     EXPECT_NE(output().find(text), std::string::npos) << text;
@@ -96,8 +96,9 @@ TEST_F(CommandLineTest, RunWritesItsResults) {
   const int code = run("--policy policy --start walk --duration 0.5 --seed 3 --out deep/results");
   ASSERT_TRUE(code == 0 || code == 1) << error();
   EXPECT_EQ(error(), "");
-  EXPECT_EQ(files_in("deep/results"), (std::set<std::string>{"summary.json", "config.toml", "run.csv",
-                                                             "run.html", "run.png", "strip.png"}));
+  EXPECT_EQ(files_in("deep/results"),
+            (std::set<std::string>{"summary.json", "config.toml", "run.csv", "run.html", "run.png",
+                                   "strip.png"}));
   for (const char* name : {"run.png", "strip.png"}) {
     EXPECT_EQ(read_file(folder_.path("deep/results/") + name).substr(0, 8), "\x89PNG\r\n\x1a\n");
   }
@@ -276,7 +277,7 @@ TEST_F(InterruptTest, KilledRunLeavesNoHalfFile) {
 TEST_F(InterruptTest, ClosedStandardOutputLosesNoResults) {
   EXPECT_EQ(interrupt("--policy " + calm_policy() + " --clock realtime", SIGINT, "", true).code, 3);
   EXPECT_EQ(summary("results").at("interrupted"), true);
-  EXPECT_EQ(files_in("results").size(), 5u);
+  EXPECT_EQ(files_in("results").size(), 6u);
 }
 
 TEST_F(InterruptTest, FullDiskLeavesNoHalfFile) {

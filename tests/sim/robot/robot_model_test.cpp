@@ -302,12 +302,20 @@ TEST(RobotModelTest, RefusesMissingLimitsAndShapes) {
                  "RF_KFE");
   expect_refused(edited(urdf, "joint name=\"RF_KFE\"", "effort=\"63.45\"", "effort=\"0\""),
                  "RF_KFE");
+  // Of the collision: other shapes are to be looked at.
+  const auto collision_of = [&](const std::string& link, const std::string& from,
+                                const std::string& to) {
+    std::string text = urdf;
+    const std::size_t at = text.find(from, text.find("<collision>", text.find(link)));
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  };
   expect_refused(
-      edited(urdf, "link name=\"RF_FOOT\"", "<cylinder radius=\"0.0295\" length=\"0.025\"/>",
-             "<box size=\"0.1 0.1 0.1\"/>"),
+      collision_of("link name=\"RF_FOOT\"", "<cylinder radius=\"0.0295\" length=\"0.025\"/>",
+                   "<box size=\"0.1 0.1 0.1\"/>"),
       "RF_FOOT");
-  expect_refused(edited(urdf, "link name=\"base\"", "<box size=\"0.7104 0.276 0.12\"/>",
-                        "<sphere radius=\"0.1\"/>"),
+  expect_refused(collision_of("link name=\"base\"", "<box size=\"0.7104 0.276 0.12\"/>",
+                              "<sphere radius=\"0.1\"/>"),
                  "base");
 }
 

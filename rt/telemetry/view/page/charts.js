@@ -9,6 +9,9 @@ const kDeadline_us = 250, kGravity = 9.81, kJointsPerLeg = 3;
 export const kSpan_s = 6;
 
 export function makeCharts({ hello, frames }, robot, parent) {
+  // Without truth, what it alone tells is left out.
+  const hasTruth = (frames.at(0, 'flags') & 1) !== 0;
+  const truth = (value) => (hasTruth ? [{ name: 'true', color: kTrue, value }] : []);
   const at = (field, k = 0, scale = 1) => (i) => scale * frames.at(i, field, k);
   const legs = (value) => hello.legs.map((name, l) => ({ name, color: kLegColors[l], wide: l % 2 === 0, value: value(l) }));
   const asked = (k) => ({ name: 'asked', color: kAsked, dash: [4, 3], value: at('asked', k) });
@@ -23,16 +26,19 @@ export function makeCharts({ hello, frames }, robot, parent) {
       { limits: Number.isFinite(most) && most > 0 ? [-most, most] : [], least: 1, zero: true });
   });
   const charts = [
-    strip('Forward speed', 'm/s', [asked(0), { name: 'true', color: kTrue, value: at('motion', 0) },
+    strip('Forward speed', 'm/s', [asked(0), ...truth(at('motion', 0)),
       { name: 'believed', color: kBelieved, value: at('estimate', 1) }], { least: 0.5, zero: true }),
-    strip('Yaw rate', 'rad/s', [asked(2), { name: 'true', color: kTrue, value: at('motion', 2) }], { least: 0.5, zero: true }),
-    strip('Body height', 'm', [{ name: 'true', color: kTrue, value: at('truth', 0) },
+    strip('Yaw rate', 'rad/s', [asked(2),
+      { name: hasTruth ? 'true' : 'measured', color: kTrue, value: at('motion', 2) }], { least: 0.5, zero: true }),
+    strip('Body height', 'm', [...truth(at('truth', 0)),
       { name: 'believed', color: kBelieved, value: at('estimate', 0) }], { least: 0.1 }),
-    strip('Sinkage', 'mm', legs((l) => (i) => Math.max(0, 1000 * frames.at(i, 'penetration_m', l))), { least: 10, zero: true }),
+    ...(hasTruth ? [strip('Sinkage', 'mm', legs((l) => (i) => Math.max(0, 1000 * frames.at(i, 'penetration_m', l))),
+      { least: 10, zero: true })] : []),
     ...joints('Torque', 'peak_torque_nm', 'N m, peaks', 'torque'),
     ...joints('Speed', 'velocity_radps', 'rad/s', 'speed'),
     strip('Mechanical power', 'W', [{ name: '', color: kTrue, value: at('power_w') }], { least: 20, zero: true }),
-    strip('Cost of transport', 'over 1 s', [{ name: '', color: kTrue, value: costOfTransport(hello, frames) }], { least: 1, zero: true }),
+    ...(hasTruth ? [strip('Cost of transport', 'over 1 s',
+      [{ name: '', color: kTrue, value: costOfTransport(hello, frames) }], { least: 1, zero: true })] : []),
   ];
   if (frames.columns.tick_us[0].some((us) => us > 0)) {
     charts.push(strip('Worst times of the control loop', 'µs', [

@@ -20,34 +20,17 @@ const half = (() => {
 const wrap = (cell) => cell & (kSide - 1);
 
 export class Heights {
-  /** @param {object} run {hello, footprints, tiles} */
-  constructor({ hello, footprints, tiles }) {
+  /** @param {object} run {hello, footprints}  @param {Surface} surface */
+  constructor({ hello, footprints }, surface) {
     this.prints = footprints;
     this.radius = hello.foot_radius_m;
-    this.tileStep = hello.tile_step_m;
-    this.tileSide = hello.tile_side;
-    this.tiles = new Map();
-    for (let i = 0; i < tiles.count; ++i) this.tiles.set(`${tiles.at(i, 'tile_x')} ${tiles.at(i, 'tile_y')}`, i);
-    this.tileTable = tiles;
+    this.surface = surface;
     this.lasting = new Float32Array(kSide * kSide);  // less what only the feet of this very moment press
     this.texels = new Uint16Array(kSide * kSide);    // what is shown, in halves
     this.changed = [];  // rectangles of world cells [x0, y0, x1, y1) of `texels`, since somebody last emptied it
     this.pressed = 0;   // footprints in it
     this.feet = [];     // rectangles that feet press at this moment
     this.x0 = this.y0 = NaN;
-  }
-
-  /** Of the undisturbed ground, m. */
-  surface(x, y) {
-    if (this.tiles.size === 0) return 0;
-    const u = x / this.tileStep, v = y / this.tileStep, i = Math.floor(u), j = Math.floor(v);
-    const a = this.#corner(i, j), b = this.#corner(i + 1, j), c = this.#corner(i, j + 1), d = this.#corner(i + 1, j + 1);
-    return a + (b - a) * (u - i) + (c - a) * (v - j) + (a - b - c + d) * (u - i) * (v - j);
-  }
-
-  #corner(i, j) {
-    const n = this.tileSide, x = Math.floor(i / n), y = Math.floor(j / n), row = this.tiles.get(`${x} ${y}`);
-    return row === undefined ? 0 : 1e-4 * this.tileTable.at(row, 'height_tenth_mm', (j - n * y) * n + (i - n * x));
   }
 
   /** As shown at x, y, less the undisturbed ground: the rim is above 0, a hole below. */
@@ -150,7 +133,7 @@ export class Heights {
   }
 
   #surfaceOfCell(gx, gy) {
-    return this.tiles.size === 0 ? 0 : this.surface((gx + 0.5) * kCell_m, (gy + 0.5) * kCell_m);
+    return this.surface.flat ? 0 : this.surface.at((gx + 0.5) * kCell_m, (gy + 0.5) * kCell_m);
   }
 
   #publish(rect) {

@@ -10,28 +10,33 @@ import { Robot } from './robot.js';
 import { Scene } from './scene.js';
 import { SideView } from './side.js';
 import { State } from './state.js';
+import { Surface } from './surface.js';
 import { Timeline } from './timeline.js';
 
 const element = (id) => document.getElementById(id);
 const kLongestStep_s = 0.1;  // after a pause of the browser the run goes on where it was
 
 function makeView(run, robot) {
-  const light = location.hash === '#light';
+  const light = location.hash === '#light', surface = new Surface(run);
   try {
-    return new Scene(element('scene'), run, robot, light ? 3 : 0);
+    return new Scene(element('scene'), run, robot, surface, light ? 3 : 0);
   } catch (error) {
     // A canvas that was asked for WebGL gives nothing else.
     const canvas = element('scene').cloneNode();
     element('scene').replaceWith(canvas);
     element('note').textContent = `${run.hello.note} This browser has no WebGL: the robot is drawn from its right side.`.trim();
-    return new SideView(canvas, run, robot);
+    element('camera').hidden = true;
+    return new SideView(canvas, run, robot, surface);
   }
 }
 
 function makeLegend(view) {
-  const entries = [['force', 'contact forces', [kColors.force]], ['belief', 'what the network believes', [kColors.belief]],
-    ['path', 'path: true, dead-reckoned', [kColors.truth, kColors.belief]]];
-  for (const [kind, text, colors] of view.overlays ? entries : []) {
+  if (!view.overlays) return;
+  const belief = ['belief', 'what the network believes', [kColors.belief]];
+  const entries = view.overlays.hasTruth
+    ? [['force', 'contact forces', [kColors.force]], belief, ['path', 'path: true, dead-reckoned', [kColors.truth, kColors.belief]]]
+    : [belief, ['path', 'path, dead-reckoned', [kColors.belief]]];
+  for (const [kind, text, colors] of entries) {
     const label = document.createElement('label'), box = document.createElement('input');
     box.type = 'checkbox';
     box.checked = true;
@@ -73,32 +78,41 @@ function show(run) {
   element('rate').onchange = () => { player.rate = Number(element('rate').value); };
   element('camera').onclick = () => view.resetCamera();
   element('picture').onclick = () => savePicture(view, player.t);
-  window.addEventListener('keydown', (event) => { if (event.key === 'c' && !event.ctrlKey) view.resetCamera(); });
+  // A button that was clicked does not take the space key.
+  window.addEventListener('click', (event) => { if (event.detail > 0) document.activeElement?.blur(); });
+  window.addEventListener('keydown', (event) => { if (event.key === 'c' && !event.ctrlKey) view.resetCamera?.(); });
 
-  let drawn = 0, before = performance.now();
+  // Nothing is drawn again while nothing changes.
+  let drawn = 0, before = performance.now(), shown_s = NaN, changed = true;
+  for (const event of ['click', 'input', 'keydown', 'resize', 'scroll', 'pointermove', 'wheel', 'touchmove']) {
+    window.addEventListener(event, () => { changed = true; }, { capture: true, passive: true });
+  }
   const inSight = (canvas) => {
     const plots = element('plots'), top = canvas.offsetTop - plots.offsetTop - plots.scrollTop;
     return top < plots.clientHeight && top + canvas.clientHeight > 0;
   };
-  const draw = () => {
+  const draw = (took_ms = 0) => {
+    changed = false;
+    shown_s = player.t;
     const moment = momentAt(frames, player.t);
     robot.pose(moment);
-    view.draw(moment);
+    view.draw(moment, took_ms);
     state.show(moment);
     timeline.draw();
     // Plots are read, not watched: every third picture is enough while the run plays.
     if (!player.playing || drawn % 3 === 0) {
       for (const chart of charts) if (inSight(chart.canvas)) chart.draw(frames, player.t, kSpan_s);
     }
-    const label = player.playing ? 'pause' : 'play';
-    if (element('play').textContent !== label) element('play').textContent = label;
     ++drawn;
   };
   const step = (now) => {
     requestAnimationFrame(step);
-    player.advance(Math.min(kLongestStep_s, Math.max(0, (now - before) / 1000)));
+    const passed_ms = Math.max(0, now - before);
     before = now;
-    draw();
+    player.advance(Math.min(kLongestStep_s, passed_ms / 1000));
+    const label = player.playing ? 'pause' : 'play';
+    if (element('play').textContent !== label) element('play').textContent = label;
+    if (changed || player.t !== shown_s) draw(player.playing && passed_ms < 1000 ? passed_ms : 0);
   };
   draw();
   requestAnimationFrame(step);
@@ -114,6 +128,11 @@ function show(run) {
     seek(t) {
       player.seek(t);
       draw();
+    },
+    /** Where the feet are at time t, by the page's own kinematics; draws nothing. */
+    feetAt(t) {
+      robot.pose(momentAt(frames, t));
+      return this.feet();
     },
     feet: () => hello.feet.map((foot) => robot.where(foot).toArray()),
   };

@@ -63,7 +63,7 @@ class Trail {
 }
 
 export class Overlays {
-  constructor({ hello, frames }, robot, heights) {
+  constructor({ hello, frames }, robot, surface) {
     this.robot = robot;
     this.feet = hello.feet;
     this.hasTruth = frames.count > 0 && (frames.at(0, 'flags') & 1) !== 0;
@@ -75,7 +75,7 @@ export class Overlays {
     this.boxCentre = robot.baseBox().getCenter(new THREE.Vector3());
     const edges = new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(size.x + 0.01, size.y + 0.01, size.z + 0.01));
     this.box = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: new THREE.Color(kColors.belief).convertSRGBToLinear() }));
-    const onGround = (x, y) => [x, y, heights.surface(x, y) + 0.012];
+    const onGround = (x, y) => [x, y, surface.at(x, y) + 0.012];
     const place = alignment(frames);
     this.truePath = new Trail(kColors.truth, frames, (i) => onGround(frames.at(i, 'position_m', 0), frames.at(i, 'position_m', 1)));
     this.reckonedPath = new Trail(kColors.belief, frames, (i) => onGround(...place(frames.at(i, 'odometry', 0), frames.at(i, 'odometry', 1))));

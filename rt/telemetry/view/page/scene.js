@@ -27,7 +27,7 @@ function sky() {
 
 export class Scene {
   /** Throws if there is no WebGL 2. */
-  constructor(canvas, run, robot, quality = 0) {
+  constructor(canvas, run, robot, surface, quality = 0) {
     const context = canvas.getContext('webgl2', { antialias: true });
     if (!context) throw new Error('no WebGL 2');
     this.canvas = canvas;
@@ -41,9 +41,10 @@ export class Scene {
     scene.fog.color.copy(kHorizon).convertLinearToSRGB();  // three mixes fog in behind the conversion
     this.camera = new THREE.PerspectiveCamera(36, 1, 0.05, 120);
     this.camera.up.set(0, 0, 1);
-    this.heights = new Heights(run);
+    this.surface = surface;
+    this.heights = new Heights(run, surface);
     this.ground = new Ground(this.heights, run.hello.granular);
-    this.overlays = new Overlays(run, robot, this.heights);
+    this.overlays = new Overlays(run, robot, surface);
     this.sky = sky();
     const sun = this.sun = new THREE.DirectionalLight(0xfff0d8, 1.08);
     Object.assign(sun.shadow.camera, { left: -1.3, right: 1.3, top: 1.3, bottom: -1.3, near: 0.5, far: 8 });
@@ -56,7 +57,6 @@ export class Scene {
     this.#setQuality(quality);
     this.resetCamera();
     this.slow = 0;
-    this.lastDraw = 0;
   }
 
   resetCamera() {
@@ -66,15 +66,18 @@ export class Scene {
     this.camera.position.copy(kFirstView).multiplyScalar(Math.max(1, 1.15 / aspect)).add(this.focus);
   }
 
-  /** @param {object} moment of moment.js; its robot has taken the pose already */
-  draw(moment) {
+  /**
+   * @param {object} moment of moment.js; its robot has taken the pose already
+   * @param {number} took_ms from the picture before to this one; 0: there was a pause
+   */
+  draw(moment, took_ms = 0) {
     const { renderer, canvas } = this;
     const width = canvas.clientWidth, height = canvas.clientHeight;
     const { x, y, z } = this.robot.root.position;
     this.heights.show(moment.t, x, y, moment.stance);
     this.ground.follow(renderer, x, y);
     this.overlays.show(moment);
-    const floor = this.heights.surface(x, y);
+    const floor = this.surface.at(x, y);
     const focus = new THREE.Vector3(x, y, floor + kLookAt_m + Math.max(0, z - floor - 0.9));
     this.camera.position.add(focus.clone().sub(this.focus));
     this.controls.target.add(focus.clone().sub(this.focus));
@@ -90,7 +93,7 @@ export class Scene {
       this.camera.updateProjectionMatrix();
     }
     renderer.render(this.scene, this.camera);
-    this.#keepUp();
+    this.#keepUp(took_ms);
   }
 
   /** The picture as a PNG blob. */
@@ -111,11 +114,8 @@ export class Scene {
     if (coarse) this.ground.coarsen();
   }
 
-  #keepUp() {
-    const now = performance.now(), took = now - this.lastDraw;
-    this.lastDraw = now;
-    if (took > 1000) return;  // the window was hidden
-    this.slow = took > kSlow_ms ? this.slow + 1 : 0;
+  #keepUp(took_ms) {
+    this.slow = took_ms > kSlow_ms ? this.slow + 1 : 0;
     if (this.slow < kPatience || this.quality + 1 === kQualities.length) return;
     this.slow = 0;
     this.#setQuality(this.quality + 1);

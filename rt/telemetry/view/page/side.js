@@ -4,12 +4,13 @@ import * as THREE from 'three';
 import { context2d } from './plots.js';
 
 // What lies to the left is drawn further to the front and up, so that left legs do not hide behind right ones.
-const kAheadPerLeft = 0.24, kUpPerLeft = 0.12, kWidth_m = 1.7, kBelow_m = 0.26;
+const kAheadPerLeft = 0.24, kUpPerLeft = 0.12, kWidth_m = 1.7, kBelow_m = 0.33;
+const kHip_m = 0.17;  // of the legs from the middle, about
 const kSteepness = Math.sqrt(3);  // walls of 60 degrees
 
 export class SideView {
-  constructor(canvas, { hello, footprints }, robot) {
-    Object.assign(this, { canvas, hello, footprints, robot });
+  constructor(canvas, { hello, footprints }, robot, surface) {
+    Object.assign(this, { canvas, hello, footprints, robot, surface });
     this.box = robot.baseBox();
     // The chain of each leg: where its joints are, then the foot.
     this.chains = hello.legs.map((_, l) => [
@@ -24,14 +25,16 @@ export class SideView {
       const dx = x - position.x, dy = y - position.y, left = forward.x * dy - forward.y * dx;
       return { u: forward.x * dx + forward.y * dy + kAheadPerLeft * left, v: left, z: z + kUpPerLeft * left };
     };
-    const px = (u) => width / 2 + scale * u, py = (z) => height * 0.93 - scale * (z + kBelow_m);
+    const floor = this.surface.at(position.x, position.y);
+    const px = (u) => width / 2 + scale * u, py = (z) => height - scale * (z - floor + kBelow_m);
+    const groundAt = (u, v) => this.surface.at(position.x + forward.x * u - forward.y * v, position.y + forward.y * u + forward.x * v);
     const sky = g.createLinearGradient(0, 0, 0, height);
     sky.addColorStop(0, '#b9d2e8');
     sky.addColorStop(1, '#e6eef4');
     g.fillStyle = sky;
     g.fillRect(0, 0, width, height);
     for (const far of [true, false]) {
-      this.#ground(g, moment, far, view, px, py, width, height, scale);
+      this.#ground(g, moment, far, view, px, py, groundAt, width, height, scale);
       if (far) this.#legs(g, 0, '#7899ba', view, px, py, scale);
     }
     this.#body(g, view, px, py);
@@ -39,7 +42,7 @@ export class SideView {
     this.#forces(g, moment, view, px, py);
   }
 
-  #ground(g, moment, far, view, px, py, width, height, scale) {
+  #ground(g, moment, far, view, px, py, groundAt, width, height, scale) {
     const holes = [], until = this.footprints.count ? this.footprints.countUntil(moment.t) : 0;
     const add = (x, y, depth) => {
       const p = view({ x, y, z: 0 });
@@ -49,21 +52,22 @@ export class SideView {
       add(this.footprints.at(i, 'x_m'), this.footprints.at(i, 'y_m'), this.footprints.at(i, 'depth_m'));
     }
     for (let l = 0; l < 4; ++l) add(...moment.stance.slice(3 * l, 3 * l + 3));
-    const up = (far ? 1 : -1) * 0.17 * kUpPerLeft, radius = this.hello.foot_radius_m;
-    g.beginPath();
+    const left = (far ? 1 : -1) * kHip_m, radius = this.hello.foot_radius_m;
+    const surface = new Path2D();
     for (let x = -2; x <= width + 2; ++x) {
       const u = (x - width / 2) / scale;
       let depth = 0;
       for (const hole of holes) depth = Math.max(depth, hole.depth - Math.max(0, Math.abs(u - hole.u) - radius) * kSteepness);
-      g.lineTo(x, py(up - depth));
+      surface.lineTo(x, py(groundAt(u - kAheadPerLeft * left, left) + kUpPerLeft * left - depth));
     }
-    g.lineTo(width + 2, height + 2);
-    g.lineTo(-2, height + 2);
-    g.closePath();
+    const below = new Path2D(surface);
+    below.lineTo(width + 2, height + 2);
+    below.lineTo(-2, height + 2);
     g.fillStyle = this.hello.granular ? (far ? '#ccad75' : '#e6cc99') : (far ? '#b8bac2' : '#ccced4');
     g.strokeStyle = this.hello.granular ? '#997840' : '#737880';
-    g.fill();
-    g.stroke();
+    g.lineWidth = far ? 1 : 2;
+    g.fill(below);
+    g.stroke(surface);
   }
 
   #legs(g, first, color, view, px, py, scale) {
@@ -118,5 +122,4 @@ export class SideView {
   }
 
   picture(done) { this.canvas.toBlob(done, 'image/png'); }
-  resetCamera() {}
 }

@@ -27,6 +27,7 @@ export class Timeline {
 
   #key(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === 'SELECT') return;
+    if (event.key === ' ' && event.target.tagName === 'BUTTON') return;  // its own click
     const { player, frames } = this, row = frames.countUntil(player.t) - 1;
     const by = (frameStep, s) => (event.shiftKey ? player.seek(player.t + s)
       : player.seek(frames.time(Math.min(frames.count - 1, Math.max(0, row + frameStep)))));

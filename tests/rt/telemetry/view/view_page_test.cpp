@@ -13,6 +13,7 @@
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/example_tick.h"
 #include "tests/rt/telemetry/view/packed.h"
+#include "tests/support/small_robot.h"
 
 namespace sandrunner {
 namespace {
@@ -138,6 +139,11 @@ TEST(ViewHelloTest, FeetAreTheLinksBelowTheLastJoints) {
   const Json hello =
       Json::parse(view_hello(scene_of(config, ""), config.robot.description, 100, ""));
   EXPECT_EQ(hello.at("feet"), (Json{"LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"}));
+  const TemporaryFolder folder;
+  const ProcessConfig small = config_of("dry-sand", {"robot=" + write_small_robot(folder)});
+  EXPECT_EQ(
+      Json::parse(view_hello(scene_of(small, ""), small.robot.description, 100, "")).at("feet"),
+      (Json{"fl_ball", "fr_ball", "rl_ball", "rr_ball"}));
   EXPECT_EQ(hello.at("base"), "base_link");
   EXPECT_EQ(hello.at("modes").at(4), "walk");
   EXPECT_EQ(hello.at("faults").size(), static_cast<std::size_t>(kNumFaults));

@@ -28,6 +28,7 @@ async function open(flags, viewport, look) {
     const url = `file://${folder}/run.html`;
     await page.goto(`${url}#light`);
     await page.waitForFunction("window.sandrunner", { timeout: 60000 });
+    await page.evaluate("sandrunner.player.playing = false");
     await look(page);
     assert.deepEqual(errors, []);
     assert.deepEqual(requests.map((request) => request.split("#")[0]), [url], "the page asks for nothing but itself");
@@ -80,10 +81,7 @@ function within(share, kind, low, high) {
 /** Each of 50 moments of the run: the page's feet, by its own kinematics, are where run.csv has them. */
 async function checkFeet(page) {
   const rows = Array.from({ length: 50 }, (_, k) => Math.floor(((k * 0.618034) % 1) * (lines.length - 2)));
-  const feet = await page.evaluate((times) => times.map((t) => {
-    window.sandrunner.seek(t);
-    return window.sandrunner.feet();
-  }), rows.map((row) => csv(row, "t_s")));
+  const feet = await page.evaluate((times) => times.map((t) => window.sandrunner.feetAt(t)), rows.map((row) => csv(row, "t_s")));
   let worst = 0;
   rows.forEach((row, i) => kLegs.forEach((leg, l) => ["x", "y", "z"].forEach((axis, a) => {
     worst = Math.max(worst, Math.abs(feet[i][l][a] - csv(row, `${leg}_foot_${axis}_m`)));
@@ -124,6 +122,51 @@ async function checkHoles(page, t) {
   for (const { depth, shown } of prints) assert.ok(shown <= -0.95 * depth, `a footprint of ${depth} m is shown as ${shown} m`);
 }
 
+/** Holes that nothing stands in have a part that is much darker than the sand. */
+async function checkDarkness(page, t) {
+  const at = await page.evaluate((time) => {
+    const { view, run, seek } = window.sandrunner, found = [];
+    view.overlays.group.visible = false;
+    seek(time);
+    for (let i = 0; i < run.footprints.count; ++i) {
+      const age = time - run.footprints.at(i, "t_s"), [x, y] = ["x_m", "y_m"].map((name) => run.footprints.at(i, name));
+      if (age < 0.5 || age > 1) continue;
+      const p = view.focus.clone().set(x, y, 0).project(view.camera);
+      found.push([(p.x + 1) / 2, (1 - p.y) / 2]);
+    }
+    return found;
+  }, t);
+  assert.ok(at.length >= 3, `${at.length} holes`);
+  const image = await picture(page, t), brightness = (x, y) => image.at(x, y).reduce((sum, v) => sum + v, 0) / 3;
+  const sand = [];
+  for (let y = Math.floor(0.8 * image.height); y < image.height; ++y) for (let x = 0; x < image.width; x += 3) sand.push(brightness(x, y));
+  const usual = sand.sort((a, b) => a - b)[sand.length >> 1];
+  const reach = Math.ceil(0.025 * image.width);
+  for (const [u, v] of at) {
+    const [x, y] = [Math.round(u * image.width), Math.round(v * image.height)];
+    if (x < reach || y < reach || x + reach >= image.width || y + reach >= image.height) continue;
+    let darkest = 255;
+    for (let j = -reach; j <= reach; ++j) for (let i = -reach; i <= reach; ++i) darkest = Math.min(darkest, brightness(x + i, y + j));
+    assert.ok(darkest < 0.7 * usual, `a hole at ${x}, ${y} is no darker than ${darkest}; sand is ${usual}`);
+  }
+  await page.evaluate(() => { window.sandrunner.view.overlays.group.visible = true; });
+}
+
+/** Numbers that are none, as a broken sensor gives them, neither stop the page nor take the robot away. */
+async function checkMissingNumbers(page, t) {
+  const before = await page.evaluate((time) => {
+    const { run, seek } = window.sandrunner, row = run.frames.countUntil(time) - 1;
+    seek(time);
+    for (const columns of Object.values(run.frames.columns)) {
+      if (columns === run.frames.columns.t_s) continue;
+      for (const column of columns) if (column instanceof Float32Array || column instanceof Float64Array) column[row] = NaN;
+    }
+    seek(time);
+    return window.sandrunner.feet().flat();
+  }, t);
+  assert.ok(before.every(Number.isFinite), "the robot stays where it was last known to be");
+}
+
 await open(kSoftware, { width: 900, height: 560 }, async (page) => {
   assert.equal(await page.evaluate("sandrunner.kind"), "3d");
   const worst = await checkFeet(page), t = deepMoment();
@@ -134,7 +177,8 @@ await open(kSoftware, { width: 900, height: 560 }, async (page) => {
   within(share, "force", 0.0005, 0.03);
   within(share, "dark", 0.004, 0.15);
   within(share, "orange", 0.0005, 0.05);
-  // A hole that nothing stands in: the wall away from the sun is darker than the sand a little farther away.
+  await checkDarkness(page, t);
+  await checkMissingNumbers(page, t);
   const ready = await page.evaluate("sandrunner.ready_ms");
   console.log(`WebGL: feet within ${(1e6 * worst).toFixed(2)} um at 50 times, ready after ${ready.toFixed(0)} ms, shares ${JSON.stringify(share)}`);
 });

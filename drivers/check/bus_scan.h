@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Who is on the buses, whatever the configuration says.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/robot/drive_look.h"
+#include "drivers/robot/hardware_config.h"
+
+namespace sandrunner {
+
+/// A drive that answered when it was told to be off (MIT) or was asked for its state (moteus).
+struct ScannedDrive {
+  int id = 0;
+  std::uint32_t reply_id = 0;  ///< identifier of its reply
+  int reply_bytes = 0;
+};
+
+/// Sockets that hear everything. Where one cannot be opened it is null, and why is added to
+/// `problems`.
+CanSockets open_all_ears(const HardwareConfig& config, std::vector<std::string>& problems);
+
+/// Frames that are on each bus while nothing is sent, for 0.2 s. Drives speak only when spoken to:
+/// where there are some, somebody else talks to the drives.
+std::vector<int> frames_of_others(const CanSockets& sockets);
+
+inline constexpr int kMostScannedId = 32;
+
+/// Speaks to the ids 1 to kMostScannedId of every bus, 0.2 s in all; returns who answered, by bus.
+std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
+                                            const CanSockets& sockets);
+
+/// The frame with which scan() speaks to `id`.
+CanFrame scan_frame(const BusConfig& bus, int id);
+/// Whether it is what drive `id` answers. `damiao`: such drives are on the bus, whose replies have
+/// a state beside the id.
+bool is_scan_reply(const BusConfig& bus, bool damiao, int id, const CanFrame& frame);
+
+}  // namespace sandrunner

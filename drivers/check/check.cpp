@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/check/check.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "drivers/check/bus_scan.h"
+#include "drivers/check/check_report.h"
+#include "drivers/check/hand_move.h"
+#include "drivers/check/lines.h"
+#include "drivers/check/zero.h"
+#include "drivers/robot/bring_up.h"
+#include "drivers/robot/bus_plan.h"
+#include "rt/base/errors.h"
+#include "rt/base/input_file.h"
+#include "rt/base/output_files.h"
+#include "rt/base/standard_error.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr int kExchanges = 200;  // a second
+constexpr int kExchangesPerPicture = 20;
+
+std::int64_t now_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class Check {
+ public:
+  explicit Check(const CheckTask& task) : task_(task), config_(task.config) {}
+
+  int run() {
+    judge_plan();
+    sockets_ = open_all_ears(config_, findings_.problems);
+    if (buses_are_ours()) {
+      findings_.scanned = scan(config_, sockets_);
+      add(scan_problems(config_, task_.robot, findings_.scanned));
+      if (task_.move) move_joints();
+      if (task_.zero_pose_rad) calibrate();
+    } else {
+      for (auto& socket : sockets_) socket.reset();
+    }
+    measure();
+    fmt::print("{}", check_report(config_, task_.robot, task_.gate, findings_));
+    return findings_.problems.empty() ? kExitOk : kExitRobotFailed;
+  }
+
+ private:
+  void add(const std::vector<std::string>& problems) {
+    findings_.problems.insert(findings_.problems.end(), problems.begin(), problems.end());
+  }
+
+  void judge_plan() {
+    for (const PlannedBus& bus : plan_buses(config_)) {
+      if (bus.overloaded() && !is_virtual(bus.interface)) {
+        findings_.problems.push_back(overload(config_, bus));
+      }
+    }
+  }
+
+  /// Before anything is sent: a robot that runs would fall if its drives were told to be off.
+  bool buses_are_ours() {
+    const std::vector<int> frames = frames_of_others(sockets_);
+    bool ours = true;
+    for (std::size_t b = 0; b < frames.size(); ++b) {
+      if (frames[b] == 0) continue;
+      ours = false;
+      findings_.problems.push_back(fmt::format(
+          "{}: {} frames in 0.2 s that nobody asked for: another program talks to the drives; "
+          "nothing was sent",
+          config_.buses[b].interface, frames[b]));
+    }
+    return ours;
+  }
+
+  /// Exchanges until the person has typed a line; positions of each exchange, and the line.
+  std::string watch(DriveLook& look, JointTrace& trace) {
+    for (;;) {
+      look.exchange();
+      trace.push_back(look.position_rad());
+      if (const auto line = lines_.next()) return *line;
+      if (lines_.ended()) throw InputError("standard input has ended: nobody answers");
+    }
+  }
+
+  bool answers(const DriveLook& look, int j) const {
+    const FoundDrive& drive = look.drives()[j];
+    return 2 * drive.replies > drive.requests;
+  }
+
+  void move_joints() {
+    DriveLook look(config_, sockets_);
+    for (int i = 0; i < kLookExchanges; ++i) look.exchange();
+    for (int j = 0; j < kNumJoints; ++j) {
+      const std::string& joint = task_.robot.joint_names[j];
+      if (!answers(look, j)) {
+        findings_.moves.push_back(joint + ": not asked for, it does not answer");
+        continue;
+      }
+      const std::string motion = positive_motion(task_.robot, task_.nominal_rad, j);
+      to_standard_error(fmt::format(
+          "\n{}: put it where it has room, and press Enter (s and Enter skips it)\n", joint));
+      JointTrace ignored, trace;
+      std::string line = watch(look, ignored);
+      if (line.empty()) {
+        to_standard_error(
+            fmt::format("{}: turn it by hand by about 30 degrees so that, seen in the "
+                        "standing pose, {}; hold it there and press Enter\n",
+                        joint, motion));
+        line = watch(look, trace);
+      }
+      if (!line.empty()) {
+        findings_.moves.push_back(joint + ": skipped");
+        continue;
+      }
+      const HandMove move = judge_move(trace, j);
+      const std::string verdict = move_words(move, j, config_, task_.robot);
+      to_standard_error(verdict + "\n");
+      findings_.moves.push_back(verdict);
+      if (move.verdict != HandMove::Verdict::kGood) findings_.problems.push_back(verdict);
+    }
+  }
+
+  void calibrate() {
+    std::string pose;
+    for (int j = 0; j < kNumJoints; ++j) {
+      pose += fmt::format("  {:<14}{:8.4f} rad\n", task_.robot.joint_names[j],
+                          (*task_.zero_pose_rad)[j]);
+    }
+    DriveLook look(config_, sockets_);
+    JointTrace ignored, trace;
+    to_standard_error(
+        fmt::format("\nHold the robot in this pose and press Enter (s and Enter leaves the zeros "
+                    "as they are)\n{}",
+                    pose));
+    if (!watch(look, ignored).empty()) return;
+    for (int i = 0; i < kExchanges; ++i) {
+      look.exchange();
+      trace.push_back(look.position_rad());
+    }
+    for (int j = 0; j < kNumJoints; ++j) {
+      if (answers(look, j)) continue;
+      throw InputError(fmt::format("--zero: {} does not answer: nothing is written",
+                                   task_.robot.joint_names[j]));
+    }
+    const JointArray<double> zeros = zeros_of(trace, *task_.zero_pose_rad, config_, task_.robot);
+    const std::string text =
+        with_zeros(read_input_file(task_.path, "a TOML file"), task_.path, zeros, task_.robot);
+    HardwareConfig config = task_.read(text);
+    write_file(task_.path, text);
+    config_ = std::move(config);
+    to_standard_error(
+        fmt::format("wrote the zero_rad of {} drives to {}\n", kNumJoints, task_.path));
+  }
+
+  void measure() {
+    std::unique_ptr<MipImu> imu;
+    try {
+      imu = std::make_unique<MipImu>(config_.imu);
+    } catch (const InputError& error) {
+      findings_.problems.emplace_back(error.what());
+    }
+    DriveLook look(config_, sockets_);
+    ImuLook imu_look;
+    const MipImu::Counters before = imu ? imu->counters() : MipImu::Counters();
+    const std::int64_t start_ns = now_ns();
+    const auto look_at_imu = [&] {
+      while (imu->poll(now_ns())) imu_look.add(imu->sample());
+      const MipImu::Counters now = imu->counters();
+      findings_.imu =
+          ImuFindings{.figures = imu_look.figures(now.samples - before.samples,
+                                                  1e-9 * static_cast<double>(now_ns() - start_ns)),
+                      .state = to_string(imu->state(now_ns())),
+                      .bad_packets = now.bad_checksums - before.bad_checksums + now.repeated -
+                                     before.repeated + now.incomplete - before.incomplete};
+    };
+    const bool live = isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0;
+    std::size_t drawn_lines = 0;
+    bool enough = false;
+    for (int i = 1; !enough; ++i) {
+      look.exchange();
+      if (imu) look_at_imu();
+      enough = i >= kExchanges && (!live || lines_.next() || lines_.ended());
+      if (live && i % kExchangesPerPicture == 0) drawn_lines = draw(look, drawn_lines);
+    }
+    findings_.drives = look.drives();
+    add(drive_problems(config_, task_.robot, task_.gate, sockets_, look.drives()));
+    add(bus_problems(config_, look.buses()));
+    if (findings_.imu) add(imu_problems(config_.imu, *findings_.imu));
+  }
+
+  /// The joints and the IMU as they are now, over what was drawn before; returns its lines.
+  std::size_t draw(const DriveLook& look, std::size_t drawn_lines) const {
+    std::string picture = joint_table(config_, task_.robot, task_.gate, look.drives());
+    if (findings_.imu) picture += imu_line(config_.imu, *findings_.imu);
+    picture += "live until Enter; nothing is powered\n";
+    const std::string back = drawn_lines > 0 ? fmt::format("\x1b[{}A\x1b[J", drawn_lines) : "\n";
+    to_standard_error(back + picture);
+    return static_cast<std::size_t>(std::count(picture.begin(), picture.end(), '\n'));
+  }
+
+  const CheckTask& task_;
+  HardwareConfig config_;
+  CanSockets sockets_;
+  Lines lines_;
+  CheckFindings findings_;
+};
+
+}  // namespace
+
+int run_check(const CheckTask& task) { return Check(task).run(); }
+
+}  // namespace sandrunner

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// sandrunner check: looks at a robot's buses, drives and IMU before anything is powered.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "drivers/robot/hardware_config.h"
+
+namespace sandrunner {
+
+/// What is to be looked at, and with whom.
+struct CheckTask {
+  std::string path;  ///< of the hardware file
+  HardwareConfig config;
+  RobotDescription robot;
+  GateConfig gate;
+  JointArray<double> nominal_rad{};  ///< posture in which directions are explained
+  bool move = false;                 ///< a person turns each joint by hand
+  /// The pose in which the robot is held, from which the zeros are computed and written to `path`.
+  std::optional<JointArray<double>> zero_pose_rad;
+  /// Reads the whole configuration with this text in place of the file: the last judge of zeros.
+  std::function<HardwareConfig(const std::string& text)> read;
+};
+
+/// Does it: prints the report to standard output, and what a person is asked to standard error.
+/// Returns the exit code: 0, or kExitRobotFailed if something is wrong. Throws InputError: zeros
+/// that cannot be, a file that cannot be written, nobody who answers.
+int run_check(const CheckTask& task);
+
+}  // namespace sandrunner

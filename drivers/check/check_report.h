@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/check/bus_scan.h"
+#include "drivers/check/imu_look.h"
+#include "drivers/imu/mip_imu.h"
+#include "drivers/robot/drive_look.h"
+#include "drivers/robot/hardware_config.h"
+
+namespace sandrunner {
+
+/// What the IMU was seen to do.
+struct ImuFindings {
+  ImuFigures figures;
+  std::string state;              ///< to_string(MipImu::State)
+  std::uint64_t bad_packets = 0;  ///< with a bad checksum, repeated, incomplete
+};
+
+/// All that was found out about a robot.
+struct CheckFindings {
+  std::vector<std::vector<ScannedDrive>> scanned;  ///< by bus; empty: not scanned
+  JointArray<FoundDrive> drives;
+  std::optional<ImuFindings> imu;     ///< none: it could not be set up
+  std::vector<std::string> moves;     ///< what came of each joint turned by hand, a line each
+  std::vector<std::string> problems;  ///< a line each
+};
+
+/// Lines about scanned drives that the configuration does not expect there: an id that no joint
+/// has, a reply with another identifier.
+std::vector<std::string> scan_problems(const HardwareConfig& config, const RobotDescription& robot,
+                                       const std::vector<std::vector<ScannedDrive>>& scanned);
+
+/// Lines about what a bus showed beside replies.
+std::vector<std::string> bus_problems(const HardwareConfig& config,
+                                      const std::vector<FoundBus>& buses);
+
+/// Lines about the IMU.
+std::vector<std::string> imu_problems(const MipImuConfig& config, const ImuFindings& findings);
+
+/// One line a joint: who answers how, where it is.
+std::string joint_table(const HardwareConfig& config, const RobotDescription& robot,
+                        const GateConfig& gate, const JointArray<FoundDrive>& drives);
+std::string imu_line(const MipImuConfig& config, const ImuFindings& findings);
+
+/// The report, for a person.
+std::string check_report(const HardwareConfig& config, const RobotDescription& robot,
+                         const GateConfig& gate, const CheckFindings& findings);
+
+}  // namespace sandrunner

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/check/hand_move.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace sandrunner {
+namespace {
+
+using Rotation = std::array<double, 4>;  // (w, x, y, z)
+
+constexpr double kShortestLever_m = 1e-3;
+constexpr double kLeastMove_rad = 0.05;
+
+Vector3 sum(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+
+Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double length(const Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
+
+Rotation product(const Rotation& a, const Rotation& b) {
+  const Vector3 av{a[1], a[2], a[3]}, bv{b[1], b[2], b[3]};
+  const Vector3 c = cross(av, bv);
+  const double dot = av[0] * bv[0] + av[1] * bv[1] + av[2] * bv[2];
+  return {a[0] * b[0] - dot, a[0] * bv[0] + b[0] * av[0] + c[0], a[0] * bv[1] + b[0] * av[1] + c[1],
+          a[0] * bv[2] + b[0] * av[2] + c[2]};
+}
+
+Vector3 turn(const Rotation& r, const Vector3& v) {
+  const Vector3 axis{r[1], r[2], r[3]};
+  const Vector3 t = cross(axis, v), u = cross(axis, t);
+  return {v[0] + 2.0 * (r[0] * t[0] + u[0]), v[1] + 2.0 * (r[0] * t[1] + u[1]),
+          v[2] + 2.0 * (r[0] * t[2] + u[2])};
+}
+
+Rotation about(const Vector3& axis, double angle_rad) {
+  const double s = std::sin(0.5 * angle_rad);
+  return {std::cos(0.5 * angle_rad), s * axis[0], s * axis[1], s * axis[2]};
+}
+
+/// A link in the frame of the base.
+struct Placed {
+  Vector3 origin_m{};
+  Rotation rotation{1.0, 0.0, 0.0, 0.0};
+  bool moved = false;  ///< by the joint in question
+};
+
+std::map<std::string, Placed> place_links(const RobotDescription& robot,
+                                          const JointArray<double>& pose_rad, int joint) {
+  std::map<std::string, Placed> links{{robot.base_frame, {}}};
+  for (const RobotFrame& frame : robot.frames) {
+    const Placed& parent = links[frame.parent];
+    Placed link;
+    link.origin_m = sum(parent.origin_m, turn(parent.rotation, frame.translation_m));
+    link.rotation = product(parent.rotation, frame.rotation_wxyz);
+    if (frame.joint >= 0) {
+      link.rotation = product(link.rotation, about(frame.axis, pose_rad[frame.joint]));
+    }
+    link.moved = parent.moved || frame.joint == joint;
+    links[frame.name] = link;
+  }
+  return links;
+}
+
+std::string direction_words(const Vector3& v) {
+  constexpr std::array<std::array<const char*, 2>, 3> kWords = {
+      {{"forward", "backward"}, {"to the left", "to the right"}, {"up", "down"}}};
+  std::string words;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::fabs(v[axis]) < 0.5 * length(v)) continue;
+    words += (words.empty() ? "" : " and ") + std::string(kWords[axis][v[axis] < 0.0 ? 1 : 0]);
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string positive_motion(const RobotDescription& robot, const JointArray<double>& pose_rad,
+                            int joint) {
+  const std::map<std::string, Placed> links = place_links(robot, pose_rad, joint);
+  const auto turned = std::find_if(robot.frames.begin(), robot.frames.end(),
+                                   [&](const RobotFrame& frame) { return frame.joint == joint; });
+  if (turned == robot.frames.end()) return "";
+  const Placed& pivot = links.at(turned->name);
+  const Vector3 axis = turn(pivot.rotation, turned->axis);
+  std::string part = turned->name;
+  Vector3 fastest{};
+  for (const RobotFrame& frame : robot.frames) {
+    const Placed& link = links.at(frame.name);
+    if (!link.moved) continue;
+    const Vector3 lever{link.origin_m[0] - pivot.origin_m[0], link.origin_m[1] - pivot.origin_m[1],
+                        link.origin_m[2] - pivot.origin_m[2]};
+    const Vector3 velocity = cross(axis, lever);
+    if (length(velocity) <= length(fastest)) continue;
+    fastest = velocity;
+    part = frame.name;
+  }
+  if (length(fastest) < kShortestLever_m) {
+    return fmt::format("{} turns right-handed about ({:.2f}, {:.2f}, {:.2f})", part, axis[0],
+                       axis[1], axis[2]);
+  }
+  return fmt::format("{} goes {}", part, direction_words(fastest));
+}
+
+HandMove judge_move(const JointTrace& trace, int joint) {
+  HandMove move{.joint = joint};
+  if (trace.empty()) return move;
+  double widest_rad = 0.0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const auto [least, most] = std::minmax_element(
+        trace.begin(), trace.end(), [j](const auto& a, const auto& b) { return a[j] < b[j]; });
+    const double width_rad = (*most)[j] - (*least)[j];
+    if (width_rad <= widest_rad) continue;
+    widest_rad = width_rad;
+    move.joint = j;
+  }
+  move.moved_rad = trace.back()[move.joint] - trace.front()[move.joint];
+  if (widest_rad < kLeastMove_rad) {
+    move.verdict = HandMove::Verdict::kNotMoved;
+  } else if (move.joint != joint) {
+    move.verdict = HandMove::Verdict::kOtherJoint;
+  } else if (std::fabs(move.moved_rad) < 0.5 * kAsked_rad ||
+             std::fabs(move.moved_rad) > 2.0 * kAsked_rad) {
+    move.verdict = HandMove::Verdict::kWrongScale;
+  } else {
+    move.verdict = move.moved_rad > 0.0 ? HandMove::Verdict::kGood : HandMove::Verdict::kWrongSign;
+  }
+  return move;
+}
+
+std::string move_words(const HandMove& move, int joint, const HardwareConfig& config,
+                       const RobotDescription& robot) {
+  const auto name_of = [&](int j) {
+    const DriveConfig& drive = config.drives[j];
+    return fmt::format("{} ({} id {})", robot.joint_names[j], config.buses[drive.bus].interface,
+                       drive.id());
+  };
+  const std::string name = name_of(joint);
+  switch (move.verdict) {
+    case HandMove::Verdict::kGood:
+      return fmt::format("{}: turned by {:.2f} rad, as it should", name, move.moved_rad);
+    case HandMove::Verdict::kNotMoved:
+      return fmt::format("{}: no drive turned; does its motor turn with the joint?", name);
+    case HandMove::Verdict::kOtherJoint:
+      return fmt::format("{}: the drive of {} turned, by {:.2f} rad: swap them in the file", name,
+                         name_of(move.joint), move.moved_rad);
+    case HandMove::Verdict::kWrongSign:
+      return fmt::format("{}: turned by {:.2f} rad, the other way: set sign = {}", name,
+                         move.moved_rad, -config.drives[joint].sign);
+    case HandMove::Verdict::kWrongScale:
+      break;
+  }
+  return fmt::format(
+      "{}: turned by {:.2f} rad where about {:.1f} were asked for: look at gear and model", name,
+      move.moved_rad, kAsked_rad);
+}
+
+}  // namespace sandrunner

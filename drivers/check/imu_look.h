@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether an IMU on a robot that stands still says what it should.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rt/core/messages.h"
+
+namespace sandrunner {
+
+/// Means of the samples of a robot at rest.
+struct ImuFigures {
+  int samples = 0;
+  double rate_hz = 0.0;  ///< of all that the device sent, looked at here or not
+  Vector3 acceleration_mps2{}, angular_velocity_radps{};
+  double tilt_rad = 0.0;            ///< between what it calls up and the body's z axis
+  double attitude_error_rad = 0.0;  ///< between up by acceleration and up by orientation
+};
+
+/// Takes samples and makes their means.
+class ImuLook {
+ public:
+  void add(const ImuSample& sample);
+  /// `streamed`: samples that the device sent meanwhile, in `duration_s`.
+  ImuFigures figures(std::uint64_t streamed, double duration_s) const;
+
+ private:
+  int samples_ = 0;
+  Vector3 acceleration_{}, angular_velocity_{}, up_{};  // sums; up_ by the orientation, body frame
+};
+
+/// What is wrong with them, a line each, for a robot that is level and still. `rate_hz`: the
+/// configured one.
+std::vector<std::string> imu_problems(const ImuFigures& figures, double rate_hz);
+
+}  // namespace sandrunner

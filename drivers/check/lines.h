@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace sandrunner {
+
+/// Lines that a person types on standard input, taken without waiting for them.
+class Lines {
+ public:
+  /// The next line, without its end, if it is there.
+  std::optional<std::string> next();
+  /// No more will come.
+  bool ended() const noexcept { return ended_ && typed_.empty(); }
+
+ private:
+  std::string typed_;
+  bool ended_ = false;
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/drive_look.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <thread>
+
+#include "drivers/can/can_error.h"
+
+namespace sandrunner {
+namespace {
+
+using Clock = std::chrono::system_clock;  // that of the kernel's stamps
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+DriveLook::DriveLook(const HardwareConfig& config, const CanSockets& sockets)
+    : config_(config), sockets_(sockets), buses_(sockets.size()) {
+  for (int j = 0; j < kNumJoints; ++j) drives_[j] = Drive(config.drives[j], config);
+}
+
+void DriveLook::exchange() {
+  for (int j = 0; j < kNumJoints; ++j) {
+    const int bus = config_.drives[j].bus;
+    if (!sockets_[bus]) continue;
+    CanFrame frame;
+    drives_[j].off_frame(frame);
+    ++found_[j].requests;
+    sent_ns_[j] = now_ns();
+    if (sockets_[bus]->send({&frame, 1}).frames == 0) ++buses_[bus].not_sent;
+  }
+  std::this_thread::sleep_for(std::chrono::duration<double>(kExchange_s));
+  for (std::size_t b = 0; b < sockets_.size(); ++b) {
+    if (!sockets_[b]) continue;
+    std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
+    int frames = CanSocket::kMaxFrames;
+    for (int round = 0; frames == CanSocket::kMaxFrames && round < 10; ++round) {
+      frames = sockets_[b]->receive(received).frames;
+      for (int i = 0; i < frames; ++i) take(b, received[i]);
+    }
+  }
+  for (int j = 0; j < kNumJoints; ++j) {
+    found_[j].position_rad = drives_[j].position_rad();
+    found_[j].fault = drives_[j].fault();
+    found_[j].temperature_degc = drives_[j].temperature_degc();
+    found_[j].voltage_v = drives_[j].voltage_v();
+  }
+}
+
+void DriveLook::take(std::size_t bus, const ReceivedFrame& received) {
+  if (received.frame.error) {
+    ++buses_[bus].error_frames;
+    buses_[bus].error = words(decode_can_error(received.frame));
+    return;
+  }
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (config_.drives[j].bus != static_cast<int>(bus)) continue;
+    if (!drives_[j].take(received.frame, 0)) continue;
+    FoundDrive& f = found_[j];
+    ++f.replies;
+    const double trip_s = 1e-9 * static_cast<double>(received.stamp_ns - sent_ns_[j]);
+    f.longest_round_trip_s = std::max(f.longest_round_trip_s, trip_s);
+    f.round_trip_s += (trip_s - f.round_trip_s) / f.replies;
+    return;
+  }
+  ++buses_[bus].foreign;
+}
+
+JointArray<double> DriveLook::position_rad() const noexcept {
+  JointArray<double> positions;
+  for (int j = 0; j < kNumJoints; ++j) positions[j] = found_[j].position_rad;
+  return positions;
+}
+
+}  // namespace sandrunner

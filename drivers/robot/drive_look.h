@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/can/can_socket.h"
+#include "drivers/robot/drive.h"
+#include "drivers/robot/hardware_config.h"
+
+namespace sandrunner {
+
+/// Of each bus of a configuration.
+using CanSockets = std::vector<std::unique_ptr<CanSocket>>;
+
+/// What a drive answered while it was looked for.
+struct FoundDrive {
+  int requests = 0, replies = 0;
+  double position_rad = 0.0;  ///< of the joint, newest
+  double round_trip_s = 0.0,
+         longest_round_trip_s = 0.0;  /// from sending to the kernel's stamp; mean
+  std::uint64_t fault = 0;
+  double temperature_degc = 0.0, voltage_v = 0.0;  ///< NaN: it does not say
+};
+
+/// What else a bus showed meanwhile.
+struct FoundBus {
+  int not_sent = 0;        ///< requests that it did not take
+  int foreign = 0;         ///< frames that are no reply of a drive of the configuration
+  int error_frames = 0;    ///< reports of its controller
+  std::string error = {};  ///< the gravest thing that the last of them said
+};
+
+/// Tells every drive again and again to be off, which moves nothing, and takes what they answer.
+class DriveLook {
+ public:
+  static constexpr double kExchange_s = 0.005;
+
+  /// Both outlive it. A bus without a socket (null) is left out.
+  DriveLook(const HardwareConfig& config, const CanSockets& sockets);
+
+  /// One request to each drive; returns after kExchange_s.
+  void exchange();
+
+  const JointArray<FoundDrive>& drives() const noexcept { return found_; }
+  const std::vector<FoundBus>& buses() const noexcept { return buses_; }
+  JointArray<double> position_rad() const noexcept;
+
+ private:
+  void take(std::size_t bus, const ReceivedFrame& received);
+
+  const HardwareConfig& config_;
+  const CanSockets& sockets_;
+  JointArray<Drive> drives_;
+  JointArray<FoundDrive> found_;
+  JointArray<std::int64_t> sent_ns_{};
+  std::vector<FoundBus> buses_;
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot's hardware file on the command line: what cannot work is one line and exit code 2, before
+// anything is opened; what can be told without the robot is told.
+#include <gmock/gmock.h>
+
+#include "rt/base/config_tree.h"
+#include "rt/run/process_config.h"
+#include "sim/ground/terrain_description.h"
+#include "tests/support/program_test.h"
+
+namespace sandrunner {
+namespace {
+
+using testing::HasSubstr;
+
+class HardwareTest : public ProgramTest {
+ protected:
+  HardwareTest() : ProgramTest(SANDRUNNER_PROGRAM) {}
+
+  /// Writes hardware.toml: an example in which the first `from` became `to`.
+  void write_changed(const std::string& example, const std::string& from, const std::string& to) {
+    std::string text = read_file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + example);
+    if (!from.empty()) {
+      const std::size_t at = text.find(from);
+      ASSERT_NE(at, std::string::npos) << from;
+      text.replace(at, from.size(), to);
+    }
+    write_file(folder_.path("hardware.toml"), text);
+  }
+};
+
+struct Refusal {
+  const char* example;
+  const char *from, *to;
+  const char* cause;
+};
+
+constexpr Refusal kRefusals[] = {
+    {"mit.toml", "rate_hz = 800", "rate_hz = 1000", "hardware.bus can0: 3 drives at 1000 Hz"},
+    {"mit.toml", "rate_hz = 800", "rate_hz = 900", "hardware.rate_hz: 900, expected a whole part"},
+    {"mit.toml", "\"LF_HFE\"", "\"LF_HAA\"", "hardware.drive: joint LF_HAA stands twice"},
+    {"mit.toml", "\"LF_HFE\"", "\"LF_HEF\"", "hardware.drive: joint 'LF_HEF', expected one of"},
+    {"mit.toml", "id = 2", "id = 1", "hardware.drive of LF_HFE: id 1 on can0 is that of LF_HAA"},
+    {"mit.toml", "id = 2", "", "hardware.drive of LF_HFE: found no id"},
+    {"mit.toml", "reply_id = 0", "reply_id = 3", "reply_id 3 on can0 is the id of LF_KFE"},
+    {"mit.toml", "model = \"AK10-9\"", "", "hardware.drive of LF_HAA: model ''"},
+    {"mit.toml", "\"AK10-9\"", "\"AK80-9 V2\"", "torque up to 63.45 N m needed, 18"},
+    {"mit.toml", "\"mit\"", "\"canopen\"", "found \"canopen\", expected one of"},
+    {"mit.toml", "\"mit\"", "\"mit\"\nfd = true", "AK10-9 speaks classic CAN alone"},
+    {"mit.toml", "sign = 1", "sign = 2", "hardware.drive[0].sign"},
+    {"mit.toml", "bus = \"can0\"", "bus = \"can7\"", "bus 'can7' is none of hardware.bus"},
+    {"mit.toml", "baud = 921600\nrate_hz = 500", "baud = 115200\nrate_hz = 1000", "115200 baud"},
+    {"mit.toml", "\"/dev/ttyS1\"", "\"/dev/nosuch\"", "/dev/nosuch"},
+    {"mit.toml", "\"/dev/ttyS1\"", "\"hardware.toml\"", "hardware.toml"},
+    {"mit.toml", "mode = ", "mood = ", "hardware.mood"},
+    {"moteus.toml", "kp_nmprev = 1300.0", "", "hardware.drive of LF_HAA: found no kp_nmprev"},
+    {"moteus.toml", "max_torque_nm = 65.0", "", "found no max_torque_nm"},
+    {"moteus.toml", "max_torque_nm = 65.0", "max_torque_nm = 40.0", "torque up to 63.45 N m"},
+    {"moteus.toml", "\"moteus\"", "\"moteus\"\nfd = false", "moteus drives speak CAN FD alone"},
+};
+
+TEST_F(HardwareTest, WhatCannotWorkIsRefusedBeforeAnyFrameIsSent) {
+  for (const Refusal& refusal : kRefusals) {
+    write_changed(refusal.example, refusal.from, refusal.to);
+    expect_refused("--hardware hardware.toml --arm", refusal.cause);
+  }
+  write_file(folder_.path("hardware.toml"), "controller.stand.kp_nmprad = 90.0\n");
+  expect_refused("--hardware hardware.toml --arm", "hardware.toml: found no table [hardware]");
+  expect_refused("check hardware.toml", "hardware.toml: found no table [hardware]");
+}
+
+TEST_F(HardwareTest, ARobotDoesNotMoveByItselfUnlessArmed) {
+  write_changed("mit.toml", "", "");
+  expect_refused("--hardware hardware.toml", "expected --arm, or --command dds");
+  expect_refused("--arm", "--arm: expected --hardware");
+  expect_refused("--dry-run", "--dry-run: expected --hardware");
+}
+
+TEST_F(HardwareTest, DryRunPrintsFramesAndOpensNothing) {
+  write_changed("mit.toml", "", "");
+  ASSERT_EQ(run("--hardware hardware.toml --dry-run"), 0) << error();
+  // The standing pose and its gains, of the robot that ships.
+  EXPECT_THAT(output(), HasSubstr("LF_HFE at 0.5598 rad\n"
+                                  "  can0  002   [8]  FF FF FF FF FF FF FF FD   off\n"));
+  EXPECT_THAT(output(), HasSubstr("kp 100.00, kd 1.000"));
+}
+
+TEST_F(HardwareTest, CheckPlanIsATableAndFailsForAnOverloadedBus) {
+  write_changed("mit.toml", "", "");
+  EXPECT_EQ(run("check --plan hardware.toml"), 0) << error();
+  EXPECT_THAT(output(), HasSubstr("can3               3    53 %   65 %"));
+  EXPECT_EQ(run("check hardware.toml --plan --set hardware.rate_hz=1000"), 1) << error();
+  EXPECT_THAT(output(), HasSubstr("OVERLOADED"));
+}
+
+TEST_F(HardwareTest, CheckReportsAllThatIsMissingAtOnce) {
+  write_changed("mit.toml", "\"can0\"", "\"nosuch0\"");
+  EXPECT_EQ(run("check hardware.toml --set hardware.imu.device=/dev/nosuch </dev/null"), 2);
+  EXPECT_THAT(error(), HasSubstr("bus 'can0' is none"));  // of a drive
+  write_changed("mit.toml", "", "");
+  EXPECT_EQ(run("check hardware.toml --set hardware.imu.device=/dev/nosuch </dev/null"), 1)
+      << error();
+  EXPECT_THAT(output(), HasSubstr("5 things are wrong; nothing was powered\n"));
+  EXPECT_THAT(output(), HasSubstr("\n  CAN interface can3: "));
+  EXPECT_THAT(output(), HasSubstr("/dev/nosuch"));
+}
+
+TEST_F(HardwareTest, CheckRefusesWhatDoesNotGoTogether) {
+  write_changed("mit.toml", "", "");
+  expect_refused("check", "FILE");
+  expect_refused("check nosuch.toml", "nosuch.toml");
+  expect_refused("check hardware.toml --plan --move", "--move");
+  expect_refused("check hardware.toml --zero standing", "standing");
+  expect_refused("check hardware.toml --arm", "expected no --hardware, --arm or --dry-run");
+}
+
+TEST_F(HardwareTest, EffectiveSettingsReadBackToTheSame) {
+  for (const char* example : {"mit.toml", "moteus.toml"}) {
+    ConfigTree tree;
+    sim::add_terrain_layer(tree, "dry-sand");
+    tree.add_file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + example);
+    tree.set("hardware.torque_scale=0.3");
+    const ProcessConfig first = read_process_config(tree, nullptr);
+    ConfigTree again;
+    again.add_text(first.effective, "config.toml");
+    const ProcessConfig second = read_process_config(again, nullptr);
+    EXPECT_EQ(second.effective, first.effective);
+    EXPECT_THAT(first.effective, HasSubstr("\nhardware.drive = [\n  {bus = \"can0\""));
+    for (int j = 0; j < kNumJoints; ++j) {
+      EXPECT_EQ(second.hardware->drives[j].id(), first.hardware->drives[j].id());
+      EXPECT_EQ(second.controller.gate.torque_limit_nm[j],
+                first.controller.gate.torque_limit_nm[j]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner

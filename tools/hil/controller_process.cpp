@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/hil/controller_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+
+#include "rt/base/errors.h"
+
+namespace sandrunner::hil {
+
+ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
+                                     const std::string& log) {
+  std::vector<char*> words;
+  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0666);
+  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+  // Not the bench's priority: the controller has its own.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  const sched_param ordinary{};
+  posix_spawnattr_setschedpolicy(&attributes, SCHED_OTHER);
+  posix_spawnattr_setschedparam(&attributes, &ordinary);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSCHEDULER);
+  const int error = posix_spawnp(&pid_, words[0], &files, &attributes, words.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) {
+    pid_ = 0;
+    throw InputError(fmt::format("controller {}: {}", command[0], strerror(error)));
+  }
+}
+
+ControllerProcess::~ControllerProcess() {
+  if (pid_ == 0 || ended()) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+}
+
+std::optional<int> ControllerProcess::ended() noexcept {
+  int status = 0;
+  if (!result_ && waitpid(pid_, &status, WNOHANG) == pid_) {
+    result_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  return result_;
+}
+
+}  // namespace sandrunner::hil
