@@ -14,7 +14,7 @@
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
-#include "tools/train/task/embedded.h"
+#include "tools/train/task/robot_settings.h"
 #include "tools/train/training.h"
 
 namespace sandrunner::train {
@@ -33,8 +33,9 @@ int run(int argc, char** argv) {
   app.add_option("--out", options.out,
                  "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png (required)")
       ->type_name("DIR");
-  app.add_option("--config", config_file,
-                 "TOML with settings that differ from the built-in raibo.toml")
+  app.add_option(
+         "--config", config_file,
+         "TOML with settings that differ from the built-in ones (tools/train/training.toml)")
       ->type_name("FILE");
   app.add_option("--robot", robot_file,
                  "map of the robot to train (sim/robot/README.md); default: the one that ships")
@@ -69,11 +70,11 @@ int run(int argc, char** argv) {
     throw InputError("--from: expected without --resume, which has weights of its own");
   }
   ConfigTree tree;
-  tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
+  const sim::Robot robot = robot_file.empty() ? sim::load_raibo() : sim::load_robot(robot_file);
+  add_training_layers(tree, robot);
   if (!config_file.empty()) tree.add_file(config_file);
   for (const std::string& assignment : assignments) tree.set(assignment);
   const TrainConfig config = read_train_config(tree);
-  const sim::Robot robot = robot_file.empty() ? sim::load_raibo() : sim::load_robot(robot_file);
   if (!resume && std::filesystem::exists(Training::checkpoint_path(options.out))) {
     throw InputError(
         fmt::format("--out: '{}' holds a training; give --resume or another folder", options.out));

@@ -9,7 +9,7 @@
 
 namespace sandrunner::train {
 
-/// Table `run` of tools/train/raibo.toml.
+/// Table `run` of tools/train/training.toml.
 struct RunSettings {
   int envs = 0;                      ///< environments
   double transitions = 0;            ///< of all environments together, when the training ends
