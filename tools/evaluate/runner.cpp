@@ -24,7 +24,7 @@ constexpr std::uint64_t kDrawsPerStep = 64;
 
 train::NoiseSettings training_noise() {
   ConfigTree tree;
-  tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
+  tree.add_text(embedded_train_file("training.toml"), "training.toml");
   return train::read_noise_settings(tree);
 }
 

@@ -14,7 +14,7 @@
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
-#include "tools/train/task/embedded.h"
+#include "tools/train/task/robot_settings.h"
 #include "tools/train/training.h"
 
 namespace sandrunner::train {
@@ -25,17 +25,17 @@ std::atomic<bool> interrupted{false};
 int run(int argc, char** argv) {
   TrainingOptions options;
   options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  std::string config_file, robot_file;
+  std::string config_file, robot_file, from_file;
   std::vector<std::string> assignments;
-  bool resume = false;
+  bool resume = false, explain = false;
   CLI::App app{"Trains a policy from random weights on randomised deformable ground.",
                "sandrunner-train"};
   app.add_option("--out", options.out,
-                 "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png")
-      ->required()
+                 "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png (required)")
       ->type_name("DIR");
-  app.add_option("--config", config_file,
-                 "TOML with settings that differ from the built-in raibo.toml")
+  app.add_option(
+         "--config", config_file,
+         "TOML with settings that differ from the built-in ones (tools/train/training.toml)")
       ->type_name("FILE");
   app.add_option("--robot", robot_file,
                  "map of the robot to train (sim/robot/README.md); default: the one that ships")
@@ -51,17 +51,30 @@ int run(int argc, char** argv) {
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--resume", resume, "continue from the checkpoint in --out");
+  app.add_option("--from", from_file,
+                 "policy file to go on from instead of random weights: for other ground or another "
+                 "robot")
+      ->type_name("FILE");
+  app.add_flag("--explain", explain, "say what the lines of progress mean, and end");
   app.footer(
       "Examples:\n"
       "  sandrunner-train --out runs/a --seed 2\n"
       "  sandrunner-train --out runs/a --resume");
   if (!parse_command_line(app, argc, argv)) return kExitOk;
+  if (explain) {
+    fmt::print("{}", Progress::explanation());
+    return kExitOk;
+  }
+  if (options.out.empty()) throw InputError("--out: found none, expected a folder");
+  if (resume && !from_file.empty()) {
+    throw InputError("--from: expected without --resume, which has weights of its own");
+  }
   ConfigTree tree;
-  tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
+  const sim::Robot robot = robot_file.empty() ? sim::load_raibo() : sim::load_robot(robot_file);
+  add_training_layers(tree, robot);
   if (!config_file.empty()) tree.add_file(config_file);
   for (const std::string& assignment : assignments) tree.set(assignment);
   const TrainConfig config = read_train_config(tree);
-  const sim::Robot robot = robot_file.empty() ? sim::load_raibo() : sim::load_robot(robot_file);
   if (!resume && std::filesystem::exists(Training::checkpoint_path(options.out))) {
     throw InputError(
         fmt::format("--out: '{}' holds a training; give --resume or another folder", options.out));
@@ -69,6 +82,7 @@ int run(int argc, char** argv) {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   Training training(config, robot, options);
+  if (!from_file.empty()) training.go_on_from(read_policy_file(from_file));
   if (resume) training.resume();
   prepare_folder(options.out, "--out");
   if (!resume) training.start();

@@ -67,15 +67,27 @@ void Progress::load(const learner::Checkpoint& checkpoint) {
 std::string Progress::line(const ProgressRow& r, double eta_s) {
   const WindowStats& w = r.window;
   return fmt::format(
-      "{:5.0f}  {:6.2f} M  {:5.1f} k/s ({:2.0f} % sim)  reward {:.4f}  track {:.2f}/{:.2f}  falls "
-      "{:.2f}/{:.2f}  "
-      "v/cmd {:.2f}/{:.2f}  est {:.2f} m/s  vmax {:.2f}  soft {:.2f}  h {:.3f}  {:.1f} Hz  "
-      "gait {:+.2f}/{:+.2f}  std "
-      "{:.2f}  eta {:.0f} min",
-      r.iteration, r.transitions / 1e6, r.transitions_per_s / 1e3, 100.0 * r.simulation_share,
-      w.reward, w.kernel[0], w.kernel[1], w.falls[0], w.falls[1], w.speed_ratio[0],
-      w.speed_ratio[1], r.estimate_vx_rms_mps, r.command_speed_mps, r.ground_open, w.body_height_m,
-      w.stride_hz, w.abreast, w.diagonal, r.action_std, eta_s / 60.0);
+      "{:7.2f} M {:5.1f} k/s  reward {:.3f}  track {:.2f}  falls {:.2f}  {:.1f} Hz  trot {:+.2f}  "
+      "std {:.2f}  max {:.1f} m/s  {:3.0f} min",
+      r.transitions / 1e6, r.transitions_per_s / 1e3, w.reward, w.kernel[1], w.falls[1],
+      w.stride_hz, w.diagonal, r.action_std, r.command_speed_mps, eta_s / 60.0);
+}
+
+const char* Progress::explanation() {
+  return "A line of progress, of the last update's steps, on soil:\n"
+         "  M        transitions so far, millions; a transition is 10 ms of one robot\n"
+         "  k/s      transitions a second, thousands\n"
+         "  reward   mean of a step\n"
+         "  track    how well the commanded velocity is kept, 0 to 1\n"
+         "  falls    of a robot in 4 s, under noise, pushes and all commands that are open\n"
+         "  Hz       strides a second\n"
+         "  trot     correlation of diagonal feet in the air: 1 is a trot, below 0 they take "
+         "turns\n"
+         "  std      noise of the actions, in units of the network's output\n"
+         "  max      fastest command that is drawn; opens as the robots follow\n"
+         "  min      minutes left\n"
+         "curve.csv has a row for each update: all of these, hard ground besides, and each term of "
+         "the\nreward by its name (reward_...); curve.png draws the most telling ones.\n";
 }
 
 void Progress::write(const std::string& dir) const {
@@ -118,6 +130,13 @@ void Progress::write(const std::string& dir) const {
                            "per robot and 4 s",
                            {series("rigid", kBlue, [](R r) { return r.window.falls[0]; }),
                             series("soil", kOrange, [](R r) { return r.window.falls[1]; })}});
+  figure.panels.push_back(
+      {"Gait: strides", "Hz", {series("stride", kBlue, [](R r) { return r.window.stride_hz; })}});
+  figure.panels.push_back(
+      {"Gait: feet together in the air",
+       "correlation",
+       {series("diagonal", kBlue, [](R r) { return r.window.diagonal; }),
+        series("side by side", kOrange, [](R r) { return r.window.abreast; })}});
   figure.panels.push_back(
       {"Curricula",
        "m/s; 0 to 1",

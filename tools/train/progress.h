@@ -28,8 +28,10 @@ class Progress {
   void save(learner::Checkpoint& checkpoint) const;
   void load(const learner::Checkpoint& checkpoint);
 
-  /// One line for a person; `eta_s`: seconds left.
+  /// One line for a person, of at most 100 characters; `eta_s`: seconds left.
   static std::string line(const ProgressRow& row, double eta_s);
+  /// What its parts mean, for `--explain`.
+  static const char* explanation();
   /// Writes curve.csv and curve.png into `dir`. Throws InputError.
   void write(const std::string& dir) const;
 

@@ -18,6 +18,7 @@ constexpr NumberSetting<R> kRun[] = {
     {"checkpoint_interval_s", &R::checkpoint_interval_s, 0.0, 1e6},
     {"settle_share", &R::settle_share, 0.0, 1.0},
     {"settle_kl_share", &R::settle_kl_share, 1e-3, 1.0},
+    {"settle_action_std", &R::settle_action_std, 1e-3, 10.0},
 };
 
 using L = learner::LearnerConfig;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -77,6 +78,21 @@ void Training::start() {
             [&](int block, int) { task_.observe(block, 0, learner_.rollout()); });
 }
 
+void Training::go_on_from(PolicyFile policy) {
+  for (std::vector<float>* rows :
+       {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
+    const std::vector<float> joints = *rows;
+    modes_from_joints(config_.task.policy.mode_gain, joints.data(), joints.size() / kNumJoints,
+                      rows->data());
+  }
+  std::vector<learner::PolicyTensor> tensors;
+  for (const NamedTensor& tensor : tensors_of(policy.parameters)) {
+    tensors.push_back({tensor.name, {}, *tensor.values});
+  }
+  learner_.set_policy(tensors);
+  origin_ = fmt::format("sandrunner-train, from the weights of policy '{}'", policy.spec.name);
+}
+
 void Training::resume() {
   const learner::Checkpoint checkpoint = learner::load_checkpoint(checkpoint_path_);
   if (checkpoint.config_hash != config_hash_) {
@@ -92,6 +108,9 @@ void Training::resume() {
   }
   restore(checkpoint);
   checkpoint.get("run.cpu_seconds", &cpu_before_s_, 1);
+  Names origin{};
+  checkpoint.get("run.origin", origin.data(), origin.size());
+  origin_ = origin.data();
   // All builds and processors that had a part in the weights.
   for (const auto& [section, now] :
        {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
@@ -118,7 +137,8 @@ void Training::save() {
   checkpoint.put("run.cpu_seconds", &cpu_s, 1);
   checkpoint.put("run.robot", &robot_hash_, 1);
   for (const auto& [section, text] :
-       {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
+       {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_},
+        std::pair{"run.origin", &origin_}}) {
     Names names{};
     text->copy(names.data(), names.size() - 1);
     checkpoint.put(section, names.data(), names.size());
@@ -149,8 +169,7 @@ void Training::run(const std::atomic<bool>& interrupted) {
     const double t0_s = wall_seconds();
     step_window();
     const double t1_s = wall_seconds();
-    learner_.set_kl_target(kl_target());
-    learner_.set_symmetry_weight(config_.learner.loss.symmetry_weight * task_.late());
+    settle();
     const learner::UpdateStats update = learner_.update();
     const double t2_s = wall_seconds();
     if (!update.finite) {
@@ -171,12 +190,19 @@ void Training::run(const std::atomic<bool>& interrupted) {
   if (transitions() > before) save();
 }
 
-// Smaller and smaller updates in the last part: the policy settles.
-double Training::kl_target() const {
+// In the last part no pull towards symmetry, smaller and smaller updates, and less and less noise:
+// the policy settles, on what it does without.
+void Training::settle() {
   const RunSettings& run = config_.run;
+  const learner::LearnerConfig& learner = config_.learner;
   const double left = (run.transitions - static_cast<double>(learner_.transitions())) /
                       std::max(run.transitions * run.settle_share, 1.0);
-  return std::clamp(left, run.settle_kl_share, 1.0) * config_.learner.kl_target;
+  // What is left of it would take from a trot its first step.
+  learner_.set_symmetry_weight(left < 1.0 ? 0.0 : learner.loss.symmetry_weight * task_.late());
+  learner_.set_kl_target(std::clamp(left, run.settle_kl_share, 1.0) * learner.kl_target);
+  learner_.set_action_std_most(
+      run.settle_action_std *
+      std::pow(learner.action_std_start / run.settle_action_std, std::clamp(left, 0.0, 1.0)));
 }
 
 void Training::fall_back() {
@@ -252,7 +278,7 @@ PolicyFile Training::policy_file() const {
       {"core_hours", fmt::format("{:.3f}", (cpu_before_s_ + cpu_seconds()) / 3600.0)},
       {"processor", processors_},
       {"commit", builds_},
-      {"origin", "sandrunner-train, from random weights"}};
+      {"origin", origin_}};
   NetworkParameters& p = file.parameters;
   p.observation_clip = scales.clip;
   p.observation_mean.assign(scales.mean.begin(), scales.mean.end());

@@ -34,6 +34,9 @@ class Training {
   /// InputError if there is none or it belongs to another configuration, seed or robot.
   void start();
   void resume();
+  /// Before `start`: the weights of a policy file in place of random ones. Its normalisation and
+  /// scales are not taken over, those of the configuration hold; the critic starts at random.
+  void go_on_from(PolicyFile policy);
 
   /// Windows until the transitions are done or somebody interrupts; writes the files now and then
   /// and at the end. A training that was complete stays as it is.
@@ -43,7 +46,7 @@ class Training {
   void save();
   void restore(const learner::Checkpoint& checkpoint);
   void step_window();
-  double kl_target() const;
+  void settle();
   void fall_back();
   ProgressRow make_row(const WindowStats& window, const learner::UpdateStats& update,
                        double simulation_s, double total_s) const;
@@ -58,6 +61,7 @@ class Training {
   Progress progress_;
   std::string checkpoint_path_;
   std::uint64_t config_hash_, robot_hash_;
+  std::string origin_ = "sandrunner-train, from random weights";
   std::string builds_, processors_;  // of this process and those it continues, separated by commas
   double cpu_before_s_ = 0.0;        // core time of those before
   double saved_at_s_ = 0.0;          // wall time of the last checkpoint

@@ -288,9 +288,10 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
     adam_.update(begin, std::min(size, begin + kRange), counters_.learning_rate,
                  static_cast<float>(scale), gradients_.front().data(), parameters_.data());
   });
-  const auto floor = static_cast<float>(std::log(config_.action_std_min));
+  const auto most = static_cast<float>(std::log(action_std_most_));
+  const auto least = std::min(static_cast<float>(std::log(config_.action_std_min)), most);
   float* log_std = parameters_.data() + layout_.log_std();
-  for (int k = 0; k < kActionSize; ++k) log_std[k] = std::max(log_std[k], floor);
+  for (int k = 0; k < kActionSize; ++k) log_std[k] = std::clamp(log_std[k], least, most);
   if (symmetry_) {  // as much noise on the left as on the right
     std::array<float, kActionSize> both;
     for (std::size_t k = 0; k < kActionSize; ++k) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -114,6 +116,18 @@ class Learner {
   void halve_learning_rate();
   /// KL target of the updates to come.
   void set_kl_target(double kl_target) { config_.kl_target = kl_target; }
+  /// Takes the weights of a policy that can act already, before the first step; its actions get
+  /// half as much noise again as is left in the end.
+  void set_policy(const std::vector<PolicyTensor>& tensors) {
+    set_policy_tensors(layout_, tensors, parameters_);
+    std::fill_n(parameters_.begin() + layout_.log_std(), kActionSize,
+                static_cast<float>(std::log(1.5 * config_.action_std_min)));
+    averaged_ = parameters_;
+    begin_window();
+  }
+  /// The most noise that actions have from the next update on, even if that is less than
+  /// `action_std_min`.
+  void set_action_std_most(double action_std) { action_std_most_ = action_std; }
   /// Weight of the pull towards symmetry from now on; without effect if there is no symmetry.
   void set_symmetry_weight(double weight) {
     if (symmetry_) config_.loss.symmetry_weight = weight;
@@ -146,6 +160,7 @@ class Learner {
   std::vector<float> parameters_;
   Weights<float> weights_;  // the parameters, packed
   std::vector<float> averaged_;
+  double action_std_most_ = 1e3;
   Adam adam_;
   Matrix<float> h_;  // memory of each environment
   Matrix<float> c_;

@@ -121,4 +121,25 @@ std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
   return tensors;
 }
 
+void set_policy_tensors(const ParameterLayout& layout, const std::vector<PolicyTensor>& tensors,
+                        std::vector<float>& parameters) {
+  const int hidden = layout.hidden();
+  const int cols = kProprioceptionSize + 1 + hidden;
+  const auto values = [&](const std::string& name) -> const std::vector<float>& {
+    return std::ranges::find(tensors, name, &PolicyTensor::name)->values;
+  };
+  const std::vector<float>& input = values("encoder.weight_ih");
+  const std::vector<float>& state = values("encoder.weight_hh");
+  for (int row = 0; row < 4 * hidden; ++row) {
+    float* const to = parameters.data() + layout.encoder() + row * cols;
+    std::copy_n(&input[row * kProprioceptionSize], kProprioceptionSize, to);
+    to[kProprioceptionSize] = values("encoder.bias_ih")[row] + values("encoder.bias_hh")[row];
+    std::copy_n(&state[row * hidden], hidden, to + kProprioceptionSize + 1);
+  }
+  for (const TensorView& view : layout.tensors()) {
+    if (!view.name.starts_with("estimator.") && !view.name.starts_with("actor.")) continue;
+    std::ranges::copy(values(view.name), parameters.begin() + view.offset);
+  }
+}
+
 }  // namespace sandrunner::learner

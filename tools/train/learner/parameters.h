@@ -96,4 +96,9 @@ struct PolicyTensor {
 std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
                                          const std::vector<float>& parameters);
 
+/// The way back: writes the tensors of a policy, all of those above, into `parameters`. The rest,
+/// critic and noise, stays.
+void set_policy_tensors(const ParameterLayout& layout, const std::vector<PolicyTensor>& tensors,
+                        std::vector<float>& parameters);
+
 }  // namespace sandrunner::learner

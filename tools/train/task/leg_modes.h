@@ -38,4 +38,21 @@ inline void joints_from_modes(const std::array<double, kNumLegs>& gain, const fl
   }
 }
 
+/// The way back: what a network in modes has to answer for these joints.
+inline void modes_from_joints(const std::array<double, kNumLegs>& gain, const float* joints,
+                              std::size_t columns, float* modes) {
+  for (std::size_t mode = 0; mode < kNumLegs; ++mode) {
+    for (std::size_t joint = 0; joint < kJointsPerLeg; ++joint) {
+      float* const row = modes + (kJointsPerLeg * mode + joint) * columns;
+      for (std::size_t c = 0; c < columns; ++c) row[c] = 0.0f;
+      for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
+        const auto factor =
+            static_cast<float>(kLegModes[leg][mode] / (joint == 0 ? 1.0 : gain[mode]));
+        const float* const from = joints + (kJointsPerLeg * leg + joint) * columns;
+        for (std::size_t c = 0; c < columns; ++c) row[c] += factor * from[c];
+      }
+    }
+  }
+}
+
 }  // namespace sandrunner::train

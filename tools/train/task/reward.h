@@ -3,7 +3,7 @@
 //
 // A new term is a function here, its row in kPaid or kCharged, which also makes it a column of the
 // learning curve, and its settings in RewardSettings and kRewardSettings, with values in
-// raibo.toml.
+// training.toml.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace sandrunner::train {
 
-/// Table `reward` of raibo.toml. Weights are rewards a step, before `scale`; those of the costs are
+/// Table `reward` of training.toml. Weights are rewards a step, before `scale`; those of the costs are
 /// per unit of what is charged.
 struct RewardSettings {
   double scale = 0;                       ///< of the whole, before the critic sees it

@@ -8,7 +8,7 @@
 
 namespace sandrunner::train {
 
-// The tables of tools/train/raibo.toml that are about the task; it gives every value with its
+// The tables of tools/train/training.toml that are about the task; it gives every value with its
 // source. Names as there. A share is between 0 and 1; a spread of 0.1 is a factor between 0.9
 // and 1.1.
 

@@ -66,6 +66,21 @@ TEST(ParametersTest, PolicyTensorsHaveTheNamesAndShapesOfAPolicyFile) {
   EXPECT_EQ(shapes, expected);
 }
 
+TEST(ParametersTest, TensorsOfAPolicyComeBackAsTheyWere) {
+  const ParameterLayout layout(NetworkSizes{}, 80);
+  const std::vector<float> from = initial_parameters(layout, 1, 0.6);
+  std::vector<float> to = initial_parameters(layout, 2, 0.3);
+  const std::vector<float> before = to;
+  set_policy_tensors(layout, policy_tensors(layout, from), to);
+  const std::vector<PolicyTensor> wanted = policy_tensors(layout, from);
+  const std::vector<PolicyTensor> got = policy_tensors(layout, to);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    EXPECT_EQ(got[i].values, wanted[i].values) << wanted[i].name;
+  }
+  for (const LayerView& layer : layout.critic()) EXPECT_EQ(to[layer.weight], before[layer.weight]);
+  EXPECT_EQ(to[layout.log_std()], before[layout.log_std()]);
+}
+
 double sigmoid(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
 /// The deployed network written out from PyTorch's documentation, on the exported tensors.

@@ -135,6 +135,37 @@ TEST_F(TrainCommandTest, WeightsDoNotDependOnTheNumberOfThreads) {
   expect_same_weights(policy("one"), policy("two"));
 }
 
+TEST_F(TrainCommandTest, GoesOnFromThePolicyOfAFileAndSaysSo) {
+  ASSERT_EQ(run("first", {"--seed", "3"}), 0);
+  const std::string first = folder_.path("first/policy.safetensors");
+  ASSERT_EQ(
+      run("second", {"--from", first, "--set", "learner.learning_rate_start=1e-9", "--set",
+                     "learner.learning_rate_min=1e-9", "--set", "learner.learning_rate_max=1e-9"}),
+      0);
+  const PolicyFile a = policy("first"), b = policy("second");
+  for (std::size_t i = 0; i < a.parameters.encoder_weight_hh.size(); ++i) {
+    ASSERT_NEAR(a.parameters.encoder_weight_hh[i], b.parameters.encoder_weight_hh[i], 1e-6);
+  }
+  for (std::size_t i = 0; i < a.parameters.actor[2].weight.size(); ++i) {
+    ASSERT_NEAR(a.parameters.actor[2].weight[i], b.parameters.actor[2].weight[i], 1e-6);
+  }
+  EXPECT_NE(b.spec.provenance.at("origin").find("from the weights of policy 'raibo'"),
+            std::string::npos);
+  EXPECT_NE(a.spec.provenance.at("origin").find("from random weights"), std::string::npos);
+  expect_refused("third", {"--from", first, "--resume"}, "--from");
+}
+
+TEST_F(TrainCommandTest, LinesOfProgressAreShortAndExplained) {
+  const Ended ended = run_process(training("a", {}));
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_LE(ended.out.find('\n'), 100u) << ended.out;
+  const Ended explained = run_process({SANDRUNNER_TRAIN_PROGRAM, "--explain"});
+  EXPECT_EQ(explained.code, 0);
+  for (const char* word : {"reward", "track", "falls", "Hz", "trot", "std", "max", "min"}) {
+    EXPECT_NE(explained.out.find(word), std::string::npos) << word;
+  }
+}
+
 TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
   expect_refused("a", {"--set", "reward.torqe=1"}, "reward.torqe");
   expect_refused("a", {"--set", "learner.gamma=1.5"}, "learner.gamma");

@@ -52,5 +52,14 @@ TEST(LegModesTest, FoldedIntoALayerGiveTheActionsOfTheLayerInModes) {
   for (int j = 0; j < kNumJoints; ++j) EXPECT_NEAR(folded[j], expected[j], 1e-6) << j;
 }
 
+TEST(LegModesTest, ModesOfJointsOfModesAreThese) {
+  constexpr std::array<double, kNumLegs> kGain{0.6, 0.7, 0.9, 1.6};
+  JointArray<float> modes, joints, again;
+  for (int k = 0; k < kNumJoints; ++k) modes[k] = std::sin(1.0f + 3.0f * float(k));
+  joints_from_modes(kGain, modes.data(), 1, joints.data());
+  modes_from_joints(kGain, joints.data(), 1, again.data());
+  for (int k = 0; k < kNumJoints; ++k) EXPECT_NEAR(again[k], modes[k], 1e-6) << k;
+}
+
 }  // namespace
 }  // namespace sandrunner::train

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "rt/base/config_tree.h"
-#include "tools/train/task/embedded.h"
+#include "tools/train/task/robot_settings.h"
 #include "tools/train/task/task_config.h"
 
 namespace sandrunner::train {
@@ -15,7 +15,7 @@ namespace {
 
 RewardSettings shipped_settings() {
   ConfigTree tree;
-  tree.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
+  add_training_layers(tree, sim::load_raibo());
   return read_task_config(tree).reward;
 }
 
