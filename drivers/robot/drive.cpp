@@ -13,8 +13,6 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kEnable_ticks = static_cast<std::uint64_t>(kEnable_s * kControlHz);
 /// A drive that does not say whether it is enabled is taken to be after so many replies.
 constexpr std::uint64_t kRepliesToEnable = 3;
-/// Replies in a row that say "off" before that is believed: one may have been on its way.
-constexpr std::uint64_t kOffInARow = 3;
 
 /// MIT codes have none for zero: a drive at rest says half a step. Left as it is, a joint that
 /// stands would seem to creep for ever.
@@ -98,7 +96,6 @@ bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
       phase_ = Phase::kEnabling;
       enabling_since_ = tick;
       replies_at_enable_ = replies_;
-      off_in_a_row_ = 0;
     }
     if (tick - enabling_since_ > kEnable_ticks) set(DriveTrouble::kNotEnabled, true);
     enable_frame(frame);
@@ -159,8 +156,8 @@ void Drive::judge_power(bool known, bool enabled) noexcept {
   if (phase_ == Phase::kEnabling) {
     if (known ? enabled : replies_ >= replies_at_enable_ + kRepliesToEnable) phase_ = Phase::kOn;
   } else if (phase_ == Phase::kOn && known) {
-    off_in_a_row_ = enabled ? 0 : off_in_a_row_ + 1;
-    if (off_in_a_row_ >= kOffInARow) set(DriveTrouble::kSwitchedOff, true);
+    // Answers come in their order: since one has said "enabled", none of before is on its way.
+    if (!enabled) set(DriveTrouble::kSwitchedOff, true);
   }
 }
 

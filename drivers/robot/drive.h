@@ -83,7 +83,7 @@ class Drive {
   double timeout_s_ = 0.0;
 
   Phase phase_ = Phase::kOff;
-  std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0, off_in_a_row_ = 0;
+  std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0;
   double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
   double temperature_degc_, voltage_v_;
   std::uint64_t maker_fault_ = 0, trouble_ = 0, tick_ = 0;

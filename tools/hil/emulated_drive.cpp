@@ -153,6 +153,9 @@ bool EmulatedDrive::answer_moteus(const CanFrame& request, double now_s, CanFram
   MoteusRequest wanted;
   if (decode_moteus_request(config_.moteus, request, wanted) != MoteusStatus::kOk) return false;
   ++frames_;
+  look_at_clock(now_s);
+  // A command is in force from the next turn of the drive's own loop on, after the answer.
+  const State answered = state_;
   if (wanted.has_mode && wanted.mode != MoteusMode::kPosition) {
     state_ = State::kOff;  // every other mode is taken for a stop
   } else if (wanted.has_mode && (state_ == State::kOff || state_ == State::kOn)) {
@@ -172,7 +175,7 @@ bool EmulatedDrive::answer_moteus(const CanFrame& request, double now_s, CanFram
   constexpr std::array kModes = {MoteusMode::kStopped, MoteusMode::kPosition, MoteusMode::kTimeout,
                                  MoteusMode::kFault};
   const MoteusReply state{
-      .mode = faults.code != 0 ? MoteusMode::kFault : kModes[static_cast<std::size_t>(state_)],
+      .mode = faults.code != 0 ? MoteusMode::kFault : kModes[static_cast<std::size_t>(answered)],
       .position_rad = position_rad_ + faults.offset_rad,
       .velocity_radps = velocity_radps_,
       .torque_nm = torque_nm_,

@@ -95,16 +95,16 @@ void Training::go_on_from(PolicyFile policy) {
 
 void Training::resume() {
   const learner::Checkpoint checkpoint = learner::load_checkpoint(checkpoint_path_);
-  if (checkpoint.config_hash != config_hash_) {
-    throw InputError(fmt::format(
-        "{}: was made with another config or seed; continue with the same ones", checkpoint_path_));
-  }
   std::uint64_t robot = 0;
   checkpoint.get("run.robot", &robot, 1);
   if (robot != robot_hash_) {
     throw InputError(
         fmt::format("{}: was made with another robot than this '{}'; continue with the same one",
                     checkpoint_path_, robot_.description.name));
+  }
+  if (checkpoint.config_hash != config_hash_) {
+    throw InputError(fmt::format(
+        "{}: was made with another config or seed; continue with the same ones", checkpoint_path_));
   }
   restore(checkpoint);
   checkpoint.get("run.cpu_seconds", &cpu_before_s_, 1);
