@@ -67,8 +67,8 @@ void Progress::load(const learner::Checkpoint& checkpoint) {
 std::string Progress::line(const ProgressRow& r, double eta_s) {
   const WindowStats& w = r.window;
   return fmt::format(
-      "{:6.2f} M {:4.0f} k/s  reward {:.3f}  track {:.2f}  falls {:.2f}  {:4.1f} Hz  trot {:+.2f}  "
-      "std {:.2f}  {:.1f} m/s {:3.0f} min",
+      "{:6.2f} M {:3.0f} k/s  reward {:.3f} track {:.2f}  falls {:.2f} {:4.1f} Hz  trot {:+.2f}  "
+      "std {:.2f} {:.1f} m/s {:3.0f} min",
       r.transitions / 1e6, r.transitions_per_s / 1e3, w.reward, w.kernel[1], w.falls[1],
       w.stride_hz, w.diagonal, r.action_std, r.command_speed_mps, eta_s / 60.0);
 }
