@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "drivers/check/check.h"
 #include "drivers/robot/bus_plan.h"
@@ -34,7 +35,10 @@
 #include "rt/run/run.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
+#include "rt/telemetry/view/view_feed.h"
+#include "rt/telemetry/view/view_pace.h"
 #include "rt/telemetry/view/view_page.h"
+#include "rt/telemetry/view/view_server.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 
@@ -118,20 +122,42 @@ TheRobot make_robot(const Options& options, const ProcessConfig& config) {
   return robot;
 }
 
+// A run in a browser.
+struct LiveView {
+  LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
+           const std::atomic<bool>& interrupt)
+      : feed(scene, config.robot.description) {
+    if (lockstep) pace.emplace(interrupt);
+    server.emplace(config.view_port,
+                   ViewServer::Parts{.feed = feed, .pace = pace ? &*pace : nullptr});
+    to_standard_error(fmt::format("sandrunner: look at {}\n", server->url()));
+  }
+  void add(const TickRecord& tick) {
+    feed.add(tick);
+    if (pace) pace->wait();
+  }
+
+  ViewFeed feed;
+  std::optional<ViewPace> pace;
+  std::optional<ViewServer> server;
+};
+
 // Everything that listens to the ticks of a run, in ordinary threads.
 struct Listeners {
   std::optional<DdsBridge> dds;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<BlackBox> black_box;
   std::optional<ViewPage> page;
+  std::optional<LiveView> view;
 
   TickTap tap() {
-    if (!recorder && !black_box && !dds && !page) return {};
+    if (!recorder && !black_box && !dds && !page && !view) return {};
     return [this](const TickRecord& tick) {
       if (recorder) recorder->add(tick);
       if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
       if (page) page->add(tick);
+      if (view) view->add(tick);  // last: it waits
     };
   }
   void begin(std::int64_t start_ns) {
@@ -216,6 +242,9 @@ int run(int argc, char** argv) {
 
   const RunScene scene = scene_of(config, policy.spec().name);
   if (out) listeners.page.emplace(scene, config.robot.description);
+  if (options->view) {
+    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted());
+  }
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunParts parts{
@@ -265,6 +294,11 @@ int run(int argc, char** argv) {
   }
   fmt::print("{}{}", summary_table(result, info), written);
   if (not_written) std::rethrow_exception(not_written);
+  if (listeners.view) {
+    std::fflush(stdout);
+    listeners.view->feed.end();
+    while (!signals.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
   return result.survived ? kExitOk : kExitRobotFailed;
 }
 

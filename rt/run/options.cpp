@@ -118,6 +118,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
          "folder for run.mcap: every tick, to look at and replay; and for black-box-TICK.mcap "
          "of a realtime run with a fault (else that of --out, or the working folder)")
       ->type_name("DIR");
+  app.add_flag("--view", o.view,
+               "shows the run in a browser of this computer, at the address that is printed, and "
+               "stays until Ctrl-C; lockstep then goes at the pace of the clock");
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
   CLI::App* const check = add_check(app, o);
@@ -127,6 +130,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
       "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
       "  sandrunner --clock realtime --command dds\n"
+      "  sandrunner --view --terrain grass\n"
       "  sandrunner check robot.toml");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = start == "walk";

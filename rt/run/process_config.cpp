@@ -156,6 +156,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
       config.integer("recording.limit_bytes", static_cast<std::int64_t>(p.recording.bytes), 1,
                      std::int64_t{1} << 50));
   p.recording.time_s = config.number("recording.limit_s", p.recording.time_s, 0.1, 1e9);
+  p.view_port = static_cast<int>(config.integer("view.port", p.view_port, 0, 65535));
   p.motor_constant =
       config.number("summary.motor_constant", p.robot.motor_constant_nmpsqrtw, 1e-3, 1e3);
   config.reject_unknown();
