@@ -23,6 +23,7 @@
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
 #include "rt/core/floating_point.h"
+#include "rt/operator/operator_desk.h"
 #include "rt/realtime/rt_report.h"
 #include "rt/report/run_csv.h"
 #include "rt/report/run_pictures.h"
@@ -89,7 +90,7 @@ ProcessConfig read_config(const Options& options, const PolicySpec* spec,
   }
   for (const std::string& file : options.config_files) tree.add_file(file);
   for (const std::string& assignment : options.assignments) tree.set(assignment);
-  if (options.live) tree.set("dds.enabled=true");
+  if (options.live) tree.set(options.live_page ? "view.drive=true" : "dds.enabled=true");
   if (!options.dds_security_dir.empty()) {
     tree.set_text("dds.security_dir", options.dds_security_dir, "--dds-security");
   }
@@ -125,11 +126,12 @@ TheRobot make_robot(const Options& options, const ProcessConfig& config) {
 // A run in a browser.
 struct LiveView {
   LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
-           const std::atomic<bool>& interrupt)
+           const std::atomic<bool>& interrupt, OperatorDesk* desk)
       : feed(scene, config.robot.description) {
     if (lockstep) pace.emplace(interrupt);
-    server.emplace(config.view_port,
-                   ViewServer::Parts{.feed = feed, .pace = pace ? &*pace : nullptr});
+    server.emplace(config.view_port, ViewServer::Parts{.feed = feed,
+                                                       .pace = pace ? &*pace : nullptr,
+                                                       .desk = config.view_drive ? desk : nullptr});
     to_standard_error(fmt::format("sandrunner: look at {}\n", server->url()));
   }
   void add(const TickRecord& tick) {
@@ -233,8 +235,15 @@ int run(int argc, char** argv) {
 
   flush_denormals_to_zero();
   SignalWatch signals;
+  std::optional<RemoteOperator> remote;
+  std::optional<OperatorDesk> desk;
+  if (options->live) {
+    remote.emplace(config.dds.stale_ticks());
+    desk.emplace(*remote, config.dds.stale_s, true);
+  }
+  OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   Listeners listeners;
-  if (config.dds.enabled) listeners.dds.emplace(config, options->live, !options->realtime);
+  if (config.dds.enabled) listeners.dds.emplace(config, open_desk, !options->realtime);
   listeners.recorder = make_recorder(*options, config, policy_text, policy);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
   TheRobot robot = make_robot(*options, config);
@@ -243,7 +252,7 @@ int run(int argc, char** argv) {
   const RunScene scene = scene_of(config, policy.spec().name);
   if (out) listeners.page.emplace(scene, config.robot.description);
   if (options->view) {
-    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted());
+    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted(), open_desk);
   }
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -253,7 +262,7 @@ int run(int argc, char** argv) {
       .policy = &policy,
       .command = command,
       .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
-      .live = listeners.dds ? listeners.dds->op() : nullptr,
+      .live = remote ? &*remote : nullptr,
       .scene = scene,
       .keep_record = out,
       .progress = terminal ? show_progress : std::function<void(const RunSample&)>(),
@@ -271,7 +280,7 @@ int run(int argc, char** argv) {
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
-  const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name,
+  const RunInfo info{options->live ? options->command : command.text(), policy.spec().name,
                      robot.hardware ? "real" : options->terrain,
                      options->realtime ? "realtime" : "lockstep", options->seed};
   std::string written;

@@ -143,8 +143,9 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
     }
   }
   p.dds = read_dds_config(config);
+  p.view_drive = config.flag("view.drive", p.view_drive);
   // Who commands from afar may be lost on the way: the robot then slows down and stands.
-  if (p.dds.enabled) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
+  if (p.dds.enabled || p.view_drive) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
   if (config.has("hardware")) {
     p.hardware = read_hardware_config(config, p.robot.description, c.gate);
     adapt_gate(*p.hardware, c.gate);

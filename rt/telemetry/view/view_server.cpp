@@ -15,6 +15,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cstring>
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -57,6 +58,7 @@ struct Hub {
   ViewServer::Parts parts;
   std::string key, run;
   int sockets = 0;
+  std::uint64_t pages_so_far = 0;
   std::vector<Page*> pages;
 
   std::string state() const {
@@ -161,8 +163,9 @@ class Page : public std::enable_shared_from_this<Page> {
     has_key_ = same_key(hello.key, hub_.key);
     in_feed_ = hub_.parts.feed.join();
     answers_.push_back(fmt::format(
-        R"({{"say":"hello","run":"{}","key":{},"pace":{},"recorded":{},"hello":{}}})", hub_.run,
-        has_key_, hub_.parts.pace != nullptr, hub_.parts.recorded, hub_.parts.feed.hello()));
+        R"({{"say":"hello","run":"{}","key":{},"pace":{},"drive":{},"recorded":{},"hello":{}}})",
+        hub_.run, has_key_, hub_.parts.pace != nullptr, hub_.parts.desk != nullptr,
+        hub_.parts.recorded, hub_.parts.feed.hello()));
     if (!hello.key.empty() && !has_key_) {
       answers_.push_back(dump({{"say", "refused"}, {"why", "the key is not this run's"}}));
     }
@@ -174,6 +177,8 @@ class Page : public std::enable_shared_from_this<Page> {
     if (const auto* nonsense = std::get_if<PageNonsense>(&message)) return nonsense->why;
     if (std::holds_alternative<PageHello>(message)) return "hello was said";
     if (!has_key_) return "without the key this page only looks";
+    if (const auto* drive = std::get_if<PageDrive>(&message)) return follow(*drive);
+    if (const auto* request = std::get_if<PageRequest>(&message)) return follow(*request);
     ViewPace* const pace = hub_.parts.pace;
     if (!pace) return "this robot has its own time";
     if (const auto* order = std::get_if<PagePace>(&message)) pace->set_rate(order->rate);
@@ -183,6 +188,40 @@ class Page : public std::enable_shared_from_this<Page> {
     return {};
   }
 
+  std::string follow(const PageDrive& drive) {
+    if (!hub_.parts.desk) return "this run takes no commands from a page";
+    const auto& [vx_mps, vy_mps, wz_radps] = drive.velocity;
+    // No publisher of DDS has a number of all ones.
+    const Twist twist{.linear_mps = {vx_mps, vy_mps, 0.0}, .angular_radps = {0.0, 0.0, wz_radps}};
+    switch (hub_.parts.desk->drive(twist, ~number_, id())) {
+      case CommandVerdict::kAccepted:
+        return {};
+      case CommandVerdict::kOtherPublisher:
+        return "another operator drives the robot";
+      case CommandVerdict::kNotFinite:
+      case CommandVerdict::kAbsurd:
+        break;
+    }
+    return fmt::format("a velocity of {}, {} m/s, {} rad/s is absurd", vx_mps, vy_mps, wz_radps);
+  }
+
+  std::string follow(const PageRequest& request) {
+    if (!hub_.parts.desk) return "this run takes no commands from a page";
+    const RequestOutcome outcome = hub_.parts.desk->request(request.name, id());
+    answers_.push_back(dump({{"say", "answer"},
+                             {"to", request.name},
+                             {"accepted", outcome.accepted},
+                             {"text", outcome.text}}));
+    return {};
+  }
+
+  // Among operators: no participant of DDS has an identity that begins with zeros.
+  OperatorId id() const {
+    OperatorId id{};
+    std::memcpy(id.data() + 8, &number_, sizeof number_);
+    return id;
+  }
+
   void close(websocket::close_code code, const char* why) {
     closing_ = true;
     socket_.async_close({code, why}, [self = shared_from_this()](Error) {});
@@ -190,6 +229,7 @@ class Page : public std::enable_shared_from_this<Page> {
 
   Hub& hub_;
   Place place_;
+  const std::uint64_t number_ = ++hub_.pages_so_far;
   websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer buffer_{2 * kViewMessageBytes};
   MessageRate rate_;

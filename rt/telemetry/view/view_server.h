@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "rt/operator/operator_desk.h"
 #include "rt/telemetry/view/view_feed.h"
 #include "rt/telemetry/view/view_pace.h"
 
@@ -17,6 +18,7 @@ class ViewServer {
   struct Parts {
     const ViewFeed& feed;
     ViewPace* pace = nullptr;  ///< null: the robot has its own time, or there is only a recording
+    OperatorDesk* desk = nullptr;  ///< null: pages do not command
     bool recorded = false;
   };
 

@@ -21,7 +21,7 @@ export class Live {
     this.begin = begin;
     this.key = takeKey();
     this.state = { t_s: 0, ended: false, paused: false, rate: 1 };
-    this.mayTouch = this.hasPace = false;
+    this.mayTouch = this.hasPace = this.takesCommands = false;
     this.onAnswer = this.onState = this.onRun = () => {};
     this.heard = performance.now();
     this.#connect();
@@ -58,8 +58,9 @@ export class Live {
     }
   }
 
-  #hello({ run, key, pace, recorded, hello }) {
+  #hello({ run, key, pace, drive, recorded, hello }) {
     this.mayTouch = key;
+    this.takesCommands = drive;
     this.recorded = recorded;
     this.hasPace = pace;
     const another = this.name !== undefined && this.name !== run;
@@ -72,10 +73,10 @@ export class Live {
         tiles: new GrowingTable(hello.tile_fields, kMostTiles),
       };
     } else if (another) {
-      if (JSON.stringify(hello) !== JSON.stringify(this.run.hello)) return location.reload();
+      if (hello.urdf !== this.run.hello.urdf || hello.terrain !== this.run.hello.terrain) location.reload();
       for (const table of [this.run.frames, this.run.footprints, this.run.tiles]) table.clear();
+      this.onRun();
     }
-    return this.onRun();
   }
 
   #rows(buffer) {

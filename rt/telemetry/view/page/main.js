@@ -2,6 +2,7 @@
 // The page: takes a run from its source and draws it over time.
 import './three_notice.js';
 import { kSpan_s, makeCharts } from './charts.js';
+import { Drive } from './drive.js';
 import { hasRun, readRun } from './file.js';
 import { Live } from './live.js';
 import { LivePlayer } from './live_player.js';
@@ -65,7 +66,7 @@ function savePicture(view, t) {
 
 // What only a page has that somebody serves.
 function makeLive({ live }, player, view, changed) {
-  const showTime = makeRobotTime(live), lost = element('lost');
+  const showTime = makeRobotTime(live), drive = new Drive(live), lost = element('lost');
   element('now').hidden = live.recorded;
   element('now').onclick = () => player.follow();
   live.onRun = () => {
@@ -73,8 +74,11 @@ function makeLive({ live }, player, view, changed) {
     player.follow();
     changed();
   };
-  live.onState = showTime;
-  live.onAnswer = ({ why }) => { element('note').textContent = why; };
+  live.onState = () => {
+    showTime();
+    drive.show();
+  };
+  live.onAnswer = (message) => drive.answer(message);
   showTime();
   return () => {
     const text = live.lost ? 'LOST: nothing is heard of the robot' : '';

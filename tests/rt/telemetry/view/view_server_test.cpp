@@ -2,148 +2,22 @@
 // The server over real sockets.
 #include "rt/telemetry/view/view_server.h"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstring>
 #include <future>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <thread>
 #include <vector>
 
 #include "rt/base/errors.h"
 #include "rt/telemetry/view/view_rules.h"
 #include "tests/rt/telemetry/example_tick.h"
+#include "tests/rt/telemetry/view/web_page.h"
 
 namespace sandrunner {
 namespace {
-
-using Json = nlohmann::json;
-
-/// A connection to the server; every wait ends after 10 s.
-class Client {
- public:
-  explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    const timeval patience{10, 0};
-    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  }
-  ~Client() { close(socket_); }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
-
-  void send(std::string_view text) {
-    while (!text.empty()) {
-      const ssize_t sent = ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
-      if (sent <= 0) return;
-      text.remove_prefix(static_cast<std::size_t>(sent));
-    }
-  }
-  /// All until the server closes; nothing if it does not.
-  std::optional<std::string> rest() {
-    while (more()) {
-    }
-    if (!closed_) return std::nullopt;
-    return std::exchange(got_, {});
-  }
-  std::string until(std::string_view end) {
-    while (got_.find(end) == std::string::npos && more()) {
-    }
-    const std::size_t at = got_.find(end);
-    return at == std::string::npos ? std::string() : take(at + end.size());
-  }
-  std::string bytes(std::size_t count) {
-    while (got_.size() < count && more()) {
-    }
-    return got_.size() < count ? std::string() : take(count);
-  }
-
- private:
-  bool more() {
-    char buffer[65536];
-    const ssize_t count = recv(socket_, buffer, sizeof buffer, 0);
-    if (count > 0) got_.append(buffer, static_cast<std::size_t>(count));
-    closed_ = count == 0 || (count < 0 && errno == ECONNRESET);
-    return count > 0;
-  }
-  std::string take(std::size_t count) {
-    const std::string taken = got_.substr(0, count);
-    got_.erase(0, count);
-    return taken;
-  }
-
-  int socket_;
-  std::string got_;
-  bool closed_ = false;
-};
-
-struct Message {
-  int kind = -1;  ///< opcode: 1 text, 2 binary, 8 close; -1: the connection ended
-  std::string text;
-};
-
-/// A page that has been let in.
-class WebPage : public Client {
- public:
-  explicit WebPage(int port) : Client(port) {
-    const std::string host = "127.0.0.1:" + std::to_string(port);
-    send("GET /live HTTP/1.1\r\nHost: " + host + "\r\nOrigin: http://" + host +
-         "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
-    answer = until("\r\n\r\n");
-  }
-  void say(std::string_view text, int kind = 1) {
-    std::string frame(1, static_cast<char>(0x80 | kind));
-    if (text.size() < 126) {
-      frame += static_cast<char>(0x80 | text.size());
-    } else {
-      frame += static_cast<char>(0x80 | 126);
-      frame += static_cast<char>(text.size() >> 8);
-      frame += static_cast<char>(text.size());
-    }
-    frame += std::string(4, '\0');  // a mask that changes nothing
-    send(frame.append(text));
-  }
-  Message hear() {
-    const std::string head = bytes(2);
-    if (head.empty()) return {};
-    std::size_t size = head[1] & 0x7f;
-    if (size >= 126) {
-      const std::string length = bytes(size == 126 ? 2 : 8);
-      size = 0;
-      for (const char c : length) size = size << 8 | static_cast<unsigned char>(c);
-    }
-    return {head[0] & 0x0f, size == 0 ? std::string() : bytes(size)};
-  }
-  /// The next text that says this.
-  Json hear(const std::string& say) {
-    for (Message m = hear(); m.kind != -1 && m.kind != 8; m = hear()) {
-      if (m.kind != 1) continue;
-      const Json json = Json::parse(m.text);
-      if (json.at("say") == say) return json;
-    }
-    ADD_FAILURE() << "never heard " << say;
-    return {};
-  }
-  /// The code with which the server closes.
-  int close_code() {
-    for (Message m = hear(); m.kind != -1; m = hear()) {
-      if (m.kind != 8 || m.text.size() < 2) continue;
-      return static_cast<unsigned char>(m.text[0]) << 8 | static_cast<unsigned char>(m.text[1]);
-    }
-    return -1;
-  }
-  std::string answer;  ///< to the request
-};
 
 struct ViewServerTest : testing::Test {
   ViewServerTest() {
@@ -297,6 +171,49 @@ TEST_F(ViewServerTest, APageThatDoesNotReadLosesFramesAndDelaysNobody) {
     seen_s = last.t_s;
   }
   EXPECT_DOUBLE_EQ(seen_s, newest_s);
+}
+
+TEST_F(ViewServerTest, ARunWithoutADeskTakesNoCommands) {
+  WebPage page(port);
+  page.say(hello(key));
+  EXPECT_EQ(page.hear("hello").at("drive"), false);
+  for (const char* order :
+       {R"({"say":"drive","vx":1,"vy":0,"wz":0})", R"({"say":"request","name":"arm"})"}) {
+    page.say(order);
+    EXPECT_EQ(page.hear("refused").at("why"), "this run takes no commands from a page");
+  }
+}
+
+TEST_F(ViewServerTest, APageIsOneOfTheOperators) {
+  RemoteOperator op(1200);
+  OperatorDesk desk(op, 60.0, true);
+  const ViewServer driven(0, {.feed = feed, .desk = &desk});
+  const std::string url = driven.url();
+  const int its_port = std::stoi(url.substr(url.find(':', 6) + 1));
+  const std::string its_key = url.substr(url.find("#key=") + 5);
+  WebPage page(its_port), other(its_port), looker(its_port);
+  page.say(hello(its_key));
+  other.say(hello(its_key));
+  looker.say(hello(""));
+  const auto refusal = [](WebPage& from, std::string_view order) {
+    from.say(order);
+    return from.hear("refused").at("why").get<std::string>();
+  };
+  constexpr std::string_view kForward = R"({"say":"drive","vx":0.5,"vy":0,"wz":0})";
+  EXPECT_EQ(refusal(looker, kForward), "without the key this page only looks");
+  EXPECT_EQ(refusal(page, R"({"say":"drive","vx":6,"vy":0,"wz":0})"),
+            "a velocity of 6, 0 m/s, 0 rad/s is absurd");
+  page.say(kForward);
+  page.say(R"({"say":"request","name":"walk"})");  // answered behind the velocity
+  EXPECT_EQ(page.hear("answer").at("accepted"), false);
+  EXPECT_EQ(refusal(other, kForward), "another operator drives the robot");
+  const OperatorId peer{1};
+  EXPECT_EQ(desk.drive({}, 1, peer), CommandVerdict::kOtherPublisher);
+  EXPECT_EQ(op.command(1).velocity.vx_mps, 0.5);
+  const CommandCounts counts = desk.counts();
+  EXPECT_EQ(counts.accepted, 1u);
+  EXPECT_EQ(counts.absurd, 1u);
+  EXPECT_EQ(counts.other_publisher, 2u);
 }
 
 TEST_F(ViewServerTest, APortThatIsTakenIsSaidInOneLine) {
