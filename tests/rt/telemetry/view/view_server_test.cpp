@@ -115,7 +115,9 @@ TEST_F(ViewServerTest, WhoHasNoKeyOrAWrongOneOnlyLooks) {
     WebPage page(port);
     page.say(hello(wrong));
     EXPECT_EQ(page.hear("hello").at("key"), false);
-    if (!wrong.empty()) EXPECT_EQ(page.hear("refused").at("why"), "the key is not this run's");
+    if (!wrong.empty()) {
+      EXPECT_EQ(page.hear("refused").at("why"), "the key is not this run's");
+    }
     page.say(R"({"say":"pause","on":true})");
     EXPECT_EQ(page.hear("refused").at("why"), "without the key this page only looks");
     EXPECT_FALSE(pace.status().paused);
