@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "drivers/check/check.h"
 #include "drivers/robot/bus_plan.h"
@@ -22,6 +23,7 @@
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
 #include "rt/core/floating_point.h"
+#include "rt/operator/operator_desk.h"
 #include "rt/realtime/rt_report.h"
 #include "rt/report/run_csv.h"
 #include "rt/report/run_pictures.h"
@@ -34,7 +36,10 @@
 #include "rt/run/run.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
+#include "rt/telemetry/view/view_feed.h"
+#include "rt/telemetry/view/view_pace.h"
 #include "rt/telemetry/view/view_page.h"
+#include "rt/telemetry/view/view_server.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 
@@ -85,7 +90,7 @@ ProcessConfig read_config(const Options& options, const PolicySpec* spec,
   }
   for (const std::string& file : options.config_files) tree.add_file(file);
   for (const std::string& assignment : options.assignments) tree.set(assignment);
-  if (options.live) tree.set("dds.enabled=true");
+  if (options.live) tree.set(options.live_page ? "view.drive=true" : "dds.enabled=true");
   if (!options.dds_security_dir.empty()) {
     tree.set_text("dds.security_dir", options.dds_security_dir, "--dds-security");
   }
@@ -118,20 +123,43 @@ TheRobot make_robot(const Options& options, const ProcessConfig& config) {
   return robot;
 }
 
+// A run in a browser.
+struct LiveView {
+  LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
+           const std::atomic<bool>& interrupt, OperatorDesk* desk)
+      : feed(scene, config.robot.description) {
+    if (lockstep) pace.emplace(interrupt);
+    server.emplace(config.view_port, ViewServer::Parts{.feed = feed,
+                                                       .pace = pace ? &*pace : nullptr,
+                                                       .desk = config.view_drive ? desk : nullptr});
+    to_standard_error(fmt::format("sandrunner: look at {}\n", server->url()));
+  }
+  void add(const TickRecord& tick) {
+    feed.add(tick);
+    if (pace) pace->wait();
+  }
+
+  ViewFeed feed;
+  std::optional<ViewPace> pace;
+  std::optional<ViewServer> server;
+};
+
 // Everything that listens to the ticks of a run, in ordinary threads.
 struct Listeners {
   std::optional<DdsBridge> dds;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<BlackBox> black_box;
   std::optional<ViewPage> page;
+  std::optional<LiveView> view;
 
   TickTap tap() {
-    if (!recorder && !black_box && !dds && !page) return {};
+    if (!recorder && !black_box && !dds && !page && !view) return {};
     return [this](const TickRecord& tick) {
       if (recorder) recorder->add(tick);
       if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
       if (page) page->add(tick);
+      if (view) view->add(tick);  // last: it waits
     };
   }
   void begin(std::int64_t start_ns) {
@@ -207,8 +235,15 @@ int run(int argc, char** argv) {
 
   flush_denormals_to_zero();
   SignalWatch signals;
+  std::optional<RemoteOperator> remote;
+  std::optional<OperatorDesk> desk;
+  if (options->live) {
+    remote.emplace(config.dds.stale_ticks());
+    desk.emplace(*remote, config.dds.stale_s, true);
+  }
+  OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   Listeners listeners;
-  if (config.dds.enabled) listeners.dds.emplace(config, options->live, !options->realtime);
+  if (config.dds.enabled) listeners.dds.emplace(config, open_desk, !options->realtime);
   listeners.recorder = make_recorder(*options, config, policy_text, policy);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
   TheRobot robot = make_robot(*options, config);
@@ -216,6 +251,9 @@ int run(int argc, char** argv) {
 
   const RunScene scene = scene_of(config, policy.spec().name);
   if (out) listeners.page.emplace(scene, config.robot.description);
+  if (options->view) {
+    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted(), open_desk);
+  }
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const RunParts parts{
@@ -224,7 +262,7 @@ int run(int argc, char** argv) {
       .policy = &policy,
       .command = command,
       .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
-      .live = listeners.dds ? listeners.dds->op() : nullptr,
+      .live = remote ? &*remote : nullptr,
       .scene = scene,
       .keep_record = out,
       .progress = terminal ? show_progress : std::function<void(const RunSample&)>(),
@@ -242,7 +280,7 @@ int run(int argc, char** argv) {
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
-  const RunInfo info{options->live ? "dds" : command.text(), policy.spec().name,
+  const RunInfo info{options->live ? options->command : command.text(), policy.spec().name,
                      robot.hardware ? "real" : options->terrain,
                      options->realtime ? "realtime" : "lockstep", options->seed};
   std::string written;
@@ -265,6 +303,11 @@ int run(int argc, char** argv) {
   }
   fmt::print("{}{}", summary_table(result, info), written);
   if (not_written) std::rethrow_exception(not_written);
+  if (listeners.view) {
+    std::fflush(stdout);
+    listeners.view->feed.end();
+    while (!signals.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
   return result.survived ? kExitOk : kExitRobotFailed;
 }
 

@@ -22,7 +22,7 @@ LAYERS = [
     ["sim/step"],
     ["sim/batch", "sim"],
     ["rt/loop"],
-    ["rt/realtime", "rt/telemetry", "rt/telemetry/mcap"],
+    ["rt/operator", "rt/realtime", "rt/telemetry", "rt/telemetry/mcap"],
     ["rt/telemetry/dds", "rt/telemetry/recording", "rt/report"],
     ["rt/telemetry/view"],
     ["rt/run"],
@@ -32,7 +32,7 @@ LAYERS = [
     ["tools/bench", "tools/ctl", "tools/evaluate", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
-NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/realtime/", "rt/report/", "rt/telemetry/")
+NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/operator/", "rt/realtime/", "rt/report/", "rt/telemetry/")
 TOP_FOLDERS = ("rt", "drivers", "policy", "estimator", "sim", "tools")
 
 

@@ -10,7 +10,7 @@ packages=(
   g++ cmake ninja-build pkg-config git fonts-dejavu-core
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
-  esbuild libjs-three
+  esbuild libjs-three libboost-dev
 )
 # Trainer, benches, tests and the Debian package; the emulated machine of tools/hil. The last line is a DDS peer that is not ours, and what generates its
 # code.

@@ -82,8 +82,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
          "--command", o.command,
          "velocity vx,vy,wz (m/s, m/s, rad/s), or a CSV file with header t_s,vx,vy,wz, "
          "linear between rows; dds: operators command over DDS (sandrunner-ctl, ROS 2), until "
-         "Ctrl-C")
-      ->type_name("VX,VY,WZ|FILE|dds");
+         "Ctrl-C; live: in the page of --view")
+      ->type_name("VX,VY,WZ|FILE|dds|live");
   app.add_option("--dds-security", o.dds_security_dir,
                  "folder made by tools/dds_security.sh: DDS with authentication and encryption")
       ->type_name("DIR");
@@ -118,6 +118,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
          "folder for run.mcap: every tick, to look at and replay; and for black-box-TICK.mcap "
          "of a realtime run with a fault (else that of --out, or the working folder)")
       ->type_name("DIR");
+  app.add_flag("--view", o.view,
+               "shows the run in a browser of this computer, at the address that is printed, and "
+               "stays until Ctrl-C; lockstep then goes at the pace of the clock");
   const CLI::App* report = app.add_subcommand(
       "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
   CLI::App* const check = add_check(app, o);
@@ -127,6 +130,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
       "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
       "  sandrunner --clock realtime --command dds\n"
+      "  sandrunner --view --command live --terrain grass\n"
       "  sandrunner check robot.toml");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = start == "walk";
@@ -145,14 +149,17 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   }
   o.realtime = clock == "realtime" || hardware;
   o.rt_report = report->parsed();
-  o.live = o.command == "dds";
-  if (o.live && !o.realtime) {
+  o.live_page = o.command == "live";
+  o.live = o.live_page || o.command == "dds";
+  if (o.live_page && !o.view) throw InputError("--command live: expected --view with it");
+  if (o.live && !o.live_page && !o.realtime) {
     throw InputError("--command dds: operators need --clock realtime");
   }
   if (o.live && (o.start_walking || app.count("--duration") > 0)) {
     throw InputError(
-        "--command dds: the operators decide when the robot walks; expected neither "
-        "--duration nor --start walk");
+        fmt::format("--command {}: the operators decide when the robot walks; expected neither "
+                    "--duration nor --start walk",
+                    o.command));
   }
   if (!std::isfinite(o.duration_s) || o.duration_s <= 0.0 || o.duration_s > 86400.0) {
     throw InputError(

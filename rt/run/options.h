@@ -17,7 +17,9 @@ struct Options {
   bool dry_run = false;       ///< says what would be sent to it
   std::string terrain = "dry-sand";
   std::string command = "1.5,0,0";
-  bool live = false;         ///< --command dds
+  bool live = false;         ///< --command dds or live: operators decide
+  bool live_page = false;    ///< --command live
+  bool view = false;         ///< --view
   double duration_s = 20.0;  ///< of Walk
   bool start_walking = false;
   bool realtime = false;   ///< --clock realtime

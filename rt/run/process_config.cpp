@@ -143,8 +143,9 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
     }
   }
   p.dds = read_dds_config(config);
+  p.view_drive = config.flag("view.drive", p.view_drive);
   // Who commands from afar may be lost on the way: the robot then slows down and stands.
-  if (p.dds.enabled) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
+  if (p.dds.enabled || p.view_drive) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
   if (config.has("hardware")) {
     p.hardware = read_hardware_config(config, p.robot.description, c.gate);
     adapt_gate(*p.hardware, c.gate);
@@ -156,6 +157,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
       config.integer("recording.limit_bytes", static_cast<std::int64_t>(p.recording.bytes), 1,
                      std::int64_t{1} << 50));
   p.recording.time_s = config.number("recording.limit_s", p.recording.time_s, 0.1, 1e9);
+  p.view_port = static_cast<int>(config.integer("view.port", p.view_port, 0, 65535));
   p.motor_constant =
       config.number("summary.motor_constant", p.robot.motor_constant_nmpsqrtw, 1e-3, 1e3);
   config.reject_unknown();

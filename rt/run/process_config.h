@@ -24,6 +24,8 @@ struct ProcessConfig {
   RecordingLimits recording;
   DdsConfig dds;
   std::optional<HardwareConfig> hardware;  ///< if there is a table [hardware]
+  bool view_drive = false;                 ///< pages of --view that have the key may command
+  int view_port = 8765;                    ///< of --view; 0: one that is free
   double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   std::string effective;        ///< TOML of every setting with the value in effect
 };

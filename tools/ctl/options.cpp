@@ -9,8 +9,8 @@
 
 #include "rt/base/command_line.h"
 #include "rt/base/errors.h"
-#include "rt/telemetry/dds/command_gate.h"
-#include "rt/telemetry/dds/mode_requests.h"
+#include "rt/operator/command_gate.h"
+#include "rt/operator/mode_requests.h"
 #include "tools/ctl/topics.h"
 
 namespace sandrunner::ctl {

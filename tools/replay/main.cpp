@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "policy/policy_file.h"
@@ -25,8 +28,11 @@
 #include "rt/report/run_pictures.h"
 #include "rt/run/process_config.h"
 #include "rt/run/scene.h"
+#include "rt/run/signals.h"
 #include "rt/telemetry/recording/recording_file.h"
+#include "rt/telemetry/view/view_feed.h"
 #include "rt/telemetry/view/view_page.h"
+#include "rt/telemetry/view/view_server.h"
 #include "sim/robot/robot_model.h"
 
 namespace sandrunner {
@@ -34,6 +40,7 @@ namespace {
 
 struct Arguments {
   std::string file, plot_dir;
+  bool view = false;
   std::vector<std::string> assignments;
   double from_s = 0.0, to_s = std::numeric_limits<double>::infinity();
 };
@@ -51,6 +58,9 @@ std::optional<Arguments> parse(int argc, char** argv) {
   app.add_option("--to", a.to_s, "last second")->type_name("S");
   app.add_option("--plot", a.plot_dir, "folder for run.csv, run.html, run.png, strip.png")
       ->type_name("DIR");
+  app.add_flag("--view", a.view,
+               "shows the recording, of a long one the last 10 minutes, in a browser of this "
+               "computer, at the address that is printed, until Ctrl-C");
   app.add_option("--set", a.assignments, "what if: one setting otherwise; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -58,6 +68,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
       "Examples:\n"
       "  sandrunner-replay results/run.mcap\n"
       "  sandrunner-replay results/run.mcap --plot plots --from 2 --to 6\n"
+      "  sandrunner-replay results/run.mcap --view\n"
       "  sandrunner-replay results/run.mcap --set controller.walk.kp_nmprad=40");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (!(a.from_s >= 0.0) || !(a.to_s > a.from_s)) {
@@ -98,8 +109,14 @@ struct Player {
             info.state, fmt::format("{}: attachment '{}'", arguments.file, kStateAttachment)));
       }
     }
-    if (arguments.plot_dir.empty()) return;
+    if (arguments.plot_dir.empty() && !arguments.view) return;
     const RunScene scene = scene_of(config, policy ? policy->spec().name : "");
+    if (arguments.view) {
+      constexpr std::size_t kMostFrames = 10 * 60 * kPolicyHz;
+      feed.emplace(scene, config.robot.description,
+                   ViewFeed::Limits{.frames = kMostFrames, .footprints = 16'384, .tiles = 2048});
+    }
+    if (arguments.plot_dir.empty()) return;
     observer = std::make_unique<RunObserver>(scene, true, std::function<void(const RunSample&)>());
     page.emplace(scene, config.robot.description);
   }
@@ -110,6 +127,7 @@ struct Player {
   bool in_step = true;                    ///< false: behind damage, until the next state
   std::unique_ptr<RunObserver> observer;  ///< these two: with --plot
   std::optional<ViewPage> page;
+  std::optional<ViewFeed> feed;  ///< with --view
 };
 
 std::string seconds(std::uint64_t tick) {
@@ -128,16 +146,22 @@ void write_plots(Player& player, const std::string& folder) {
              record.has_truth() ? fmt::format(", {}strip.png", dir) : "");
 }
 
-int run(int argc, char** argv) {
-  const std::optional<Arguments> arguments = parse(argc, argv);
-  if (!arguments) return kExitOk;
-  flush_denormals_to_zero();
-  std::optional<Player> player;
+// Until Ctrl-C.
+void serve(Player& player) {
+  SignalWatch signals;
+  player.feed->end();
+  const ViewServer server(player.config.view_port, {.feed = *player.feed, .recorded = true});
+  to_standard_error(fmt::format("sandrunner-replay: look at {}\n", server.url()));
+  while (!signals.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
+// Compares, and draws what is asked for; returns the exit code.
+int replay(const Arguments& arguments, std::optional<Player>& player) {
   std::optional<ReplayDifference> difference;
   std::uint64_t compared = 0, not_compared = 0, drawn = 0, last_tick = 0;
   RecordingVisitor visitor;
   visitor.begin = [&](const RecordingInfo& info) {
-    player.emplace(info, *arguments);
+    player.emplace(info, arguments);
     if (info.build != build_name()) {
       to_standard_error(
           fmt::format("sandrunner-replay: warning: recorded by build {}, this is {}\n", info.build,
@@ -147,20 +171,21 @@ int run(int argc, char** argv) {
   visitor.tick = [&](const TickRecord& recorded) {
     last_tick = recorded.input.sensors.tick;
     const double t_s = static_cast<double>(last_tick) * kControlPeriod_s;
-    if (t_s > arguments->to_s) return false;
+    if (t_s > arguments.to_s) return false;
     const bool compares = player->replay && player->in_step;
     std::optional<ReplayDifference> found;
     if (compares) found = player->replay->check(recorded);
-    if (t_s < arguments->from_s) return true;
+    if (t_s < arguments.from_s) return true;
     ++(compares ? compared : not_compared);
     ++drawn;
     if (player->observer) {
       player->observer->add(recorded);
       player->page->add(recorded);
     }
+    if (player->feed) player->feed->add(recorded);
     if (found && !difference) difference = std::move(found);
     // A picture wants the rest too.
-    return (!difference && player->replay) || player->observer;
+    return (!difference && player->replay) || player->observer || player->feed;
   };
   visitor.lost = [&](std::uint64_t first, std::optional<std::uint64_t> last) {
     player->in_step = false;
@@ -172,9 +197,9 @@ int run(int argc, char** argv) {
     player->replay->restore(state);
     player->in_step = true;
   };
-  const RecordingContents contents = read_recording(arguments->file, visitor);
+  const RecordingContents contents = read_recording(arguments.file, visitor);
 
-  if (player->observer && drawn > 0) write_plots(*player, arguments->plot_dir);
+  if (player->observer && drawn > 0) write_plots(*player, arguments.plot_dir);
   if (!contents.complete && contents.damage.empty()) {
     fmt::print("the recording was cut: it is read up to its last chunk\n");
   }
@@ -182,7 +207,7 @@ int run(int argc, char** argv) {
     throw InputError(fmt::format(
         "{}: begins at tick {} without the state of controller and network there, because ticks "
         "before it were lost: it cannot be replayed",
-        arguments->file, contents.info.first_tick));
+        arguments.file, contents.info.first_tick));
   }
   if (difference) {
     fmt::print("DIFFERS at tick {} ({}): {}\n", difference->tick, seconds(difference->tick),
@@ -205,6 +230,26 @@ int run(int argc, char** argv) {
   }
   if (!contents.damage.empty()) throw InputError(contents.damage);
   return kExitOk;
+}
+
+int run(int argc, char** argv) {
+  const std::optional<Arguments> arguments = parse(argc, argv);
+  if (!arguments) return kExitOk;
+  flush_denormals_to_zero();
+  std::optional<Player> player;
+  int code = kExitOk;
+  std::exception_ptr amiss;  // what is whole can be looked at all the same
+  try {
+    code = replay(*arguments, player);
+  } catch (const InputError&) {
+    amiss = std::current_exception();
+  }
+  if (player && player->feed) {
+    std::fflush(stdout);
+    serve(*player);
+  }
+  if (amiss) std::rethrow_exception(amiss);
+  return code;
 }
 
 }  // namespace

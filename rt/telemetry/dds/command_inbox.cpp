@@ -5,7 +5,6 @@
 #include <pthread.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -24,18 +23,16 @@ constexpr int kRequestDepth = 32;
 // Enough for all that publishers send before the thread gets to it: if only the newest were kept, a
 // publisher that sends right after the holder of the command would silence it and take over.
 constexpr int kVelocityDepth = 100;
-// The controller answers within a tick; if it has not answered after this time, it is not running.
-constexpr auto kAnswerTime = std::chrono::milliseconds(20);
-constexpr auto kLookEvery = std::chrono::microseconds(250);
-constexpr const char* kNoAnswer = "the controller does not answer";
-
-std::int64_t steady_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 Twist twist_from(const geometry_msgs_msg_dds__Twist_& t) {
   return {.linear_mps = {t.linear.x, t.linear.y, t.linear.z},
           .angular_radps = {t.angular.x, t.angular.y, t.angular.z}};
+}
+
+OperatorId operator_of(const dds_guid_t& participant) {
+  OperatorId id;
+  static_assert(sizeof id == sizeof participant.v);
+  std::memcpy(id.data(), participant.v, sizeof id);
+  return id;
 }
 
 template <std::size_t kSize>
@@ -48,12 +45,10 @@ void copy_text(char (&to)[kSize], std::string_view from) {
 }  // namespace
 
 CommandInbox::CommandInbox(const DdsParticipant& participant, const DdsConfig& config,
-                           std::string robot, bool can_walk, DdsOperator& op)
-    : operator_(op),
+                           std::string robot, OperatorDesk& desk)
+    : desk_(desk),
       robot_(std::move(robot)),
       stamped_(config.stamped_cmd_vel),
-      can_walk_(can_walk),
-      gate_(static_cast<std::int64_t>(config.stale_s * 1e9)),
       cmd_vel_(participant.reader(
           "rt/cmd_vel",
           stamped_ ? geometry_msgs_msg_dds__TwistStamped__desc : geometry_msgs_msg_dds__Twist__desc,
@@ -88,18 +83,6 @@ CommandInbox::~CommandInbox() {
   }
 }
 
-CommandCounts CommandInbox::counts() const noexcept {
-  const auto velocities = [&](CommandVerdict verdict) {
-    return velocities_[static_cast<std::size_t>(verdict)].load(std::memory_order_relaxed);
-  };
-  return {.accepted = velocities(CommandVerdict::kAccepted),
-          .not_finite = velocities(CommandVerdict::kNotFinite),
-          .absurd = velocities(CommandVerdict::kAbsurd),
-          .other_publisher = velocities(CommandVerdict::kOtherPublisher),
-          .requests_accepted = answers_[1].load(std::memory_order_relaxed),
-          .requests_refused = answers_[0].load(std::memory_order_relaxed)};
-}
-
 void CommandInbox::run() {
   while (!end_) {
     dds_attach_t triggered[3];
@@ -114,14 +97,8 @@ void CommandInbox::take_velocity() {
     const Twist twist = twist_from(
         stamped_ ? static_cast<const geometry_msgs_msg_dds__TwistStamped_*>(message)->twist
                  : *static_cast<const geometry_msgs_msg_dds__Twist_*>(message));
-    const CommandVerdict verdict = gate_.judge(twist, info.publication_handle, steady_ns());
-    if (verdict == CommandVerdict::kAccepted) {
-      holder_ = participant_of(cmd_vel_, info.publication_handle);
-      asked_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
-      ++asked_.velocity_number;
-      operator_.ask(asked_);
-    }
-    ++velocities_[static_cast<std::size_t>(verdict)];
+    desk_.drive(twist, info.publication_handle,
+                operator_of(participant_of(cmd_vel_, info.publication_handle)));
   });
 }
 
@@ -133,7 +110,7 @@ void CommandInbox::take_requests() {
     sandrunner_ModeReply reply{};
     reply.id = request.id;
     reply.accepted = outcome.accepted;
-    copy_text(reply.mode, mode_name(operator_.mode()));
+    copy_text(reply.mode, mode_name(desk_.mode()));
     copy_text(reply.robot, robot_);
     copy_text(reply.reason, outcome.accepted ? "" : outcome.text);
     dds_write(replies_, &reply);
@@ -147,65 +124,11 @@ void CommandInbox::take_requests() {
 }
 
 RequestOutcome CommandInbox::answer(std::string_view request, const dds_guid_t& asker) {
-  const std::string refusal = is_request(request)
-                                  ? follow(request, asker)
-                                  : fmt::format("unknown, expected {}", kRequestNames);
-  ++answers_[refusal.empty() ? 1 : 0];
-  RequestOutcome outcome{refusal.empty(), refusal};
-  if (outcome.accepted) outcome.text = fmt::format("mode {}", mode_name(operator_.mode()));
-  const std::lock_guard lock(last_request_mutex_);
-  last_request_ = fmt::format("{}: {}: {}", one_line(std::string(request.substr(0, 15))),
-                              outcome.accepted ? "accepted" : "refused", outcome.text);
-  return outcome;
-}
-
-std::string CommandInbox::last_request() const {
-  const std::lock_guard lock(last_request_mutex_);
-  return last_request_;
-}
-
-std::string CommandInbox::follow(std::string_view request, const dds_guid_t& asker) {
-  // A stop or damp waits for a controller that does not answer; until the controller has taken it,
-  // nothing but a damp replaces it.
-  const bool waiting = calming_number_ > operator_.considered();
-  if (waiting && request != "damp") return kNoAnswer;
-  const RequestDecision decision = decide(request, operator_.mode(), can_walk_);
-  if (decision.refusal) return decision.refusal;
-  if (!decision.calms && gate_.held(steady_ns()) &&
-      std::memcmp(asker.v, holder_.v, sizeof asker.v) != 0) {
-    return "another operator drives the robot";
-  }
-  if (!decision.calms) {
+  return desk_.request(request, operator_of(asker), [this] {
     const std::vector<std::string> others = neighbours_.look().robots;
-    if (!others.empty()) {
-      return fmt::format("another robot would obey as well: {}", joined(others));
-    }
-  }
-  if (decision.calms) {
-    asked_.velocity = {};
-    ++asked_.velocity_number;
-  }
-  if (decision.request != ModeRequest::kNone) {
-    asked_.request = decision.request;
-    ++asked_.request_number;
-    if (decision.calms) calming_number_ = asked_.request_number;
-  }
-  operator_.ask(asked_);
-  const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
-  while (operator_.considered() != asked_.request_number) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      // An operator who was refused must not see the robot move later; a stop or damp still holds.
-      if (!decision.calms) {
-        asked_.request = ModeRequest::kNone;
-        ++asked_.request_number;
-        operator_.ask(asked_);
-      }
-      return kNoAnswer;
-    }
-    std::this_thread::sleep_for(kLookEvery);
-  }
-  const char* const failed = failure(decision.request, operator_.mode());
-  return failed ? failed : "";
+    return others.empty() ? std::string()
+                          : fmt::format("another robot would obey as well: {}", joined(others));
+  });
 }
 
 }  // namespace sandrunner

@@ -31,9 +31,9 @@ void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
 }  // namespace
 
 Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-                     const RobotDescription& robot, const CommandInbox* inbox, bool lockstep)
+                     const RobotDescription& robot, const OperatorDesk* desk, bool lockstep)
     : ros_hz_(static_cast<std::uint64_t>(config.ros_hz)),
-      inbox_(inbox),
+      desk_(desk),
       ros_(participant, robot),
       neighbours_(participant, config.stamped_cmd_vel),
       diagnostics_(robot),
@@ -72,8 +72,8 @@ void Telemetry::add(const TickRecord& record) {
   }
   if (due(1)) {
     DiagnosticsMessage message = diagnostics_.message(stamp_ns);
-    if (inbox_) add_neighbours(message);
-    add_counts(message, inbox_ ? inbox_->counts() : CommandCounts{}, failed_writes_);
+    if (desk_) add_neighbours(message);
+    add_counts(message, desk_ ? desk_->counts() : CommandCounts{}, failed_writes_);
     if (!ros_.publish(message)) ++failed_writes_;
   }
   last_tick_ = tick;
@@ -82,7 +82,7 @@ void Telemetry::add(const TickRecord& record) {
 // What an operator would wonder about: it is in the diagnostics, and once on standard error.
 void Telemetry::add_neighbours(DiagnosticsMessage& message) {
   const Neighbours neighbours = neighbours_.look();
-  message.values.emplace_back("last_request", inbox_->last_request());
+  message.values.emplace_back("last_request", desk_->last_request());
   message.values.emplace_back("other_robots", joined(neighbours.robots));
   message.values.emplace_back("other_cmd_vel_types", joined(neighbours.other_commands));
   if (!neighbours.other_commands.empty()) message.warn("rt/cmd_vel of another type is not read");

@@ -7,7 +7,7 @@
 
 #include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
-#include "rt/telemetry/dds/command_inbox.h"
+#include "rt/operator/operator_desk.h"
 #include "rt/telemetry/dds/neighbours.h"
 #include "rt/telemetry/dds/ros_publisher.h"
 #include "rt/telemetry/dds/tick_batches.h"
@@ -25,10 +25,10 @@ namespace sandrunner {
 /// add() waits so that it never runs ahead of the wall clock.
 class Telemetry {
  public:
-  /// `participant` must outlive this object, and so must `inbox`, whose counts are published; it
+  /// `participant` must outlive this object, and so must `desk`, whose counts are published; it
   /// may be null. Throws InputError.
   Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-            const RobotDescription& robot, const CommandInbox* inbox, bool lockstep = false);
+            const RobotDescription& robot, const OperatorDesk* desk, bool lockstep = false);
   /// Publishes the last ticks.
   ~Telemetry();
   Telemetry(const Telemetry&) = delete;
@@ -46,7 +46,7 @@ class Telemetry {
   void add_neighbours(DiagnosticsMessage& message);
 
   const std::uint64_t ros_hz_;
-  const CommandInbox* inbox_;
+  const OperatorDesk* desk_;
   RosPublisher ros_;
   std::optional<ClockPublisher> clock_;  // in lockstep
   NeighbourWatch neighbours_;

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <thread>
 
-#include "rt/telemetry/dds/mode_requests.h"
+#include "rt/operator/mode_requests.h"
 #include "rt/telemetry/dds/ros.h"
 
 namespace sandrunner {

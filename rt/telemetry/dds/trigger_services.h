@@ -7,15 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "rt/operator/operator_desk.h"
 #include "rt/telemetry/dds/participant.h"
 
 namespace sandrunner {
-
-/// What became of a request.
-struct RequestOutcome {
-  bool accepted = false;
-  std::string text;  ///< "mode stand_up", or why not
-};
 
 /// The mode requests as ROS 2 services of the type std_srvs/Trigger: /sandrunner/stand and so on.
 /// DDS has no services; each RMW makes them of topics in its own way. This is that of

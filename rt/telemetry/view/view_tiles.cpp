@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <set>
-#include <utility>
 
 namespace sandrunner {
 namespace {
@@ -37,24 +35,32 @@ ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y
 
 std::span<const ViewField> view_tile_fields() { return kFields; }
 
+std::vector<ViewTile> new_view_tiles(const RunScene& scene, const ViewFrame& frame,
+                                     std::set<std::pair<std::int32_t, std::int32_t>>& seen) {
+  std::vector<ViewTile> tiles;
+  if (!scene.ground_height_m) return tiles;
+  const Vector3& p = frame.position_m;
+  constexpr double kFarthest_m = 1e6;
+  if (!(std::abs(p[0]) < kFarthest_m && std::abs(p[1]) < kFarthest_m)) return tiles;
+  const auto x = static_cast<std::int32_t>(std::floor(p[0] / kTile_m));
+  const auto y = static_cast<std::int32_t>(std::floor(p[1] / kTile_m));
+  for (std::int32_t j = y - kReach; j <= y + kReach; ++j) {
+    for (std::int32_t i = x - kReach; i <= x + kReach; ++i) {
+      if (seen.insert({i, j}).second) tiles.push_back(tile_at(scene, i, j));
+    }
+  }
+  return tiles;
+}
+
 std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const ViewFrame> way,
                                  std::size_t most) {
   std::vector<ViewTile> tiles;
-  if (!scene.ground_height_m) return tiles;
   std::set<std::pair<std::int32_t, std::int32_t>> seen;
-  for (auto frame = way.rbegin(); frame != way.rend(); ++frame) {
-    const Vector3& p = frame->position_m;
-    constexpr double kFarthest_m = 1e6;
-    if (!(std::abs(p[0]) < kFarthest_m && std::abs(p[1]) < kFarthest_m)) continue;
-    const auto x = static_cast<std::int32_t>(std::floor(p[0] / kTile_m));
-    const auto y = static_cast<std::int32_t>(std::floor(p[1] / kTile_m));
-    for (std::int32_t j = y - kReach; j <= y + kReach; ++j) {
-      for (std::int32_t i = x - kReach; i <= x + kReach; ++i) {
-        if (tiles.size() == most) return tiles;
-        if (seen.insert({i, j}).second) tiles.push_back(tile_at(scene, i, j));
-      }
-    }
+  for (auto frame = way.rbegin(); frame != way.rend() && tiles.size() < most; ++frame) {
+    const std::vector<ViewTile> more = new_view_tiles(scene, *frame, seen);
+    tiles.insert(tiles.end(), more.begin(), more.end());
   }
+  tiles.resize(std::min(tiles.size(), most));
   return tiles;
 }
 

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "rt/report/run_record.h"
@@ -22,6 +24,11 @@ struct ViewTile {
 };
 
 std::span<const ViewField> view_tile_fields();
+
+/// The ground within sight of a robot but for tiles that have been `seen`, which grows by them;
+/// none if the ground is flat.
+std::vector<ViewTile> new_view_tiles(const RunScene& scene, const ViewFrame& frame,
+                                     std::set<std::pair<std::int32_t, std::int32_t>>& seen);
 
 /// The ground within sight of a robot on its way, at most `most` tiles, the last ones; none if the
 /// ground is flat.

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "rt/telemetry/dds/dds_operator.h"
+#include "rt/operator/remote_operator.h"
 #include "tests/rt/realtime/watched_section.h"
 #include "tests/rt/support.h"
 
@@ -59,7 +59,7 @@ void expect_clean(const WatchedDeeds& deeds) {
 TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  DdsOperator op(1200);
+  RemoteOperator op(1200);
   // Commands all the time, a change of mode, a fault, the end.
   std::atomic<bool> interrupt{false};
   OperatorRequests asked;

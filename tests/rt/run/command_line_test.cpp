@@ -45,10 +45,11 @@ TEST_F(CommandLineTest, HelpNamesEveryOption) {
        match != std::sregex_iterator(); ++match) {
     options.insert((*match)[1]);
   }
-  EXPECT_EQ(options, (std::set<std::string>{
-                         "--help", "--version", "--policy", "--robot", "--hardware", "--arm",
-                         "--dry-run", "--terrain", "--command", "--dds-security", "--duration",
-                         "--start", "--clock", "--seed", "--config", "--set", "--out", "--record"}))
+  EXPECT_EQ(options,
+            (std::set<std::string>{"--help", "--version", "--policy", "--robot", "--hardware",
+                                   "--arm", "--dry-run", "--terrain", "--command", "--dds-security",
+                                   "--duration", "--start", "--clock", "--seed", "--config",
+                                   "--set", "--out", "--record", "--view"}))
       << output();
   for (const char* text : {"rt-report", "dry-sand", "athletic-track"}) {
     EXPECT_NE(output().find(text), std::string::npos) << text;

@@ -150,7 +150,7 @@ TEST(CtlProgramTest, CmdSendsTwistStampedWhenTold) {
   const Ended ended =
       run({"--cmd-vel", "twist_stamped", "cmd", "0.5", "0", "0", "--for", "0.3"}, config);
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_GE(setup.inbox.counts().accepted, 6u);
+  EXPECT_GE(setup.desk.counts().accepted, 6u);
   expect_error(run({"cmd", "0.5", "0", "0", "--for", "0.3"}, config), 1, "no robot listens");
 }
 
@@ -158,7 +158,7 @@ TEST(CtlProgramTest, CmdSaysWhenTheRobotIsGone) {
   const DdsConfig config = test_config();
   auto robot = std::make_unique<LiveSetup>(config);
   Program program({"cmd", "0.5", "0", "0"}, config);
-  ASSERT_TRUE(wait_until([&] { return robot->inbox.counts().accepted > 3; }));
+  ASSERT_TRUE(wait_until([&] { return robot->desk.counts().accepted > 3; }));
   robot.reset();
   expect_error(program.wait(), 1, "the robot is gone after ");
 }

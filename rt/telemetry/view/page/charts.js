@@ -56,11 +56,14 @@ function jointKind(hello, k) {
 
 /** (P_mech + sum tau^2/k_m^2) / (m g |vx|), each the mean of the last second; none below 0.05 m/s. */
 function costOfTransport(hello, frames) {
-  const rows = hello.rate_hz, sums = { power_w: [0], torque_squared_nm2: [0], motion: [0] };
-  for (const field of Object.keys(sums)) {
-    for (let i = 0; i < frames.count; ++i) sums[field].push(sums[field][i] + (frames.at(i, field) || 0));
-  }
+  const rows = hello.rate_hz;
+  let sums, age;
   return (i) => {
+    if (!sums || age !== frames.age) sums = { power_w: [0], torque_squared_nm2: [0], motion: [0] };
+    age = frames.age;
+    for (const field in sums) {
+      for (let row = sums[field].length - 1; row < frames.count; ++row) sums[field].push(sums[field][row] + (frames.at(row, field) || 0));
+    }
     if (i < rows) return NaN;
     const mean = (field) => (sums[field][i + 1] - sums[field][i + 1 - rows]) / rows, speed = Math.abs(mean('motion'));
     if (speed < 0.05) return NaN;

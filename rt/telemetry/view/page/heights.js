@@ -47,6 +47,8 @@ export class Heights {
     if (!Number.isFinite(x) || !Number.isFinite(y)) return;
     const corner = (v) => Math.round((v / kCell_m - kSide / 2) / kBlock) * kBlock;
     const x0 = corner(x), y0 = corner(y), until = this.prints.count ? this.prints.countUntil(t) : 0;
+    if (this.age !== this.prints.age) this.pressed = Infinity;  // other rows than before
+    this.age = this.prints.age;
     const far = !(Math.abs(x0 - this.x0) < kSide && Math.abs(y0 - this.y0) < kSide);
     this.#liftFeet();
     if (far || until < this.pressed) {
@@ -61,6 +63,13 @@ export class Heights {
     for (let k = 0; k + 2 < stance.length; k += 3) {
       if (stance[k + 2] > 0.002) this.#pressFoot(stance[k], stance[k + 1], stance[k + 2]);
     }
+  }
+
+  /** The undisturbed ground there is known now: [x0, y0, x1, y1], m. */
+  groundCame(square) {
+    const [x0, y0, x1, y1] = square.map((v) => Math.round(v / kCell_m));
+    // Its edges are between its own heights and the neighbours'.
+    if (!Number.isNaN(this.x0)) this.#publish([x0 - 10, y0 - 10, x1 + 10, y1 + 10]);
   }
 
   #all() { return [this.x0, this.y0, this.x0 + kSide, this.y0 + kSide]; }

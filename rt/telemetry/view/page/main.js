@@ -2,11 +2,15 @@
 // The page: takes a run from its source and draws it over time.
 import './three_notice.js';
 import { kSpan_s, makeCharts } from './charts.js';
-import { readRun } from './file.js';
+import { Drive } from './drive.js';
+import { hasRun, readRun } from './file.js';
+import { Live } from './live.js';
+import { LivePlayer } from './live_player.js';
 import { momentAt } from './moment.js';
 import { kColors } from './overlays.js';
 import { Player } from './player.js';
 import { Robot } from './robot.js';
+import { makeRobotTime } from './robot_time.js';
 import { Scene } from './scene.js';
 import { SideView } from './side.js';
 import { State } from './state.js';
@@ -16,8 +20,8 @@ import { Timeline } from './timeline.js';
 const element = (id) => document.getElementById(id);
 const kLongestStep_s = 0.1;  // after a pause of the browser the run goes on where it was
 
-function makeView(run, robot) {
-  const light = location.hash === '#light', surface = new Surface(run);
+function makeView(run, robot, surface) {
+  const light = location.hash === '#light';
   try {
     return new Scene(element('scene'), run, robot, surface, light ? 3 : 0);
   } catch (error) {
@@ -60,6 +64,28 @@ function savePicture(view, t) {
   });
 }
 
+// What only a page has that somebody serves.
+function makeLive({ live }, player, view, changed) {
+  const showTime = makeRobotTime(live), drive = new Drive(live), lost = element('lost');
+  element('now').hidden = live.recorded;
+  element('now').onclick = () => player.follow();
+  live.onRun = () => {
+    view.beginAnew?.();
+    player.follow();
+    changed();
+  };
+  live.onState = () => {
+    showTime();
+    drive.show();
+  };
+  live.onAnswer = (message) => drive.answer(message);
+  showTime();
+  return () => {
+    const text = live.lost ? 'LOST: nothing is heard of the robot' : '';
+    if (lost.textContent !== text) lost.textContent = text;
+  };
+}
+
 function show(run) {
   const { hello, frames } = run;
   if (frames.count === 0) {
@@ -70,7 +96,8 @@ function show(run) {
   const robot = new Robot(hello.urdf, hello.base, hello.joints);
   const state = new State(hello, (frames.at(0, 'flags') & 1) !== 0);
   robot.pose(momentAt(frames, frames.time(0)));
-  const view = makeView(run, robot), player = new Player(frames);
+  const surface = new Surface(run), view = makeView(run, robot, surface);
+  const player = run.live ? new LivePlayer(run) : new Player(frames);
   const timeline = new Timeline(element('time'), run, player);
   const charts = makeCharts(run, robot, element('plots'));
   makeLegend(view);
@@ -91,8 +118,10 @@ function show(run) {
     const plots = element('plots'), top = canvas.offsetTop - plots.offsetTop - plots.scrollTop;
     return top < plots.clientHeight && top + canvas.clientHeight > 0;
   };
+  const showLive = run.live ? makeLive(run, player, view, () => { changed = true; }) : () => {};
   const draw = (took_ms = 0) => {
     changed = false;
+    view.groundCame?.(surface.takeNew());
     shown_s = player.t;
     const moment = momentAt(frames, player.t);
     robot.pose(moment);
@@ -110,8 +139,10 @@ function show(run) {
     const passed_ms = Math.max(0, now - before);
     before = now;
     player.advance(Math.min(kLongestStep_s, passed_ms / 1000));
+    showLive();
     const label = player.playing ? 'pause' : 'play';
     if (element('play').textContent !== label) element('play').textContent = label;
+    if (frames.count === 0) return;  // another run is about to begin
     if (changed || player.t !== shown_s) draw(player.playing && passed_ms < 1000 ? passed_ms : 0);
   };
   draw();
@@ -121,7 +152,7 @@ function show(run) {
   window.sandrunner = {
     ready_ms: performance.now(),
     kind: view instanceof Scene ? '3d' : 'side',
-    frames: frames.count,
+    get frames() { return frames.count; },
     hello, run, player, view, robot,
     get drawn() { return drawn; },
     get quality() { return view.quality; },
@@ -138,4 +169,4 @@ function show(run) {
   };
 }
 
-readRun().then(show);
+if (hasRun()) readRun().then(show); else new Live(show);

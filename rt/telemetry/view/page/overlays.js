@@ -76,9 +76,10 @@ export class Overlays {
     const edges = new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(size.x + 0.01, size.y + 0.01, size.z + 0.01));
     this.box = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: new THREE.Color(kColors.belief).convertSRGBToLinear() }));
     const onGround = (x, y) => [x, y, surface.at(x, y) + 0.012];
-    const place = alignment(frames);
+    this.frames = frames;
+    this.beginAnew();
     this.truePath = new Trail(kColors.truth, frames, (i) => onGround(frames.at(i, 'position_m', 0), frames.at(i, 'position_m', 1)));
-    this.reckonedPath = new Trail(kColors.belief, frames, (i) => onGround(...place(frames.at(i, 'odometry', 0), frames.at(i, 'odometry', 1))));
+    this.reckonedPath = new Trail(kColors.belief, frames, (i) => onGround(...this.place(frames.at(i, 'odometry', 0), frames.at(i, 'odometry', 1))));
     const group = (objects) => new THREE.Group().add(...objects);
     this.kinds = {
       force: group(this.forces.map((a) => a.group)),
@@ -88,6 +89,9 @@ export class Overlays {
     this.kinds.path.children[0].visible = this.hasTruth;
     this.group = group(Object.values(this.kinds));
   }
+
+  /** The frames begin with another one. */
+  beginAnew() { this.place = alignment(this.frames); }
 
   show(moment) {
     const { forces, estimate, truth, hasEstimate, hasTruth } = moment;

@@ -59,6 +59,12 @@ export class Scene {
     this.slow = 0;
   }
 
+  /** Squares of ground, m, that are known now; their heights are in the surface already. */
+  groundCame(squares) { for (const square of squares) this.heights.groundCame(square); }
+
+  /** The frames are another run's. */
+  beginAnew() { this.overlays.beginAnew(); }
+
   resetCamera() {
     this.controls.target.copy(this.focus);
     // A narrow window needs more distance to hold the robot.

@@ -7,9 +7,20 @@ export class Surface {
     this.step = hello.tile_step_m;
     this.side = hello.tile_side;
     this.table = tiles;
-    this.rows = new Map();
-    for (let i = 0; i < tiles.count; ++i) this.rows.set(`${tiles.at(i, 'tile_x')} ${tiles.at(i, 'tile_y')}`, i);
-    this.flat = tiles.count === 0;
+    this.takeNew();
+  }
+
+  /** Takes what came since the last time; returns the squares [x0, y0, x1, y1], m, that it covers. */
+  takeNew() {
+    const { table } = this, size = this.step * this.side, squares = [];
+    if (!this.rows || this.age !== table.age) Object.assign(this, { age: table.age, rows: new Map(), taken: 0 });
+    for (; this.taken < table.count; ++this.taken) {
+      const x = table.at(this.taken, 'tile_x'), y = table.at(this.taken, 'tile_y');
+      this.rows.set(`${x} ${y}`, this.taken);
+      squares.push([x * size, y * size, (x + 1) * size, (y + 1) * size]);
+    }
+    this.flat = this.rows.size === 0;
+    return squares;
   }
 
   /** Its height at x, y, m; 0 where nothing is known. */

@@ -9,9 +9,7 @@ export class Timeline {
   /** @param {object} player {t, begin, end, seek(t), toggle()} */
   constructor(canvas, { hello, frames }, player) {
     Object.assign(this, { canvas, frames, player });
-    this.spans = spansOf(hello, frames);
-    this.top = 0.5;
-    for (let i = 0; i < frames.count; ++i) this.top = Math.max(this.top, Math.abs(frames.at(i, 'motion', 0)) || 0);
+    this.hello = hello;
     const seek = (event) => {
       const { left, width } = canvas.getBoundingClientRect();
       const share = (event.clientX - left - kInset) / (width - 2 * kInset);
@@ -44,6 +42,7 @@ export class Timeline {
   }
 
   draw() {
+    this.#takeNew();
     const { g, width, height } = context2d(this.canvas), { begin, end, t } = this.player;
     const x = (at) => kInset + (width - 2 * kInset) * (end > begin ? (at - begin) / (end - begin) : 0);
     const bottom = height - 13;
@@ -72,6 +71,19 @@ export class Timeline {
     this.canvas.setAttribute('aria-valuetext', `${t.toFixed(2)} s`);
   }
 
+  // Frames that came since the last time.
+  #takeNew() {
+    const { frames } = this;
+    if (this.age !== frames.age || !this.spans) Object.assign(this, { age: frames.age, spans: [], top: 0.5, taken: 0 });
+    for (; this.taken < frames.count; ++this.taken) {
+      this.top = Math.max(this.top, Math.abs(frames.at(this.taken, 'motion', 0)) || 0);
+      const name = this.hello.modes[frames.at(this.taken, 'mode')] ?? '', t = frames.time(this.taken);
+      const last = this.spans[this.spans.length - 1];
+      if (last) last.to = t;
+      if (last?.name !== name) this.spans.push({ name, from: t, to: t });
+    }
+  }
+
   #seconds(g, x, width, height) {
     const { begin, end } = this.player, step = Math.max(1, markStep(Math.max(end - begin, 1e-3), width / 70));
     g.fillStyle = '#66717c';
@@ -81,15 +93,4 @@ export class Timeline {
       g.fillText(`${n * step} s`, Math.min(width - 14, Math.max(12, x(n * step))), height - 1);
     }
   }
-}
-
-function spansOf(hello, frames) {
-  const spans = [];
-  for (let i = 0; i < frames.count; ++i) {
-    const name = hello.modes[frames.at(i, 'mode')] ?? '', t = frames.time(i);
-    const last = spans[spans.length - 1];
-    if (last) last.to = t;
-    if (last?.name !== name) spans.push({ name, from: t, to: t });
-  }
-  return spans;
 }

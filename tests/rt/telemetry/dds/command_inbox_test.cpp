@@ -40,7 +40,7 @@ TEST(CommandInboxTest, NothingMovesUntilItIsAskedFor) {
   Peer peer(setup.config);
   const auto twist = peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
   for (int i = 0; i < 10; ++i) drive(twist, 1.0);
-  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == 10; }));
+  ASSERT_TRUE(wait_until([&] { return setup.desk.counts().accepted == 10; }));
   ASSERT_TRUE(setup.robot.go_on());
   EXPECT_EQ(setup.robot.mode(), Mode::kPassive);
 }
@@ -50,9 +50,9 @@ TEST(CommandInboxTest, ATwistDrivesAndWhenItStopsTheRobotSlowsDown) {
   const std::uint64_t sent = setup.drive_until(0.8);
   const std::uint64_t before_last = setup.robot.ticks();
   drive(setup.twist, 0.8);
-  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == sent + 1; }));
+  ASSERT_TRUE(wait_until([&] { return setup.desk.counts().accepted == sent + 1; }));
   EXPECT_EQ(setup.robot.speed_mps(), 0.8);
-  // 0.3 s after the last one it slows down at 1 m/s^2; DdsOperatorTest has the exact tick.
+  // 0.3 s after the last one it slows down at 1 m/s^2; RemoteOperatorTest has the exact tick.
   const auto since_last_s = [&] {
     return static_cast<double>(setup.robot.ticks() - before_last) * kControlPeriod_s;
   };
@@ -66,11 +66,11 @@ TEST(CommandInboxTest, ATwistDrivesAndWhenItStopsTheRobotSlowsDown) {
 TEST(CommandInboxTest, WhatIsNotFiniteOrAbsurdIsCountedAndChangesNothing) {
   Walking setup;
   drive(setup.twist, std::numeric_limits<double>::quiet_NaN());
-  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().not_finite == 1; }));
+  ASSERT_TRUE(wait_until([&] { return setup.desk.counts().not_finite == 1; }));
   drive(setup.twist, 1e9);
-  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().absurd == 1; }));
+  ASSERT_TRUE(wait_until([&] { return setup.desk.counts().absurd == 1; }));
   ASSERT_TRUE(setup.robot.go_on());
-  EXPECT_EQ(setup.inbox.counts().accepted, 0u);
+  EXPECT_EQ(setup.desk.counts().accepted, 0u);
   EXPECT_EQ(setup.robot.speed_mps(), 0.0);
   EXPECT_EQ(setup.robot.mode(), Mode::kWalk);  // and not in Fault
 }
@@ -82,14 +82,14 @@ TEST(CommandInboxTest, TheFirstOfTwoPublishersDrivesAndTheOtherTakesOverWhenItIs
   for (std::uint64_t i = 1; i <= 20; ++i) {
     last = std::chrono::steady_clock::now();
     drive(setup.twist, 0.5);
-    ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == i; }));
+    ASSERT_TRUE(wait_until([&] { return setup.desk.counts().accepted == i; }));
     drive(other, -0.5);
-    ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().other_publisher == i; }));
+    ASSERT_TRUE(wait_until([&] { return setup.desk.counts().other_publisher == i; }));
     EXPECT_GE(setup.robot.speed_mps(), 0.0);
   }
   ASSERT_TRUE(wait_until([&] {
     drive(other, -0.5);
-    return setup.inbox.counts().accepted > 20;
+    return setup.desk.counts().accepted > 20;
   }));
   EXPECT_GE(std::chrono::steady_clock::now() - last, std::chrono::milliseconds(300));
   ASSERT_TRUE(wait_until([&] {
@@ -107,9 +107,9 @@ TEST(CommandInboxTest, OneThatSendsRightAfterTheHolderDoesNotSilenceIt) {
     drive(setup.twist, 0.5);
     drive(other, -0.5);
     ++sent;
-    ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().other_publisher == sent; }));
+    ASSERT_TRUE(wait_until([&] { return setup.desk.counts().other_publisher == sent; }));
   }
-  EXPECT_EQ(setup.inbox.counts().accepted, sent);
+  EXPECT_EQ(setup.desk.counts().accepted, sent);
   EXPECT_EQ(setup.robot.speed_mps(), 0.5);
 }
 
@@ -168,8 +168,8 @@ TEST(CommandInboxTest, RepliesSayWhyARequestIsRefused) {
   const sandrunner_ModeReply reset = asker.ask("reset_fault");
   EXPECT_TRUE(reset.accepted) << reset.reason;
   EXPECT_STREQ(reset.mode, "passive");
-  EXPECT_EQ(setup.inbox.counts().requests_refused, 6u);
-  EXPECT_EQ(setup.inbox.counts().requests_accepted, 2u);
+  EXPECT_EQ(setup.desk.counts().requests_refused, 6u);
+  EXPECT_EQ(setup.desk.counts().requests_accepted, 2u);
 }
 
 TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
@@ -187,8 +187,9 @@ TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLat
   for (const auto& [request, later] :
        {std::pair("arm", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
     DdsParticipant participant(config);
-    DdsOperator op(config.stale_ticks());
-    CommandInbox inbox(participant, config, "example@here", true, op);
+    RemoteOperator op(config.stale_ticks());
+    OperatorDesk desk(op, config.stale_s, true);
+    CommandInbox inbox(participant, config, "example@here", desk);
     Peer peer(config);
     EXPECT_STREQ(Asker(peer).ask(request).reason, "the controller does not answer");
     op.command(0);
@@ -199,8 +200,9 @@ TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLat
 TEST(CommandInboxTest, ADampThatWaitsForTheControllerIsNotReplacedByAWalk) {
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
-  DdsOperator op(config.stale_ticks());
-  CommandInbox inbox(participant, config, "example@here", true, op);
+  RemoteOperator op(config.stale_ticks());
+  OperatorDesk desk(op, config.stale_s, true);
+  CommandInbox inbox(participant, config, "example@here", desk);
   Peer peer(config);
   Asker asker(peer);
   for (const char* request : {"damp", "arm", "walk"}) {
@@ -222,7 +224,7 @@ TEST(CommandInboxTest, TwistStampedIsTakenIfTheConfigSaysSo) {
   twist.header.stamp.sec = 1;  // long ago, which is ignored
   twist.twist.linear.x = 0.5;
   dds_write(writer, &twist);
-  EXPECT_TRUE(wait_until([&] { return setup.inbox.counts().accepted == 1; }));
+  EXPECT_TRUE(wait_until([&] { return setup.desk.counts().accepted == 1; }));
 }
 
 }  // namespace

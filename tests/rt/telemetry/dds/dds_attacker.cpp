@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "rt/core/messages.h"
-#include "rt/telemetry/dds/mode_requests.h"
+#include "rt/operator/mode_requests.h"
 #include "rt/telemetry/dds/participant.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/sandrunner.h"

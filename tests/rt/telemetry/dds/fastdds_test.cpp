@@ -13,7 +13,7 @@ namespace {
 
 TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   LiveSetup setup;
-  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.inbox);
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
   telemetry.begin(kExampleStart_ns);
   {
     Peer peer(setup.config);
@@ -35,7 +35,7 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   }
   const double sent = number_after(fast.wait().out, "sent");
   EXPECT_GT(sent, 50.0);
-  EXPECT_GE(static_cast<double>(setup.inbox.counts().accepted), 0.9 * sent);
+  EXPECT_GE(static_cast<double>(setup.desk.counts().accepted), 0.9 * sent);
   EXPECT_EQ(fastest_mps, 0.7);
 
   const std::string text = fast.wait().out;
@@ -102,14 +102,14 @@ TEST(FastDdsTest, ACallInTheBytesOfRmwCycloneddsIsAnsweredAndTheNodeIsListed) {
 
 TEST(FastDdsTest, RmwFastrtpsUnderRos2LocalhostFindsTheRobotThroughItsDefaultInterface) {
   LiveSetup setup;
-  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.inbox);
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
   ChildProcess fast({"bash", "-c",
                      "source " SANDRUNNER_ROS2_LOCALHOST " && exec " SANDRUNNER_FASTDDS_PEER " " +
                          std::to_string(setup.config.domain) + " 0.1 4 profile"});
   publish_for(telemetry, 0, 4.0);
   const std::string text = fast.wait().out;
   EXPECT_GE(number_after(text, "\nodom"), 100.0) << text.substr(0, 200);
-  EXPECT_GE(setup.inbox.counts().accepted, 25u);
+  EXPECT_GE(setup.desk.counts().accepted, 25u);
 }
 
 }  // namespace

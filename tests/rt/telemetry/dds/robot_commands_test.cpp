@@ -47,8 +47,9 @@ class RobotCommandsTest : public testing::Test {
             &policy_.spec())),
         participant_(config_.dds),
         op_(config_.dds.stale_ticks()),
-        inbox_(participant_, config_.dds, "raibo@here", true, op_),
-        telemetry_(participant_, config_.dds, config_.robot.description, &inbox_),
+        desk_(op_, config_.dds.stale_s, true),
+        inbox_(participant_, config_.dds, "raibo@here", desk_),
+        telemetry_(participant_, config_.dds, config_.robot.description, &desk_),
         peer_(config_.dds) {}
 
   /// Walks for this long, in lockstep but not ahead of time; `at` is called after each tick.
@@ -107,7 +108,8 @@ class RobotCommandsTest : public testing::Test {
   Policy policy_;
   const ProcessConfig config_;
   DdsParticipant participant_;
-  DdsOperator op_;
+  RemoteOperator op_;
+  OperatorDesk desk_;
   CommandInbox inbox_;
   Telemetry telemetry_;
   Peer peer_;
@@ -192,7 +194,7 @@ TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
   const ProcessConfig config = config_of(
       "rigid",
       {"robot=" + write_small_robot(folder), "dds.domain=" + std::to_string(test_config().domain)});
-  DdsBridge bridge(config, false);
+  DdsBridge bridge(config, nullptr);
   Peer peer(config.dds);
   const auto descriptions =
       peer.reader("rt/robot_description", std_msgs_msg_dds__String__desc, true);

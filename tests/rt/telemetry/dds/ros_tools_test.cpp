@@ -48,7 +48,7 @@ class Caller {
 /// message as "message".
 std::map<std::string, std::string> diagnostics_of(LiveSetup& setup, Peer& peer) {
   const auto reader = peer.reader("rt/diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc);
-  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.inbox);
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
   telemetry.begin(kExampleStart_ns);
   for (std::uint64_t tick = 0; tick <= kControlHz; ++tick) telemetry.add(example_tick(tick));
   std::map<std::string, std::string> values;
@@ -81,11 +81,11 @@ TEST(RosToolsTest, AServiceCallDoesWhatTheModeRequestDoesAndSaysTheSame) {
   EXPECT_EQ(armed.message, "mode damping");
   EXPECT_TRUE(stand.call(7).success);
   EXPECT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
-  EXPECT_EQ(setup.inbox.last_request(), "stand: accepted: mode stand_up");
+  EXPECT_EQ(setup.desk.last_request(), "stand: accepted: mode stand_up");
   EXPECT_TRUE(damp.call(8).success);
   EXPECT_EQ(setup.robot.mode(), Mode::kDamping);
-  EXPECT_EQ(setup.inbox.counts().requests_accepted, 3u);
-  EXPECT_EQ(setup.inbox.counts().requests_refused, 2u);
+  EXPECT_EQ(setup.desk.counts().requests_accepted, 3u);
+  EXPECT_EQ(setup.desk.counts().requests_refused, 2u);
 }
 
 TEST(RosToolsTest, AStringIsARequestToo) {
@@ -97,8 +97,8 @@ TEST(RosToolsTest, AStringIsARequestToo) {
     dds_write(writer, &message);
   }
   EXPECT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kDamping; }));
-  EXPECT_TRUE(wait_until([&] { return setup.inbox.counts().requests_accepted == 1; }));
-  EXPECT_EQ(setup.inbox.counts().requests_refused, 1u);
+  EXPECT_TRUE(wait_until([&] { return setup.desk.counts().requests_accepted == 1; }));
+  EXPECT_EQ(setup.desk.counts().requests_refused, 1u);
   EXPECT_EQ(diagnostics_of(setup, peer)["last_request"], "arm: accepted: mode damping");
 }
 

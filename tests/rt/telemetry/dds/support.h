@@ -148,10 +148,10 @@ inline double publish_for(Telemetry& telemetry, std::uint64_t first_tick, double
   return longest_s;
 }
 
-/// A robot that follows a DdsOperator at 4 kHz in real time, in a thread of its own.
+/// A robot that follows a RemoteOperator at 4 kHz in real time, in a thread of its own.
 class LiveRobot {
  public:
-  LiveRobot(DdsOperator& op, const DdsConfig& config) : operator_(op) {
+  LiveRobot(RemoteOperator& op, const DdsConfig& config) : operator_(op) {
     controller_.shaping.operator_hold_ticks = config.stale_ticks();
     controller_.stand.fold_s = controller_.stand.extend_s = 0.05;  // stands up quickly
     controller_.stand.max_speed_radps = 20.0;
@@ -195,7 +195,7 @@ class LiveRobot {
     }
   }
 
-  DdsOperator& operator_;
+  RemoteOperator& operator_;
   ControllerConfig controller_ = test_robot();
   std::unique_ptr<FakeLoop> loop_;
   std::atomic<bool> end_{false}, broken_{false};
@@ -211,12 +211,14 @@ struct LiveSetup {
       : config(config_in),
         participant(config),
         op(config.stale_ticks()),
-        inbox(participant, config, "example@here", can_walk, op),
+        desk(op, config.stale_s, can_walk),
+        inbox(participant, config, "example@here", desk),
         robot(op, config) {}
 
   DdsConfig config;
   DdsParticipant participant;
-  DdsOperator op;
+  RemoteOperator op;
+  OperatorDesk desk;
   CommandInbox inbox;
   LiveRobot robot;
 };

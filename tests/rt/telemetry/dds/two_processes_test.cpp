@@ -21,12 +21,12 @@ std::vector<std::string> peer_command(const DdsConfig& config, std::vector<std::
 TEST(TwoProcessesTest, APublisherThatIsKilledLosesTheCommandAfterTheStaleTime) {
   LiveSetup setup;
   ChildProcess first(peer_command(setup.config, {"drive", "0.5", "1000"}));
-  ASSERT_TRUE(wait_until([&] { return setup.inbox.counts().accepted > 5; }));
+  ASSERT_TRUE(wait_until([&] { return setup.desk.counts().accepted > 5; }));
   first.signal(SIGKILL);
   first.wait();
-  const std::uint64_t before = setup.inbox.counts().accepted;
+  const std::uint64_t before = setup.desk.counts().accepted;
   ChildProcess second(peer_command(setup.config, {"drive", "0.6", "1000"}));
-  EXPECT_TRUE(wait_until([&] { return setup.inbox.counts().accepted > before + 20; }));
+  EXPECT_TRUE(wait_until([&] { return setup.desk.counts().accepted > before + 20; }));
 }
 
 // What rmw_cyclonedds adds to the environment's settings, by version and discovery range.
@@ -126,7 +126,7 @@ class SecurityTest : public testing::Test {
     words.insert(words.end(), credentials.begin(), credentials.end());
     ChildProcess peer(peer_command(setup.config, words));
     const std::string said = peer.wait().out;
-    return {setup.inbox.counts(), said};
+    return {setup.desk.counts(), said};
   }
   static std::string folder(const char* name) { return (dir_ / name).string(); }
 
@@ -138,8 +138,8 @@ TEST_F(SecurityTest, AnOperatorsCommandsAreAccepted) {
   LiveSetup setup(our_config());
   ChildProcess peer(
       peer_command(setup.config, {"drive", "0.5", "1000", folder("ours"), "operator"}));
-  EXPECT_TRUE(wait_until([&] { return setup.inbox.counts().accepted >= 50; }));
-  EXPECT_EQ(setup.inbox.counts().other_publisher, 0u);
+  EXPECT_TRUE(wait_until([&] { return setup.desk.counts().accepted >= 50; }));
+  EXPECT_EQ(setup.desk.counts().other_publisher, 0u);
 }
 
 TEST_F(SecurityTest, WithoutACertificateNothingIsAccepted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/dds/mode_requests.h"
+#include "rt/operator/mode_requests.h"
 
 #include <algorithm>
 

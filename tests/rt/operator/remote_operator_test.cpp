@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/dds/dds_operator.h"
+#include "rt/operator/remote_operator.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint64_t kStale_ticks = 1200;
 
-TEST(DdsOperatorTest, ARobotWhoseOperatorSaysNothingStaysPassive) {
-  DdsOperator op(kStale_ticks);
+TEST(RemoteOperatorTest, ARobotWhoseOperatorSaysNothingStaysPassive) {
+  RemoteOperator op(kStale_ticks);
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
     const OperatorCommand command = op.command(tick);
     EXPECT_EQ(command.request_id, 0u);
@@ -20,8 +20,8 @@ TEST(DdsOperatorTest, ARobotWhoseOperatorSaysNothingStaysPassive) {
   }
 }
 
-TEST(DdsOperatorTest, AVelocityAgesInTicksFromWhenItWasFirstSeen) {
-  DdsOperator op(kStale_ticks);
+TEST(RemoteOperatorTest, AVelocityAgesInTicksFromWhenItWasFirstSeen) {
+  RemoteOperator op(kStale_ticks);
   op.command(99);
   op.ask({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
   EXPECT_EQ(op.command(100).velocity.vx_mps, 1.0);
@@ -33,8 +33,8 @@ TEST(DdsOperatorTest, AVelocityAgesInTicksFromWhenItWasFirstSeen) {
   EXPECT_EQ(stale.tick, 100u);  // for the controller's own judgement
 }
 
-TEST(DdsOperatorTest, ARequestDoesNotRefreshTheVelocity) {
-  DdsOperator op(kStale_ticks);
+TEST(RemoteOperatorTest, ARequestDoesNotRefreshTheVelocity) {
+  RemoteOperator op(kStale_ticks);
   OperatorRequests asked{.velocity = {.vx_mps = 1.0}, .velocity_number = 1};
   op.ask(asked);
   op.command(0);
@@ -46,15 +46,15 @@ TEST(DdsOperatorTest, ARequestDoesNotRefreshTheVelocity) {
   EXPECT_EQ(command.request, ModeRequest::kDamp);
 }
 
-TEST(DdsOperatorTest, ACommandThatCameDuringMissedSlotsIsAsOldAsTheFirstOfThem) {
-  DdsOperator op(kStale_ticks);
+TEST(RemoteOperatorTest, ACommandThatCameDuringMissedSlotsIsAsOldAsTheFirstOfThem) {
+  RemoteOperator op(kStale_ticks);
   op.command(10);
   op.ask({.velocity = {.vx_mps = 1.0}, .velocity_number = 1});
   EXPECT_EQ(op.command(1000).tick, 11u);
 }
 
-TEST(DdsOperatorTest, TheControllersFirstStepGetsNoRequestAndTheNextOneDoes) {
-  DdsOperator op(kStale_ticks);
+TEST(RemoteOperatorTest, TheControllersFirstStepGetsNoRequestAndTheNextOneDoes) {
+  RemoteOperator op(kStale_ticks);
   op.ask({.velocity = {}, .request = ModeRequest::kStand, .request_number = 1});
   EXPECT_EQ(op.command(0).request_id, 0u);
   op.advance({.mode = Mode::kPassive});
@@ -65,8 +65,8 @@ TEST(DdsOperatorTest, TheControllersFirstStepGetsNoRequestAndTheNextOneDoes) {
   EXPECT_EQ(op.mode(), Mode::kStandUp);
 }
 
-TEST(DdsOperatorTest, AnInterruptDampsForHalfASecondAndTakesNoMoreRequests) {
-  DdsOperator op(kStale_ticks);
+TEST(RemoteOperatorTest, AnInterruptDampsForHalfASecondAndTakesNoMoreRequests) {
+  RemoteOperator op(kStale_ticks);
   op.command(0);
   EXPECT_TRUE(op.advance({.mode = Mode::kStand, .interrupted = true}).running);
   op.ask({.velocity = {}, .request = ModeRequest::kWalk, .request_number = 1});
@@ -78,8 +78,8 @@ TEST(DdsOperatorTest, AnInterruptDampsForHalfASecondAndTakesNoMoreRequests) {
   EXPECT_EQ(ticks, kControlHz / 2);
 }
 
-TEST(DdsOperatorTest, AnInterruptedRobotWithItsDrivesOffEndsAtOnce) {
-  DdsOperator op(kStale_ticks);
+TEST(RemoteOperatorTest, AnInterruptedRobotWithItsDrivesOffEndsAtOnce) {
+  RemoteOperator op(kStale_ticks);
   op.command(0);
   EXPECT_FALSE(op.advance({.mode = Mode::kPassive, .interrupted = true}).running);
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/dds/dds_operator.h"
+#include "rt/operator/remote_operator.h"
 
 #include <algorithm>
 
 namespace sandrunner {
 
-OperatorCommand DdsOperator::command(std::uint64_t tick) noexcept {
+OperatorCommand RemoteOperator::command(std::uint64_t tick) noexcept {
   const OperatorRequests& asked = asked_.read();
   const bool first = next_tick_ == 0;  // in its first step the controller ignores requests
   if (asked.velocity_number != velocity_number_) {
@@ -27,7 +27,7 @@ OperatorCommand DdsOperator::command(std::uint64_t tick) noexcept {
   return command_;
 }
 
-OperatorVerdict DdsOperator::advance(const TickFacts& facts) noexcept {
+OperatorVerdict RemoteOperator::advance(const TickFacts& facts) noexcept {
   mode_.store(facts.mode, std::memory_order_relaxed);
   considered_.store(request_number_, std::memory_order_release);
   if (interrupted_) damped_ticks_ += facts.ticks;

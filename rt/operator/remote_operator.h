@@ -20,10 +20,10 @@ struct OperatorRequests {
 /// The control thread's end of commands that come over DDS. The age of a velocity counts from the
 /// tick at which it was first seen; beyond the stale time it is replaced by zero. Until the first
 /// request, the robot stays as it is. Ends in damping when it is interrupted.
-class DdsOperator final : public OperatorInput {
+class RemoteOperator final : public OperatorInput {
  public:
   /// `stale_ticks`: the greatest age at which a velocity is still followed, in control ticks.
-  explicit DdsOperator(std::uint64_t stale_ticks) : stale_ticks_(stale_ticks) {}
+  explicit RemoteOperator(std::uint64_t stale_ticks) : stale_ticks_(stale_ticks) {}
 
   // For the control thread: wait-free.
   OperatorCommand command(std::uint64_t tick) noexcept override;

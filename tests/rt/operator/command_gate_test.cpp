@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/dds/command_gate.h"
+#include "rt/operator/command_gate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/operator/operator_desk.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "rt/base/errors.h"
+#include "rt/core/mode_machine.h"
+
+namespace sandrunner {
+namespace {
+
+// The controller answers within a tick; if it has not answered after this time, it is not running.
+constexpr auto kAnswerTime = std::chrono::milliseconds(20);
+constexpr auto kLookEvery = std::chrono::microseconds(250);
+constexpr const char* kNoAnswer = "the controller does not answer";
+
+std::int64_t steady_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk)
+    : operator_(op), can_walk_(can_walk), gate_(static_cast<std::int64_t>(stale_s * 1e9)) {}
+
+CommandVerdict OperatorDesk::drive(const Twist& twist, std::uint64_t publisher,
+                                   const OperatorId& who) {
+  const std::lock_guard lock(mutex_);
+  const CommandVerdict verdict = gate_.judge(twist, publisher, steady_ns());
+  switch (verdict) {
+    case CommandVerdict::kAccepted:
+      holder_ = who;
+      asked_.velocity = {twist.linear_mps[0], twist.linear_mps[1], twist.angular_radps[2]};
+      ++asked_.velocity_number;
+      operator_.ask(asked_);
+      ++counts_.accepted;
+      break;
+    case CommandVerdict::kNotFinite:
+      ++counts_.not_finite;
+      break;
+    case CommandVerdict::kAbsurd:
+      ++counts_.absurd;
+      break;
+    case CommandVerdict::kOtherPublisher:
+      ++counts_.other_publisher;
+      break;
+  }
+  return verdict;
+}
+
+RequestOutcome OperatorDesk::request(std::string_view name, const OperatorId& who,
+                                     const std::function<std::string()>& objection) {
+  const std::lock_guard lock(mutex_);
+  const std::string refusal = is_request(name) ? follow(name, who, objection)
+                                               : fmt::format("unknown, expected {}", kRequestNames);
+  ++(refusal.empty() ? counts_.requests_accepted : counts_.requests_refused);
+  RequestOutcome outcome{refusal.empty(), refusal};
+  if (outcome.accepted) outcome.text = fmt::format("mode {}", mode_name(operator_.mode()));
+  last_request_ = fmt::format("{}: {}: {}", one_line(std::string(name.substr(0, 15))),
+                              outcome.accepted ? "accepted" : "refused", outcome.text);
+  return outcome;
+}
+
+CommandCounts OperatorDesk::counts() const {
+  const std::lock_guard lock(mutex_);
+  return counts_;
+}
+
+std::string OperatorDesk::last_request() const {
+  const std::lock_guard lock(mutex_);
+  return last_request_;
+}
+
+std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
+                                 const std::function<std::string()>& objection) {
+  // A stop or damp waits for a controller that does not answer; until the controller has taken it,
+  // nothing but a damp replaces it.
+  const bool waiting = calming_number_ > operator_.considered();
+  if (waiting && name != "damp") return kNoAnswer;
+  const RequestDecision decision = decide(name, operator_.mode(), can_walk_);
+  if (decision.refusal) return decision.refusal;
+  if (!decision.calms && gate_.held(steady_ns()) && who != holder_) {
+    return "another operator drives the robot";
+  }
+  if (!decision.calms && objection) {
+    if (std::string why = objection(); !why.empty()) return why;
+  }
+  if (decision.calms) {
+    asked_.velocity = {};
+    ++asked_.velocity_number;
+  }
+  if (decision.request != ModeRequest::kNone) {
+    asked_.request = decision.request;
+    ++asked_.request_number;
+    if (decision.calms) calming_number_ = asked_.request_number;
+  }
+  operator_.ask(asked_);
+  const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
+  while (operator_.considered() != asked_.request_number) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      // An operator who was refused must not see the robot move later; a stop or damp still holds.
+      if (!decision.calms) {
+        asked_.request = ModeRequest::kNone;
+        ++asked_.request_number;
+        operator_.ask(asked_);
+      }
+      return kNoAnswer;
+    }
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  const char* const failed = failure(decision.request, operator_.mode());
+  return failed ? failed : "";
+}
+
+}  // namespace sandrunner

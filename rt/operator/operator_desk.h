@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "rt/operator/command_gate.h"
+#include "rt/operator/mode_requests.h"
+#include "rt/operator/remote_operator.h"
+
+namespace sandrunner {
+
+/// Who asks: a participant of DDS, a page of the view.
+using OperatorId = std::array<std::uint8_t, 16>;
+
+/// What became of a request.
+struct RequestOutcome {
+  bool accepted = false;
+  std::string text;  ///< "mode stand_up", or why not
+};
+
+/// What became of the commands since the start.
+struct CommandCounts {
+  std::uint64_t accepted = 0;                                     ///< velocity commands
+  std::uint64_t not_finite = 0, absurd = 0, other_publisher = 0;  ///< refused ones
+  std::uint64_t requests_accepted = 0, requests_refused = 0;
+};
+
+/// Where all that operators ask for comes together, by whatever way, in front of the control
+/// thread. One of them holds the velocity command; while somebody does, requests are accepted from
+/// that operator alone, but for stop and damp, which anybody may ask for. For ordinary threads, any
+/// number of them.
+class OperatorDesk {
+ public:
+  /// `op` must outlive the desk. `stale_s`: a velocity older than this holds nothing any more.
+  /// `can_walk`: there is a policy.
+  OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk);
+
+  /// A velocity. `publisher`: what `who` sends it with.
+  CommandVerdict drive(const Twist& twist, std::uint64_t publisher, const OperatorId& who);
+
+  /// A mode request; waits for the controller's answer, up to 20 ms. `objection` is asked about
+  /// what does not end the motion, and says why not, or nothing; unset: there is none.
+  RequestOutcome request(std::string_view name, const OperatorId& who,
+                         const std::function<std::string()>& objection = {});
+
+  Mode mode() const noexcept { return operator_.mode(); }
+  CommandCounts counts() const;
+  /// The latest mode request and what became of it; empty: none yet.
+  std::string last_request() const;
+
+ private:
+  // Why not; empty: done.
+  std::string follow(std::string_view name, const OperatorId& who,
+                     const std::function<std::string()>& objection);
+
+  RemoteOperator& operator_;
+  const bool can_walk_;
+  mutable std::mutex mutex_;  // of all that follows
+  CommandGate gate_;
+  OperatorId holder_{};  // of the velocity that was accepted last
+  OperatorRequests asked_;
+  std::uint64_t calming_number_ = 0;  // of the latest stop or damp
+  CommandCounts counts_;
+  std::string last_request_;
+};
+
+}  // namespace sandrunner

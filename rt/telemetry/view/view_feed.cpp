@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/view/view_feed.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "rt/telemetry/view/view_hello.h"
+
+namespace sandrunner {
+namespace {
+
+enum class Kind : std::uint32_t { kFrames, kFootprints, kTiles };
+constexpr std::size_t kMessageBytes = 50'000;
+
+// The rows from number `from` on, which moves behind them; empty: there are none.
+template <typename Row>
+std::string message(Kind kind, const ViewRows<Row>& rows, std::uint64_t& from) {
+  static_assert(std::is_trivially_copyable_v<Row>);
+  from = std::max(from, rows.begin());
+  const std::uint64_t count = std::min(rows.end - from, kMessageBytes / sizeof(Row));
+  if (count == 0) return {};
+  const std::array head = {static_cast<std::uint32_t>(kind), static_cast<std::uint32_t>(count)};
+  std::string bytes(sizeof head + count * sizeof(Row), '\0');
+  std::memcpy(bytes.data(), head.data(), sizeof head);
+  for (std::uint64_t i = 0; i < count; ++i, ++from) {
+    std::memcpy(bytes.data() + sizeof head + i * sizeof(Row), &rows.rows[from - rows.begin()],
+                sizeof(Row));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+ViewFeed::ViewFeed(RunScene scene, const RobotDescription& robot, const Limits& limits)
+    : scene_(std::move(scene)),
+      limits_(limits),
+      hello_(view_hello(scene_, robot, kPolicyHz, "")),
+      maker_(robot) {}
+
+void ViewFeed::add(const TickRecord& tick) {
+  const std::optional<ViewFrame> frame = maker_.add(tick);
+  if (frame) add_frame(*frame);
+  const std::vector<ViewFootprint> prints = maker_.take_footprints();
+  const std::lock_guard lock(mutex_);
+  for (const ViewFootprint& print : prints) footprints_.add(print, limits_.footprints);
+  now_s_ = static_cast<double>(tick.input.sensors.tick + 1) * kControlPeriod_s;
+}
+
+void ViewFeed::add_frame(const ViewFrame& frame) {
+  // Heights first: a page that has a frame has the ground under it.
+  const std::vector<ViewTile> tiles = new_view_tiles(scene_, frame, tiles_seen_);
+  const std::lock_guard lock(mutex_);
+  for (const ViewTile& tile : tiles) tiles_.add(tile, limits_.tiles);
+  frames_.add(frame, limits_.frames);
+}
+
+void ViewFeed::end() {
+  if (const std::optional<ViewFrame> frame = maker_.take_last()) add_frame(*frame);
+  const std::lock_guard lock(mutex_);
+  ended_ = true;
+}
+
+ViewFeed::Place ViewFeed::join() const {
+  const std::lock_guard lock(mutex_);
+  return {.past_ends = frames_.end};
+}
+
+std::string ViewFeed::next(Place& place) const {
+  const std::lock_guard lock(mutex_);
+  if (std::string tiles = message(Kind::kTiles, tiles_, place.tile); !tiles.empty()) return tiles;
+  std::string prints = message(Kind::kFootprints, footprints_, place.footprint);
+  if (!prints.empty()) return prints;
+  if (place.frame >= place.past_ends && frames_.end - place.frame > kMostBehind) {
+    place.frame = frames_.end - 1;
+  }
+  return message(Kind::kFrames, frames_, place.frame);
+}
+
+double ViewFeed::now_s() const {
+  const std::lock_guard lock(mutex_);
+  return now_s_;
+}
+
+bool ViewFeed::ended() const {
+  const std::lock_guard lock(mutex_);
+  return ended_;
+}
+
+}  // namespace sandrunner

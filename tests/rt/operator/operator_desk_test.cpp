@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/operator/operator_desk.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+namespace sandrunner {
+namespace {
+
+constexpr OperatorId kPage{1}, kPeer{2};
+
+Twist forward(double vx_mps) { return {.linear_mps = {vx_mps, 0.0, 0.0}}; }
+
+/// A controller that does what it is asked, in a thread of its own, and stands.
+class Controller {
+ public:
+  explicit Controller(RemoteOperator& op)
+      : thread_([this, &op] {
+          Mode mode = Mode::kStand;
+          for (std::uint64_t tick = 0; !end_; ++tick) {
+            const OperatorCommand command = op.command(tick);
+            if (command.request == ModeRequest::kWalk) mode = Mode::kWalk;
+            if (command.request == ModeRequest::kDamp) mode = Mode::kDamping;
+            op.advance({.mode = mode});
+            ticks_ = tick + 1;
+            std::this_thread::yield();
+          }
+        }) {
+    while (ticks_ < 2) std::this_thread::yield();
+  }
+  ~Controller() {
+    end_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::atomic<bool> end_{false};
+  std::atomic<std::uint64_t> ticks_{0};
+  std::thread thread_;
+};
+
+struct OperatorDeskTest : testing::Test {
+  RemoteOperator op{1200};
+  OperatorDesk desk{op, 60.0, true};  // a velocity holds for longer than any test takes
+  Controller controller{op};
+};
+
+TEST_F(OperatorDeskTest, OneOfTwoOperatorsHoldsTheVelocityAndTheOtherIsTold) {
+  EXPECT_EQ(desk.drive(forward(0.5), 1, kPage), CommandVerdict::kAccepted);
+  EXPECT_EQ(desk.drive(forward(0.5), 2, kPeer), CommandVerdict::kOtherPublisher);
+  EXPECT_EQ(desk.drive(forward(NAN), 1, kPage), CommandVerdict::kNotFinite);
+  EXPECT_EQ(desk.drive(forward(6.0), 1, kPage), CommandVerdict::kAbsurd);
+  const CommandCounts counts = desk.counts();
+  EXPECT_EQ(counts.accepted, 1u);
+  EXPECT_EQ(counts.other_publisher, 1u);
+  EXPECT_EQ(counts.not_finite, 1u);
+  EXPECT_EQ(counts.absurd, 1u);
+}
+
+TEST_F(OperatorDeskTest, WhileSomebodyDrivesOnlyStopAndDampAreTakenFromOthers) {
+  EXPECT_EQ(desk.drive(forward(0.5), 1, kPage), CommandVerdict::kAccepted);
+  EXPECT_EQ(desk.request("walk", kPeer).text, "another operator drives the robot");
+  EXPECT_EQ(desk.request("walk", kPage).text, "mode walk");
+  EXPECT_TRUE(desk.request("stop", kPeer).accepted);
+  EXPECT_EQ(desk.request("damp", kPeer).text, "mode damping");
+  EXPECT_EQ(desk.last_request(), "damp: accepted: mode damping");
+}
+
+TEST_F(OperatorDeskTest, AnObjectionHoldsForWhatDoesNotEndTheMotion) {
+  const auto objection = [] { return std::string("two robots"); };
+  EXPECT_EQ(desk.request("walk", kPeer, objection).text, "two robots");
+  EXPECT_TRUE(desk.request("stop", kPeer, objection).accepted);
+  EXPECT_EQ(desk.request("fly", kPeer).text,
+            "unknown, expected arm, stand, walk, stop, damp or reset_fault");
+  EXPECT_EQ(desk.counts().requests_refused, 2u);
+}
+
+TEST_F(OperatorDeskTest, OperatorsInManyThreadsLeaveOneHolder) {
+  std::array<std::thread, 4> threads;
+  std::atomic<int> holders{0};
+  for (std::size_t i = 0; i < threads.size(); ++i) {
+    threads[i] = std::thread([&, i] {
+      int accepted = 0;
+      for (int n = 0; n < 1000; ++n) {
+        const OperatorId who{static_cast<std::uint8_t>(i)};
+        if (desk.drive(forward(0.1), i, who) == CommandVerdict::kAccepted) ++accepted;
+      }
+      if (accepted > 0) ++holders;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(holders, 1);
+  EXPECT_EQ(desk.counts().accepted, 1000u);
+}
+
+}  // namespace
+}  // namespace sandrunner

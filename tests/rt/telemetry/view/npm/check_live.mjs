@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// node check_live.mjs BROWSER SANDRUNNER RECORDING: looks at a run while it goes, holds and steps it, loses its server
+// and finds it again, drives the robot; then opens a recording.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import puppeteer from "puppeteer-core";
+
+const [browserPath, sandrunner, recording] = process.argv.slice(2);
+const children = new Set();
+
+/** Starts a program with --view; resolves to {url, child} once it has said where to look. */
+function serve(program, ...words) {
+  const child = spawn(program, [...words, "--view"], { stdio: ["ignore", "ignore", "pipe"] });
+  children.add(child);
+  return new Promise((resolve, reject) => {
+    let said = "";
+    child.stderr.on("data", (text) => {
+      said += text;
+      const url = /look at (\S+)/.exec(said)?.[1];
+      if (url) resolve({ url, child });
+    });
+    child.on("exit", (code) => {
+      children.delete(child);
+      reject(new Error(`${program} ended with ${code}: ${said}`));
+    });
+  });
+}
+
+const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const browser = await puppeteer.launch({ executablePath: browserPath, headless: "shell", args, protocolTimeout: 120000 });
+const errors = [];
+
+async function open(url) {
+  const page = await browser.newPage();
+  await page.setViewport({ width: 480, height: 300 });  // what a machine without a graphics card can draw
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("console", (message) => {
+    // A server that is gone is what this test wants; the browser says so by itself.
+    if (message.type() === "error" && !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(message.text())) errors.push(message.text());
+  });
+  page.on("request", (request) => {
+    if (!/^(data|blob):/.test(request.url()) && new URL(request.url()).host !== new URL(url).host) errors.push(request.url());
+  });
+  await page.goto(url);
+  await page.waitForFunction("window.sandrunner?.ready_ms", { timeout: 60000 });
+  return page;
+}
+const until = (page, what, timeout = 30000) => page.waitForFunction(what, { timeout, polling: 50 });
+const text = (page, id) => page.$eval(`#${id}`, (element) => element.textContent);
+const click = (page, id) => page.$eval(`#${id}`, (element) => element.click());
+
+async function looksAndHolds() {
+  const first = await serve(sandrunner, "--set", "view.port=0", "--duration", "600");
+  const port = new URL(first.url).port, page = await open(first.url);
+  assert.equal(await page.evaluate("location.hash"), "", "the key is taken out of the address");
+  await until(page, "sandrunner.frames > 150");
+  assert.equal(await page.evaluate("sandrunner.kind"), "3d");
+
+  await click(page, "hold");
+  await until(page, "document.getElementById('hold').textContent === 'go on'");
+  const held = await page.evaluate("sandrunner.frames");
+  for (let i = 0; i < 3; ++i) await click(page, "policy-step");
+  await until(page, `sandrunner.frames > ${held}`);
+  assert.ok((await page.evaluate("sandrunner.frames")) <= held + 4, "a step is a step");
+  assert.equal(await text(page, "lost"), "", "a robot that is held is not lost");
+  await click(page, "hold");
+  await until(page, `sandrunner.frames > ${held + 20}`);
+
+  // Looking back while the robot goes on.
+  await page.evaluate("sandrunner.seek(0.5)");
+  const before = await page.evaluate("sandrunner.frames");
+  await until(page, `sandrunner.frames > ${before + 10}`);
+  assert.equal(await page.evaluate("sandrunner.player.t"), 0.5);
+  await click(page, "now");
+
+  await page.evaluate("window.sameDocument = true");
+  first.child.kill("SIGKILL");
+  await until(page, "document.getElementById('lost').textContent !== ''", 10000);
+  assert.ok(await page.evaluate("sandrunner.frames > 150"), "what was seen stays");
+  await serve(sandrunner, "--set", `view.port=${port}`, "--duration", "600");
+  await until(page, "document.getElementById('lost').textContent === '' && sandrunner.run.frames.time(0) < 0.1 && sandrunner.frames > 20");
+  assert.ok(await page.evaluate("window.sameDocument"), "without a reload");
+  await page.close();
+}
+
+async function drives() {
+  const { url, child } = await serve(sandrunner, "--set", "view.port=0", "--command", "live");
+  const page = await open(url);
+  const ask = (name) => page.evaluate((wanted) => [...document.querySelectorAll("#requests button")].find((b) => b.textContent === wanted).click(), name);
+  const mode = (name) => until(page, `document.getElementById('mode').textContent === '${name}'`);
+  await ask("walk");
+  await until(page, "/refused, the robot does not stand|refused, the drives are off/.test(document.getElementById('answer').textContent)");
+  await ask("arm");
+  await mode("damping");
+  await ask("stand");
+  await mode("stand");
+  await ask("walk");
+  await mode("walk");
+  const asked = (vx) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) === ${vx}`);
+  await page.keyboard.down("w");
+  await asked(0.5);
+  await page.keyboard.up("w");
+  await asked(0);
+  await page.keyboard.down("w");
+  await asked(0.5);
+  // A page that is gone says nothing more: the age of its last word stops the robot.
+  const look = await open(url.split("#")[0]);
+  await page.close();
+  await until(look, "sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) === 0");
+  assert.ok(await look.$eval("#drive", (element) => element.hidden), "without the key there is nothing to drive with");
+  child.kill("SIGINT");
+  await look.close();
+}
+
+async function opensARecording() {
+  const { url } = await serve(`${sandrunner}-replay`, recording, "--set", "view.port=0");
+  const page = await open(url);
+  assert.ok(await page.evaluate("sandrunner.frames > 300"));
+  assert.equal(await page.evaluate("sandrunner.player.begin"), 0);
+  await page.evaluate("sandrunner.seek(2)");
+  assert.equal(await page.evaluate("sandrunner.player.t"), 2);
+  assert.equal(await text(page, "lost"), "");
+  await page.close();
+}
+
+try {
+  await looksAndHolds();
+  await drives();
+  await opensARecording();
+  assert.deepEqual(errors, []);
+} finally {
+  await browser.close();
+  for (const child of children) child.kill("SIGKILL");
+}

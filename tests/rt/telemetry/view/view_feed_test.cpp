@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/telemetry/view/view_feed.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/rt/telemetry/example_tick.h"
+
+namespace sandrunner {
+namespace {
+
+void add_frames(ViewFeed& feed, std::uint64_t from, std::uint64_t count) {
+  for (std::uint64_t i = from; i < from + count; ++i) {
+    feed.add(example_tick(i * kTicksPerPolicyStep));
+  }
+}
+
+/// The times of the frames in all messages that there are for a page, s.
+std::vector<double> times(const ViewFeed& feed, ViewFeed::Place& place) {
+  std::vector<double> all;
+  for (std::string message; !(message = feed.next(place)).empty();) {
+    std::uint32_t head[2];
+    std::memcpy(head, message.data(), sizeof head);
+    EXPECT_EQ(head[0], 0u);
+    EXPECT_LE(message.size(), 50'008u);
+    EXPECT_EQ(message.size(), sizeof head + head[1] * sizeof(ViewFrame));
+    for (std::uint32_t i = 0; i < head[1]; ++i) {
+      ViewFrame frame;
+      std::memcpy(&frame, message.data() + sizeof head + i * sizeof frame, sizeof frame);
+      all.push_back(frame.t_s);
+    }
+  }
+  return all;
+}
+
+TEST(ViewFeedTest, APageThatComesLaterGetsThePastThenWhatIsNew) {
+  ViewFeed feed({}, example_robot());
+  add_frames(feed, 0, 501);  // the last of them waits for the network's answer
+  ViewFeed::Place place = feed.join();
+  const std::vector<double> past = times(feed, place);
+  ASSERT_EQ(past.size(), 500u);
+  EXPECT_DOUBLE_EQ(past.front(), 0.0);
+  EXPECT_DOUBLE_EQ(past.back(), 4.99);
+  add_frames(feed, 501, 3);
+  EXPECT_EQ(times(feed, place).size(), 3u);
+  EXPECT_TRUE(times(feed, place).empty());
+  feed.end();
+  EXPECT_EQ(times(feed, place).size(), 1u);
+  EXPECT_TRUE(feed.ended());
+}
+
+TEST(ViewFeedTest, APageThatFallsBehindSkipsToTheNewestFrame) {
+  ViewFeed feed({}, example_robot());
+  ViewFeed::Place place = feed.join();
+  add_frames(feed, 0, 500);
+  const std::vector<double> got = times(feed, place);
+  ASSERT_EQ(got.size(), 1u);
+  EXPECT_DOUBLE_EQ(got.front(), 4.98);
+}
+
+TEST(ViewFeedTest, ThePastIsBounded) {
+  ViewFeed feed({}, example_robot(), {.frames = 10, .footprints = 10, .tiles = 10});
+  add_frames(feed, 0, 100);
+  ViewFeed::Place place = feed.join();
+  EXPECT_EQ(times(feed, place).size(), 10u);
+}
+
+TEST(ViewFeedTest, RoughGroundComesBeforeTheFramesOnIt) {
+  RunScene scene;
+  scene.ground_height_m = [](double x_m, double) { return 0.01 * x_m; };
+  ViewFeed feed(scene, example_robot());
+  add_frames(feed, 0, 3);
+  ViewFeed::Place place = feed.join();
+  const std::string message = feed.next(place);
+  std::uint32_t head[2];
+  ASSERT_GT(message.size(), sizeof head);
+  std::memcpy(head, message.data(), sizeof head);
+  EXPECT_EQ(head[0], 2u);
+  EXPECT_EQ(message.size(), sizeof head + head[1] * sizeof(ViewTile));
+}
+
+}  // namespace
+}  // namespace sandrunner
