@@ -194,11 +194,11 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
   for (int j = 0; j < kNumJoints; ++j) {
     const Drive& d = robot.drives()[j];
     const std::uint64_t missing = d.sent() - std::min(d.sent(), d.replies());
-    if (missing <= 1 && d.fault() == 0 && d.bad() == 0) continue;
+    if (missing <= 1 && d.last_fault() == 0 && d.bad() == 0) continue;
     lines += fmt::format("{}: {} of {} commands not answered", description.joint_names[j], missing,
                          d.sent());
     if (d.bad() > 0) lines += fmt::format(", {} replies of a wrong length", d.bad());
-    if (d.fault() != 0) lines += "; " + drive_fault_words(config.drives[j], d.fault());
+    if (d.last_fault() != 0) lines += "; " + drive_fault_words(config.drives[j], d.last_fault());
     lines += '\n';
   }
   const MipImu::Counters imu = robot.imu().counters();

@@ -176,6 +176,7 @@ void Drive::lose_bus() noexcept {
 void Drive::set(DriveTrouble trouble, bool on) noexcept {
   const auto bit = static_cast<std::uint64_t>(trouble);
   trouble_ = on ? trouble_ | bit : trouble_ & ~bit;
+  if (fault() != 0) last_fault_ = fault();
 }
 
 std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault) {

@@ -58,6 +58,8 @@ class Drive {
   double velocity_radps() const noexcept { return velocity_radps_; }
   double torque_nm() const noexcept { return torque_nm_; }
   std::uint64_t fault() const noexcept { return maker_fault_ | trouble_; }
+  /// The latest that was none of 0, which may be over.
+  std::uint64_t last_fault() const noexcept { return last_fault_; }
   std::uint64_t tick() const noexcept { return tick_; }
   double temperature_degc() const noexcept { return temperature_degc_; }  ///< NaN: it does not say
   double voltage_v() const noexcept { return voltage_v_; }                ///< NaN: it does not say
@@ -86,7 +88,7 @@ class Drive {
   std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0;
   double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
   double temperature_degc_, voltage_v_;
-  std::uint64_t maker_fault_ = 0, trouble_ = 0, tick_ = 0;
+  std::uint64_t maker_fault_ = 0, trouble_ = 0, last_fault_ = 0, tick_ = 0;
   std::uint64_t sent_ = 0, replies_ = 0, bad_ = 0;
 };
 

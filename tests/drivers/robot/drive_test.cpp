@@ -95,6 +95,8 @@ TEST(DriveTest, ThatDoesNotLetItselfBeEnabledIsAFault) {
   EXPECT_TRUE(pair.said(DriveTrouble::kNotEnabled));
   pair.exchange(nullptr);
   EXPECT_EQ(pair.drive.fault(), 0u);
+  EXPECT_EQ(drive_fault_words(pair.config(), pair.drive.last_fault()),
+            "does not let itself be enabled");
 }
 
 TEST(DriveTest, ThatSwitchesItselfOffIsAFaultAndIsNotEnabledAgainUntilTheRobotWasOff) {
