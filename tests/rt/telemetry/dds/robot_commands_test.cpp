@@ -132,7 +132,7 @@ TEST_F(RobotCommandsTest, APublisherThatIsKilledLeavesAStandingRobot) {
       SANDRUNNER_DDS_PEER, std::to_string(config_.dds.domain), "lo", "drive", "0.8", "10000"});
   double killed_s = 0.0;
   walk(5.4, [&](double time_s) {
-    if (killed_s > 0.0 || inbox_.counts().accepted < 75) return;
+    if (killed_s > 0.0 || desk_.counts().accepted < 75) return;
     driver->signal(SIGKILL);
     killed_s = time_s;
   });
@@ -150,7 +150,7 @@ TEST_F(RobotCommandsTest, InvalidSpeedsAreCountedAndTheRobotFollowsTheLastValidO
     driver.send(time_s, !rubbish ? 0.6 : number % 3 == 1 ? kNan : 1e9);
     if (driver.sent() != before) ++number;
   });
-  const CommandCounts counts = inbox_.counts();
+  const CommandCounts counts = desk_.counts();
   EXPECT_GE(counts.not_finite, 8u);  // about 16
   EXPECT_GE(counts.absurd, 8u);
   EXPECT_EQ(counts.other_publisher, 0u);
@@ -175,14 +175,14 @@ TEST_F(RobotCommandsTest, TheSecondPublisherIsRefusedUntilTheFirstIsSilent) {
     if (time_s < 1.5) {
       first.send(time_s, 0.6);
       last_s = time_s;
-      first_accepted = inbox_.counts().accepted;
+      first_accepted = desk_.counts().accepted;
     }
     if (time_s > 0.3) second.send(time_s, -0.4);
   });
   const double taken_s = first_s(0.0, -0.4);
   EXPECT_NEAR(taken_s - last_s, 0.32, 0.1);
   EXPECT_LE(first_accepted, first.sent());
-  const CommandCounts counts = inbox_.counts();
+  const CommandCounts counts = desk_.counts();
   EXPECT_GT(counts.other_publisher, 40u);  // of 75 in 1.5 s
   EXPECT_GT(counts.accepted, first_accepted + 60);
   EXPECT_NEAR(speed_mps(0.9, 1.5), 0.6, 0.15);
