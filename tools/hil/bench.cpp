@@ -268,9 +268,10 @@ BenchReport Bench::report() {
   if (walk_s_ > 0.0) ticks = std::min<std::size_t>(ticks, ticks_from_s(walk_s_));
   r.walked_s = static_cast<double>(walk_.size()) * kControlPeriod_s;
   if (ticks > 1) {
-    const Place &from = walk_[ticks / 2], &to = walk_[ticks - 1];
+    const std::size_t half = ticks / 2;
+    const Place &from = walk_[half], &to = walk_[ticks - 1];
     r.mean_speed_mps = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m) /
-                       (static_cast<double>(ticks - 1 - ticks / 2) * kControlPeriod_s);
+                       (static_cast<double>(ticks - 1 - half) * kControlPeriod_s);
   }
   for (int j = 0; j < kNumJoints; ++j) {
     const EmulatedDrive& d = drives_[j];

@@ -36,7 +36,7 @@ TEST(ViewMessagesTest, EverythingElseIsRefusedAndSaidWhy) {
     EXPECT_EQ(why(text), "expected a JSON object") << text;
   }
   EXPECT_EQ(why("{}"), "say: expected hello, drive, request, pace, pause or step");
-  EXPECT_EQ(why(R"({"say":7})"), "say: expected a text");
+  EXPECT_EQ(why(R"({"say":7})"), "say: expected hello, drive, request, pace, pause or step");
   EXPECT_EQ(why(R"({"say":"shutdown"})"),
             "say: expected hello, drive, request, pace, pause or step");
   EXPECT_EQ(why(R"({"say":"drive","vx":1,"vy":0})"), "wz: missing");
