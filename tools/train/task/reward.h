@@ -18,8 +18,8 @@
 
 namespace sandrunner::train {
 
-/// Table `reward` of training.toml. Weights are rewards a step, before `scale`; those of the costs are
-/// per unit of what is charged.
+/// Table `reward` of training.toml. Weights are rewards a step, before `scale`; those of the costs
+/// are per unit of what is charged.
 struct RewardSettings {
   double scale = 0;                       ///< of the whole, before the critic sees it
   double cost_weight = 0;                 ///< of all costs
