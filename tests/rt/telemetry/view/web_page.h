@@ -70,7 +70,7 @@ class Client {
     return count > 0;
   }
   std::string take(std::size_t count) {
-    const std::string taken = got_.substr(0, count);
+    std::string taken = got_.substr(0, count);
     got_.erase(0, count);
     return taken;
   }
@@ -122,7 +122,7 @@ class WebPage : public Client {
   Json hear(const std::string& say) {
     for (Message m = hear(); m.kind != -1 && m.kind != 8; m = hear()) {
       if (m.kind != 1) continue;
-      const Json json = Json::parse(m.text);
+      Json json = Json::parse(m.text);
       if (json.at("say") == say) return json;
     }
     ADD_FAILURE() << "never heard " << say;
