@@ -24,12 +24,15 @@ constexpr std::array<FaultRun, 19> kRuns = {{
      "", "walks on; counted", 0, 0.0, 0.0},
     {"bus-off", "a bus goes off (error frame), back after 0.1 s", "moteus", "1 bus-off can1",
      "drive_fault", "RF_HAA RF_HFE RF_KFE", "BUS OFF", kDamping, 1, 0.003, 0.052},
+    // On the one processor of the emulated machine the kernel holds up everybody for 12 ms to take
+    // an interface down: the drives of all buses are late.
     {"link-down", "an interface goes down", "moteus", "1 link-down can2", "joints_stale",
-     "LH_HAA LH_HFE LH_KFE", "NOT SENT", kDamping, 1, 0.005, 0.052},
+     "LF_HAA LF_HFE LF_KFE RF_HAA RF_HFE RF_KFE LH_HAA LH_HFE LH_KFE RH_HAA RH_HFE RH_KFE",
+     "NOT SENT", kDamping, 1, 0.005, 0.052},
     {"swapped-ids", "two drives have each other's id", "moteus", "start swapped LF_HFE LF_KFE", "",
      "", "cannot be", kNotStarted, 2, 0.0, 0.0},
     {"wrong-scale", "a drive's numbers span what another model's do", "mit",
-     "start scaled LF_KFE 7.64", "", "", "cannot be", kNotStarted, 2, 0.0, 0.0},
+     "start scaled LF_KFE 0.131", "", "", "cannot be", kNotStarted, 2, 0.0, 0.0},
     {"encoder-jump", "an encoder jumps by 0.5 rad", "moteus", "1 jumps RH_HFE 0.5", "encoder_jump",
      "RH_HFE", "", kDamping, 1, 0.004, 0.004},
     {"drive-fault", "a drive reports a fault of its own", "moteus", "1 code LH_KFE 33",
