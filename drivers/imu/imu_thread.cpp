@@ -4,7 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 
-#include <chrono>
+#include "rt/base/clock_ns.h"
 
 namespace sandrunner {
 namespace {
@@ -25,8 +25,7 @@ void ImuThread::run() noexcept {
   const sched_param priority{.sched_priority = kPriority};
   pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   while (!end_) {
-    const std::int64_t now_ns =
-        std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
     imu_.poll(now_ns);
     buffer_.write({imu_.sample(), imu_.sample_time_ns(), imu_.counters()});
     if (imu_.state(now_ns) == MipImu::State::kGone) return;

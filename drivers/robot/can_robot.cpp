@@ -8,6 +8,7 @@
 
 #include "drivers/robot/bring_up.h"
 #include "drivers/robot/bus_plan.h"
+#include "rt/base/clock_ns.h"
 #include "rt/core/joint_pd.h"
 
 namespace sandrunner {
@@ -15,12 +16,6 @@ namespace {
 
 constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
 constexpr int kMostFrames = 3 * CanSocket::kMaxFrames;  // of a bus in a tick
-
-std::int64_t now_ns(clockid_t clock) noexcept {  // no system call: the kernel maps both
-  timespec t;
-  clock_gettime(clock, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
 
 /// The tick in which something of `age_ns` happened, seen from `tick`.
 std::uint64_t tick_of(std::int64_t age_ns, std::uint64_t tick) noexcept {
@@ -68,14 +63,14 @@ void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   }
   if (imu_.poll()) {
     frame.imu = imu_.sample();
-    frame.imu.tick = tick_of(now_ns(CLOCK_MONOTONIC) - imu_.sample_time_ns(), tick);
+    frame.imu.tick = tick_of(clock_ns(CLOCK_MONOTONIC) - imu_.sample_time_ns(), tick);
   }
   frame.drives_cut = cut_.load(std::memory_order_relaxed) ? 1 : 0;
 }
 
 void CanRobot::receive(std::uint64_t tick) noexcept {
   std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
-  const std::int64_t now = now_ns(CLOCK_REALTIME);  // of the kernel's stamps
+  const std::int64_t now = clock_ns(CLOCK_REALTIME);  // of the kernel's stamps
   for (std::size_t b = 0; b < sockets_.size(); ++b) {
     for (int taken = 0; taken < kMostFrames;) {
       const CanResult result = sockets_[b]->receive(received);

@@ -7,19 +7,9 @@
 #include <thread>
 
 #include "drivers/can/can_error.h"
+#include "rt/base/clock_ns.h"
 
 namespace sandrunner {
-namespace {
-
-using Clock = std::chrono::system_clock;  // that of the kernel's stamps
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
-
 DriveLook::DriveLook(const HardwareConfig& config, const CanSockets& sockets)
     : config_(config), sockets_(sockets), buses_(sockets.size()) {
   for (int j = 0; j < kNumJoints; ++j) drives_[j] = Drive(config.drives[j], config);
@@ -32,7 +22,7 @@ void DriveLook::exchange() {
     CanFrame frame;
     drives_[j].off_frame(frame);
     ++found_[j].requests;
-    sent_ns_[j] = now_ns();
+    sent_ns_[j] = clock_ns(CLOCK_REALTIME);
     if (sockets_[bus]->send({&frame, 1}).frames == 0) ++buses_[bus].not_sent;
   }
   std::this_thread::sleep_for(std::chrono::duration<double>(kExchange_s));

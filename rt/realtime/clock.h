@@ -5,16 +5,13 @@
 #include <cstdint>
 #include <ctime>
 
+#include "rt/base/clock_ns.h"
 #include "rt/loop/clock.h"
 
 namespace sandrunner {
 
-/// CLOCK_MONOTONIC in nanoseconds. No system call: the kernel maps it into the process.
-inline std::int64_t monotonic_ns() noexcept {
-  timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
+/// CLOCK_MONOTONIC in nanoseconds.
+inline std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
 
 /// Sleeps until CLOCK_MONOTONIC shows `time_ns`; returns at once if it already does.
 inline void sleep_until(std::int64_t time_ns) noexcept {

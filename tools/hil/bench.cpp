@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "drivers/can/can_frame.h"
+#include "rt/base/clock_ns.h"
 #include "tools/hil/can_link.h"
 
 namespace sandrunner::hil {
@@ -20,12 +21,6 @@ constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
 constexpr int kTicksPerImu = kControlHz / ImuLine::kBaseRate_hz;
 constexpr std::uint64_t kTicksPerQuestion = 40;
 constexpr double kBusOff_s = 0.1;
-
-std::int64_t clock_ns(clockid_t clock) noexcept {
-  timespec t;
-  clock_gettime(clock, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
 
 const char* name_of(EmulatedDrive::State state) noexcept {
   switch (state) {

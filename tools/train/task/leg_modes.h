@@ -19,40 +19,41 @@ inline constexpr std::array<std::array<float, kNumLegs>, kNumLegs> kLegModes = {
     {0.5f, -0.5f, -0.5f, 0.5f},
 }};
 
-/// Joints from modes, for each column of a row-major matrix of kNumJoints rows: an action, or the
-/// network's last layer, which the policy file holds in joints. `gain`: of HFE and KFE in each
-/// mode; HAA has gain 1. `modes` and `joints` do not overlap.
-inline void joints_from_modes(const std::array<double, kNumLegs>& gain, const float* modes,
-                              std::size_t columns, float* joints) {
-  for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
+/// to[kJointsPerLeg a + j] = sum over b of factor(a, b, j) from[kJointsPerLeg b + j], for each
+/// column of a row-major matrix of kNumJoints rows. `from` and `to` do not overlap.
+template <typename Factor>
+void mix_legs(const Factor& factor, const float* from, std::size_t columns, float* to) {
+  for (std::size_t a = 0; a < kNumLegs; ++a) {
     for (std::size_t joint = 0; joint < kJointsPerLeg; ++joint) {
-      float* const row = joints + (kJointsPerLeg * leg + joint) * columns;
+      float* const row = to + (kJointsPerLeg * a + joint) * columns;
       for (std::size_t c = 0; c < columns; ++c) row[c] = 0.0f;
-      for (std::size_t mode = 0; mode < kNumLegs; ++mode) {
-        const auto factor =
-            static_cast<float>(kLegModes[leg][mode] * (joint == 0 ? 1.0 : gain[mode]));
-        const float* const from = modes + (kJointsPerLeg * mode + joint) * columns;
-        for (std::size_t c = 0; c < columns; ++c) row[c] += factor * from[c];
+      for (std::size_t b = 0; b < kNumLegs; ++b) {
+        const auto share = static_cast<float>(factor(a, b, joint));
+        const float* const other = from + (kJointsPerLeg * b + joint) * columns;
+        for (std::size_t c = 0; c < columns; ++c) row[c] += share * other[c];
       }
     }
   }
 }
 
+/// Joints from modes, for each column of a row-major matrix of kNumJoints rows: an action, or the
+/// network's last layer, which the policy file holds in joints. `gain`: of HFE and KFE in each
+/// mode; HAA has gain 1. `modes` and `joints` do not overlap.
+inline void joints_from_modes(const std::array<double, kNumLegs>& gain, const float* modes,
+                              std::size_t columns, float* joints) {
+  const auto factor = [&](std::size_t leg, std::size_t mode, std::size_t joint) {
+    return kLegModes[leg][mode] * (joint == 0 ? 1.0 : gain[mode]);
+  };
+  mix_legs(factor, modes, columns, joints);
+}
+
 /// The way back: what a network in modes has to answer for these joints.
 inline void modes_from_joints(const std::array<double, kNumLegs>& gain, const float* joints,
                               std::size_t columns, float* modes) {
-  for (std::size_t mode = 0; mode < kNumLegs; ++mode) {
-    for (std::size_t joint = 0; joint < kJointsPerLeg; ++joint) {
-      float* const row = modes + (kJointsPerLeg * mode + joint) * columns;
-      for (std::size_t c = 0; c < columns; ++c) row[c] = 0.0f;
-      for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-        const auto factor =
-            static_cast<float>(kLegModes[leg][mode] / (joint == 0 ? 1.0 : gain[mode]));
-        const float* const from = joints + (kJointsPerLeg * leg + joint) * columns;
-        for (std::size_t c = 0; c < columns; ++c) row[c] += factor * from[c];
-      }
-    }
-  }
+  const auto factor = [&](std::size_t mode, std::size_t leg, std::size_t joint) {
+    return kLegModes[leg][mode] / (joint == 0 ? 1.0 : gain[mode]);
+  };
+  mix_legs(factor, joints, columns, modes);
 }
 
 }  // namespace sandrunner::train

@@ -6,15 +6,7 @@ set -euo pipefail
 
 sandrunner=$1
 folder=$2
-here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
-
-browser=
-for name in chromium-headless-shell chromium google-chrome; do
-  browser=$(command -v "$name") && break
-done
-[[ -n $browser ]] || { echo "SKIPPED: the look at a live run needs Debian's chromium-headless-shell, which is not installed"; exit 77; }
-source "$here/../../npm_packages.sh"
-npm_packages "the look at a live run" "$here" "$folder"
-cp "$here"/*.mjs "$folder/"
+source "$(dirname -- "${BASH_SOURCE[0]}")/prepare.sh"
+prepare "the look at a live run" "$folder"
 "$sandrunner" --duration 2 --record "$folder/recording" >"$folder/recording.log" || { cat "$folder/recording.log"; exit 1; }
 node "$folder/check_live.mjs" "$browser" "$sandrunner" "$folder/recording/run.mcap"

@@ -6,15 +6,7 @@ set -euo pipefail
 
 sandrunner=$1
 folder=$2
-here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
-
-browser=
-for name in chromium-headless-shell chromium google-chrome; do
-  browser=$(command -v "$name") && break
-done
-[[ -n $browser ]] || { echo "SKIPPED: the look at run.html needs Debian's chromium-headless-shell, which is not installed"; exit 77; }
-source "$here/../../npm_packages.sh"
-npm_packages "the look at run.html" "$here" "$folder"
-cp "$here"/*.mjs "$folder/"
+source "$(dirname -- "${BASH_SOURCE[0]}")/prepare.sh"
+prepare "the look at run.html" "$folder"
 "$sandrunner" --duration 4 --command 1.5,0,0.3 --out "$folder/run" >"$folder/sandrunner.log" || { cat "$folder/sandrunner.log"; exit 1; }
 node "$folder/check_page.mjs" "$browser" "$folder/run"

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <ctime>
+
+namespace sandrunner {
+
+/// One of the kernel's clocks in nanoseconds: CLOCK_MONOTONIC, or CLOCK_REALTIME, which is that of
+/// the stamps of received CAN frames. No system call: the kernel maps both into the process.
+inline std::int64_t clock_ns(clockid_t clock) noexcept {
+  timespec t;
+  clock_gettime(clock, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+}  // namespace sandrunner
