@@ -226,9 +226,10 @@ void Controller::enter(Mode mode, const SensorFrame& sensors) noexcept {
     case Mode::kStandUp:
       state_.folding = distance(measured_rad, stand.nominal_rad) < stand.skip_fold_rad ? 0 : 1;
       if (state_.folding != 0) {
-        start_motion(measured_rad, fold_rad_, stand.fold_s, tick);
+        start_motion(measured_rad, fold_rad_, std::max(stand.fold_s, stand.gain_ramp_s), tick);
       } else {
-        start_motion(measured_rad, stand.nominal_rad, stand.extend_s, tick);
+        start_motion(measured_rad, stand.nominal_rad, std::max(stand.extend_s, stand.gain_ramp_s),
+                     tick);
       }
       break;
     case Mode::kStand:
@@ -316,9 +317,17 @@ bool Controller::at_rest(const SensorFrame& sensors) const noexcept {
   return fastest_radps <= config_.walk.stop_speed_radps;
 }
 
+/// How much of its stiffness StandUp gives: it comes from Damping, which has none. The extension
+/// after the fold, which begins where that ends and nowhere else, has all of it.
+double Controller::stiffness_share(std::uint64_t tick) const noexcept {
+  if (state_.mode != Mode::kStandUp || state_.from_rad == fold_rad_) return 1.0;
+  const double since_s = static_cast<double>(tick - state_.motion_start_tick) * kControlPeriod_s;
+  return since_s < config_.stand.gain_ramp_s ? since_s / config_.stand.gain_ramp_s : 1.0;
+}
+
 JointCommand Controller::motion_command(std::uint64_t tick) const noexcept {
   JointCommand command;
-  command.kp_nmprad.fill(config_.stand.kp_nmprad);
+  command.kp_nmprad.fill(stiffness_share(tick) * config_.stand.kp_nmprad);
   command.kd_nmsprad.fill(config_.stand.kd_nmsprad);
   if (motion_done(tick)) {
     command.position_rad = state_.to_rad;

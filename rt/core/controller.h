@@ -40,6 +40,10 @@ struct WalkConfig {
 struct StandConfig {
   double kp_nmprad = 0.0;   ///< from the robot's file
   double kd_nmsprad = 0.0;  ///< from the robot's file
+  /// StandUp: its stiffness rises from nothing for so long, and the first of its motions lasts no
+  /// less. For the first tests of a robot: a wrong sign or scale shows before the drives are
+  /// strong.
+  double gain_ramp_s = 0.0;
   /// Posture of Stand, and of Walk until the first policy output. From the robot's file.
   JointArray<double> nominal_rad{};
   /// Posture of each leg before it extends. From the robot's file.
@@ -168,6 +172,7 @@ class Controller {
   void take_policy(const PolicyOutput& policy, std::uint64_t tick) noexcept;
   VelocityCommand shape(const OperatorCommand& command, std::uint64_t tick) noexcept;
   bool at_rest(const SensorFrame& sensors) const noexcept;
+  double stiffness_share(std::uint64_t tick) const noexcept;
   JointCommand motion_command(std::uint64_t tick) const noexcept;
   JointCommand walk_command() const noexcept;
   bool motion_done(std::uint64_t tick) const noexcept {

@@ -37,6 +37,7 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
       config.integer("policy.latency_ticks", static_cast<std::int64_t>(c.walk.latency_ticks), 1,
                      kTicksPerPolicyStep - 1));
   gains("stand", c.stand.kp_nmprad, c.stand.kd_nmsprad);
+  number("stand.gain_ramp_s", c.stand.gain_ramp_s, 0.0, 2.0);
   number("stand.fold_s", c.stand.fold_s, 0.0, 60.0);
   number("stand.extend_s", c.stand.extend_s, 0.0, 60.0);
   number("stand.blend_s", c.stand.blend_s, 0.0, 60.0);

@@ -136,6 +136,36 @@ TEST(ControllerTest, DoesNotFoldWhenNearlyStanding) {
   EXPECT_GT(nearest_to_fold_rad, 0.5);
 }
 
+/// Stiffness of a StandUp from `posture_rad` after `time_s`, with a ramp of 1.2 s.
+double ramped_kp_nmprad(const JointArray<double>& posture_rad, double time_s) {
+  ControllerConfig config = test_robot();
+  config.stand.gain_ramp_s = 1.2;
+  FakeLoop loop(Mode::kPassive, config);
+  loop.robot.now.joints.position_rad = posture_rad;
+  loop.stand_up();
+  double before_nmprad = 0.0;
+  for (std::uint64_t n = ticks_from_s(time_s); n > 0; --n) {
+    const JointCommand& now = loop.output.command.joints();
+    EXPECT_LE(std::fabs(now.kp_nmprad[0] - before_nmprad), 100.0 / 4800.0 + 1e-9);  // no step
+    EXPECT_EQ(now.kd_nmsprad[0], 1.0);
+    before_nmprad = now.kp_nmprad[0];
+    loop.tick();
+  }
+  EXPECT_EQ(loop.output.mode, Mode::kStandUp);
+  return loop.output.command.joints().kp_nmprad[0];
+}
+
+TEST(ControllerTest, StiffnessRisesOverTheRampAndIsWholeInTheNextMotion) {
+  EXPECT_NEAR(ramped_kp_nmprad(kLyingPosture_rad, 0.0), 0.0, 1e-12);
+  EXPECT_NEAR(ramped_kp_nmprad(kLyingPosture_rad, 0.6), 50.0, 1e-9);
+  EXPECT_NEAR(ramped_kp_nmprad(kLyingPosture_rad, 1.1), 100.0 * 1.1 / 1.2, 1e-9);
+  EXPECT_EQ(ramped_kp_nmprad(kLyingPosture_rad, 1.5), 100.0);  // extends
+  JointArray<double> nearly_standing_rad = test_robot().stand.nominal_rad;
+  nearly_standing_rad[0] += 0.1;
+  EXPECT_NEAR(ramped_kp_nmprad(nearly_standing_rad, 0.6), 50.0, 1e-9);
+  EXPECT_EQ(ramped_kp_nmprad(nearly_standing_rad, 1.3), 100.0);
+}
+
 TEST(ControllerTest, StopSlowsDownWaitsForRestThenStands) {
   FakeLoop loop;
   loop.reach(Mode::kWalk);
