@@ -14,12 +14,12 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
 constexpr int kMostFrames = 3 * CanSocket::kMaxFrames;  // of a bus in a tick
 
 /// The tick in which something of `age_ns` happened, seen from `tick`.
 std::uint64_t tick_of(std::int64_t age_ns, std::uint64_t tick) noexcept {
-  const auto ago = static_cast<std::uint64_t>(std::max<std::int64_t>(age_ns, 0) / kTick_ns);
+  const auto ago =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(age_ns, 0) / kControlPeriod_ns);
   return tick - std::min(ago, tick);
 }
 
@@ -148,6 +148,7 @@ void CanRobot::send(int bus, std::span<const CanFrame> frames) noexcept {
   const CanResult result = sockets_[bus]->send(frames);
   counters_[bus].sent += static_cast<std::uint64_t>(result.frames);
   counters_[bus].not_sent += frames.size() - static_cast<std::uint64_t>(result.frames);
+  if (result.status != CanStatus::kOk) counters_[bus].refusal = result.status;
 }
 
 void CanRobot::cut_drives() noexcept {
@@ -179,7 +180,7 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
     const BusCounters& c = robot.bus_counters()[b];
     lines += fmt::format("{}: {} frames sent, {} received", config.buses[b].interface, c.sent,
                          c.received);
-    if (c.not_sent > 0) lines += fmt::format(", {} NOT SENT", c.not_sent);
+    if (c.not_sent > 0) lines += fmt::format(", {} NOT SENT ({})", c.not_sent, words(c.refusal));
     if (c.foreign > 0) lines += fmt::format(", {} of nobody", c.foreign);
     if (c.overflowed > 0) lines += fmt::format(", {} LOST in the kernel", c.overflowed);
     if (c.bus_off > 0) lines += fmt::format(", BUS OFF {} times", c.bus_off);

@@ -20,11 +20,12 @@ namespace sandrunner {
 /// What became of a bus since it was opened.
 struct BusCounters {
   std::uint64_t sent = 0, received = 0;
-  std::uint64_t not_sent = 0;    ///< frames that it did not take: queue full, interface down
-  std::uint64_t foreign = 0;     ///< frames that are no reply of a drive of ours
-  std::uint64_t overflowed = 0;  ///< frames that the kernel threw away
-  std::uint64_t bus_off = 0;     ///< times
-  std::uint64_t errors = 0;      ///< other error frames
+  std::uint64_t not_sent = 0;          ///< frames that it did not take ...
+  CanStatus refusal = CanStatus::kOk;  ///< ... for this reason, the latest
+  std::uint64_t foreign = 0;           ///< frames that are no reply of a drive of ours
+  std::uint64_t overflowed = 0;        ///< frames that the kernel threw away
+  std::uint64_t bus_off = 0;           ///< times
+  std::uint64_t errors = 0;            ///< other error frames
 };
 
 /// A robot of drives on CAN buses and an IMU on a serial line.

@@ -26,6 +26,7 @@ inline constexpr int kPolicyHz = 100;
 /// The policy is released on every 40th control tick.
 inline constexpr int kTicksPerPolicyStep = kControlHz / kPolicyHz;
 inline constexpr double kControlPeriod_s = 1.0 / kControlHz;
+inline constexpr std::int64_t kControlPeriod_ns = 1'000'000'000 / kControlHz;
 
 /// Whole control ticks in `duration_s`, rounded; negative and NaN give 0.
 inline std::uint64_t ticks_from_s(double duration_s) noexcept {

@@ -17,7 +17,6 @@
 namespace sandrunner::hil {
 namespace {
 
-constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
 constexpr int kTicksPerImu = kControlHz / ImuLine::kBaseRate_hz;
 constexpr std::uint64_t kTicksPerQuestion = 40;
 constexpr double kBusOff_s = 0.1;
@@ -60,6 +59,9 @@ Bench::Bench(const ProcessConfig& config, const std::string& imu_device,
   }
   std::stable_sort(script_.begin(), script_.end(),
                    [](const TimedFault& a, const TimedFault& b) { return a.at_s < b.at_s; });
+  for (const TimedFault& fault : script_) {
+    if (fault.kind == BenchFault::kQueueFull) set_queue(buses_[fault.first].interface, 16);
+  }
   lay_ = {robot_.state().position.x, robot_.state().position.y};
 }
 
@@ -71,7 +73,8 @@ BenchReport Bench::play(const std::function<bool()>& more, pid_t controller) {
   controller_ = controller;
   start_ns_ = clock_ns(CLOCK_MONOTONIC);
   for (tick_ = 0; tick_ % kTicksPerQuestion != 0 || more(); ++tick_) {
-    const std::int64_t deadline_ns = start_ns_ + static_cast<std::int64_t>(tick_ + 1) * kTick_ns;
+    const std::int64_t deadline_ns =
+        start_ns_ + static_cast<std::int64_t>(tick_ + 1) * kControlPeriod_ns;
     exchange(deadline_ns);
     const double slot_s = static_cast<double>(tick_ + 1) * kControlPeriod_s;
     make_faults(slot_s);
@@ -80,7 +83,9 @@ BenchReport Bench::play(const std::function<bool()>& more, pid_t controller) {
     report_.late_longest_us = std::max(report_.late_longest_us, 1e6 * (now_s() - slot_s));
   }
   for (const Bus& bus : buses_) {
-    if (bus.deaf) set_link(bus.interface, true);  // for whoever comes next
+    if (!bus.deaf) continue;  // else for whoever comes next
+    set_link(bus.interface, true);
+    remove_queue(bus.interface);
   }
   return report();
 }
@@ -89,7 +94,8 @@ BenchReport Bench::play(const std::function<bool()>& more, pid_t controller) {
 void Bench::exchange(std::int64_t deadline_ns) {
   for (;;) {
     const std::int64_t left_ns = deadline_ns - clock_ns(CLOCK_MONOTONIC);
-    const timespec timeout{.tv_sec = 0, .tv_nsec = std::clamp(left_ns, std::int64_t{0}, kTick_ns)};
+    const timespec timeout{.tv_sec = 0,
+                           .tv_nsec = std::clamp(left_ns, std::int64_t{0}, kControlPeriod_ns)};
     polled_.clear();
     for (const Bus& bus : buses_) polled_.push_back({bus.socket->descriptor(), POLLIN, 0});
     if (ppoll(polled_.data(), polled_.size(), &timeout, nullptr) > 0) {
@@ -192,6 +198,10 @@ void Bench::make(const TimedFault& fault, double now_s) {
       set_link(bus.interface, true);
       bus.deaf = false;
       break;
+    case BenchFault::kQueueFull:
+      bus.deaf = true;
+      set_queue(bus.interface, 0);
+      break;
     case BenchFault::kImuSilent:
       imu_.fault = ImuFault::kSilent;
       break;
@@ -227,7 +237,7 @@ void Bench::step(double now_s) {
   }
   if (tick_ % kTicksPerImu == 0) {
     imu_.listen();
-    imu_.tick(robot_.imu(), (tick_ + 1) * static_cast<std::uint64_t>(kTick_ns));
+    imu_.tick(robot_.imu(), (tick_ + 1) * static_cast<std::uint64_t>(kControlPeriod_ns));
   }
 }
 

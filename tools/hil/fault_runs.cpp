@@ -13,7 +13,7 @@ constexpr const char* kNotStarted = "nothing is enabled";
 
 // A drive that hears nothing any more lets go by its own time-out, 50 ms in the examples. The robot
 // stands up when the fault comes, but where another time is given: 6 s after, it walks.
-constexpr std::array<FaultRun, 19> kRuns = {{
+constexpr std::array<FaultRun, 20> kRuns = {{
     {"drive-silent", "a drive says nothing, in Walk", "moteus", "6 silent LF_KFE", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-reboots", "a drive reboots in 0.3 s", "moteus", "1 reboot LF_KFE 0.3", "joints_stale",
@@ -28,7 +28,10 @@ constexpr std::array<FaultRun, 19> kRuns = {{
     // an interface down: the drives of all buses are late.
     {"link-down", "an interface goes down", "moteus", "1 link-down can2", "joints_stale",
      "LF_HAA LF_HFE LF_KFE RF_HAA RF_HFE RF_KFE LH_HAA LH_HFE LH_KFE RH_HAA RH_HFE RH_KFE",
-     "NOT SENT", kDamping, 1, 0.005, 0.052},
+     "NOT SENT (the interface is down)", kDamping, 1, 0.005, 0.052},
+    {"queue-full", "an interface takes no frames: its queue is full (ENOBUFS)", "moteus",
+     "1 queue-full can1", "joints_stale", "RF_HAA RF_HFE RF_KFE",
+     "NOT SENT (the bus takes no frames)", kDamping, 1, 0.005, 0.052},
     {"swapped-ids", "two drives have each other's id", "moteus", "start swapped LF_HFE LF_KFE", "",
      "", "cannot be", kNotStarted, 2, 0.0, 0.0},
     {"wrong-scale", "a drive's numbers span what another model's do", "mit",

@@ -24,7 +24,7 @@ struct Kind {
   const char* help;
 };
 
-constexpr std::array<Kind, 16> kKinds = {{
+constexpr std::array<Kind, 17> kKinds = {{
     {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive hears and says nothing"},
     {BenchFault::kReboot, "reboot", Takes::kJointAndNumber, "JOINT S: off, and back after S s"},
     {BenchFault::kLoses, "loses", Takes::kJointAndNumber, "JOINT N: one of N replies is lost"},
@@ -37,6 +37,7 @@ constexpr std::array<Kind, 16> kKinds = {{
     {BenchFault::kBusOff, "bus-off", Takes::kBus, "INTERFACE: off for 0.1 s"},
     {BenchFault::kLinkDown, "link-down", Takes::kBus, "INTERFACE: set down"},
     {BenchFault::kLinkUp, "link-up", Takes::kBus, "INTERFACE: set up"},
+    {BenchFault::kQueueFull, "queue-full", Takes::kBus, "INTERFACE: takes no frames (ENOBUFS)"},
     {BenchFault::kImuSilent, "imu-silent", Takes::kNothing, "the IMU sends nothing"},
     {BenchFault::kImuRepeats, "imu-repeats", Takes::kNothing, "the IMU repeats its last packet"},
     {BenchFault::kImuGarbage, "imu-garbage", Takes::kNothing, "the IMU sends garbage"},

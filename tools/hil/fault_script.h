@@ -11,17 +11,18 @@
 namespace sandrunner::hil {
 
 enum class BenchFault : std::uint8_t {
-  kSilent,    ///< a drive hears and says nothing any more
-  kReboot,    ///< a drive is silent for so long, then back, and off
-  kLoses,     ///< one of so many of a drive's replies is lost
-  kSwapped,   ///< two drives have each other's identifier
-  kScaled,    ///< a drive's numbers span so many times what is configured
-  kJumps,     ///< a drive's encoder jumps by so much, rad
-  kCode,      ///< a drive reports this fault of its own
-  kHot,       ///< a drive has this temperature, degrees C
-  kBusOff,    ///< a bus goes off, and is on again after 0.1 s
-  kLinkDown,  ///< a network interface is set down ...
-  kLinkUp,    ///< ... and up
+  kSilent,     ///< a drive hears and says nothing any more
+  kReboot,     ///< a drive is silent for so long, then back, and off
+  kLoses,      ///< one of so many of a drive's replies is lost
+  kSwapped,    ///< two drives have each other's identifier
+  kScaled,     ///< a drive's numbers span so many times what is configured
+  kJumps,      ///< a drive's encoder jumps by so much, rad
+  kCode,       ///< a drive reports this fault of its own
+  kHot,        ///< a drive has this temperature, degrees C
+  kBusOff,     ///< a bus goes off, and is on again after 0.1 s
+  kLinkDown,   ///< a network interface is set down ...
+  kLinkUp,     ///< ... and up
+  kQueueFull,  ///< a network interface takes no frames (ENOBUFS)
   kImuSilent,
   kImuRepeats,
   kImuGarbage,
