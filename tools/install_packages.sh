@@ -16,7 +16,7 @@ packages=(
 # code.
 [[ ${1:-all} == sandrunner ]] || packages+=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file
-  qemu-system-x86 busybox-static cpio xz-utils strace
+  qemu-system-x86 busybox-static cpio xz-utils
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
 [[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev chromium-headless-shell)

@@ -74,7 +74,7 @@ cp "$(command -v busybox)" "$guest/bin/busybox"
 find "$kernel" -name '*.ko' -exec cp -t "$guest/modules" {} +
 cp "$root"/drivers/robot/examples/*.toml "$guest/hil"
 programs=()
-for program in "$bin"/* $(command -v strace || true); do
+for program in "$bin"/*; do
   name=${program##*/}
   [[ -f $program && -x $program && " sandrunner sandrunner-hil ${command//[^a-zA-Z0-9_-]/ } " == *" $name "* ]] && programs+=("$program")
 done
