@@ -63,6 +63,22 @@ bool from_kernel(const canfd_frame& raw, std::size_t bytes, CanFrame& frame) noe
   return true;
 }
 
+// The frames of one system call, as the kernel takes and gives them.
+struct Batch {
+  std::array<canfd_frame, CanSocket::kMaxFrames> frames;
+  std::array<iovec, CanSocket::kMaxFrames> parts;
+  std::array<mmsghdr, CanSocket::kMaxFrames> messages{};
+
+  void point(unsigned i, std::size_t bytes) noexcept {
+    parts[i] = {&frames[i], bytes};
+    messages[i].msg_hdr.msg_iov = &parts[i];
+    messages[i].msg_hdr.msg_iovlen = 1;
+  }
+};
+unsigned size_of_batch(std::size_t frames) noexcept {
+  return static_cast<unsigned>(std::min<std::size_t>(frames, CanSocket::kMaxFrames));
+}
+
 // What an open socket throws if an option is refused.
 void set_option(int socket, int level, int name, const void* value, std::size_t size,
                 const std::string& interface, const char* what) {
@@ -177,18 +193,14 @@ CanResult CanSocket::send(std::span<const CanFrame> frames) noexcept {
     }
   }
   while (result.frames < static_cast<int>(frames.size())) {
-    std::array<canfd_frame, kMaxFrames> raw;
-    std::array<iovec, kMaxFrames> parts;
-    std::array<mmsghdr, kMaxFrames> messages{};
+    Batch batch;
     const auto rest = frames.subspan(result.frames);
-    const auto count = static_cast<unsigned>(std::min<std::size_t>(rest.size(), kMaxFrames));
+    const unsigned count = size_of_batch(rest.size());
     for (unsigned i = 0; i < count; ++i) {
-      raw[i] = to_kernel(rest[i]);
-      parts[i] = {&raw[i], rest[i].fd ? CANFD_MTU : CAN_MTU};
-      messages[i].msg_hdr.msg_iov = &parts[i];
-      messages[i].msg_hdr.msg_iovlen = 1;
+      batch.frames[i] = to_kernel(rest[i]);
+      batch.point(i, rest[i].fd ? CANFD_MTU : CAN_MTU);
     }
-    const int sent = sendmmsg(descriptor_, messages.data(), count, MSG_DONTWAIT);
+    const int sent = sendmmsg(descriptor_, batch.messages.data(), count, MSG_DONTWAIT);
     if (sent > 0) {
       // Where a later frame was not taken, the next round says why.
       result.frames += sent;
@@ -209,20 +221,15 @@ CanResult CanSocket::receive(std::span<ReceivedFrame> frames) noexcept {
     struct alignas(cmsghdr) Control {
       std::array<char, kControlBytes> bytes;
     };
-    std::array<canfd_frame, kMaxFrames> raw;
+    Batch batch;
     std::array<Control, kMaxFrames> controls;
-    std::array<iovec, kMaxFrames> parts;
-    std::array<mmsghdr, kMaxFrames> messages{};
-    const auto rest = frames.subspan(result.frames);
-    const auto count = static_cast<unsigned>(std::min<std::size_t>(rest.size(), kMaxFrames));
+    const unsigned count = size_of_batch(frames.size() - result.frames);
     for (unsigned i = 0; i < count; ++i) {
-      parts[i] = {&raw[i], sizeof raw[i]};
-      messages[i].msg_hdr.msg_iov = &parts[i];
-      messages[i].msg_hdr.msg_iovlen = 1;
-      messages[i].msg_hdr.msg_control = &controls[i];
-      messages[i].msg_hdr.msg_controllen = sizeof controls[i];
+      batch.point(i, CANFD_MTU);
+      batch.messages[i].msg_hdr.msg_control = &controls[i];
+      batch.messages[i].msg_hdr.msg_controllen = sizeof controls[i];
     }
-    const int received = recvmmsg(descriptor_, messages.data(), count, MSG_DONTWAIT, nullptr);
+    const int received = recvmmsg(descriptor_, batch.messages.data(), count, MSG_DONTWAIT, nullptr);
     if (received < 0) {
       if (errno == EINTR) continue;
       if (errno == EAGAIN) return result;
@@ -231,7 +238,7 @@ CanResult CanSocket::receive(std::span<ReceivedFrame> frames) noexcept {
       return result;
     }
     for (int i = 0; i < received; ++i) {
-      msghdr& header = messages[i].msg_hdr;
+      msghdr& header = batch.messages[i].msg_hdr;
       ReceivedFrame& into = frames[result.frames];
       into.stamp_ns = 0;
       for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr;
@@ -248,7 +255,7 @@ CanResult CanSocket::receive(std::span<ReceivedFrame> frames) noexcept {
           last_overflow_ = total;
         }
       }
-      if (from_kernel(raw[i], messages[i].msg_len, into.frame)) ++result.frames;
+      if (from_kernel(batch.frames[i], batch.messages[i].msg_len, into.frame)) ++result.frames;
     }
     if (received < static_cast<int>(count)) return result;
   }

@@ -6,7 +6,7 @@
 namespace sandrunner {
 
 void ControlThread::run(std::int64_t start_ns) noexcept {
-  SlotGrid grid(start_ns, 1'000'000'000 / kControlHz);
+  SlotGrid grid(start_ns, kControlPeriod_ns);
   bool running = true;
   while (running) {
     clock_.sleep_until(grid.due_ns());

@@ -108,7 +108,7 @@ void print_sample() {
   std::thread thread([&] {
     prepare_this_thread();
     go.wait(false);
-    SlotGrid grid(monotonic_ns() + 1'000'000, 1'000'000'000 / kControlHz);
+    SlotGrid grid(monotonic_ns() + 1'000'000, kControlPeriod_ns);
     for (std::uint64_t slots = 0; slots < std::uint64_t{kSample_s} * kControlHz; ++slots) {
       sleep_until(grid.due_ns());
       const SlotGrid::Slot slot = grid.take(monotonic_ns());

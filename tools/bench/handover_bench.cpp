@@ -15,7 +15,6 @@
 namespace sandrunner::bench {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 1'000'000'000 / kControlHz;
 constexpr int kTicks = 2 * kControlHz;
 constexpr auto kDrainEvery = std::chrono::milliseconds(5);
 
@@ -33,7 +32,7 @@ Durations time_handovers() {
     prepare_this_thread();
     ControllerInput sensed, input;
     ControllerOutput computed, output;
-    SlotGrid grid(monotonic_ns() + kPeriod_ns, kPeriod_ns);
+    SlotGrid grid(monotonic_ns() + kControlPeriod_ns, kControlPeriod_ns);
     for (int i = 0; i < kTicks; ++i) {
       sleep_until(grid.due_ns());
       grid.take(monotonic_ns());

@@ -11,7 +11,6 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::int64_t kTick_ns = 1'000'000'000 / kControlHz;
 constexpr std::uint64_t kBatchHz = kControlHz / kTicksPerBatch;
 
 void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
@@ -53,7 +52,7 @@ void Telemetry::begin(std::int64_t start_ns) noexcept {
 
 void Telemetry::add(const TickRecord& record) {
   const std::uint64_t tick = record.input.sensors.tick;
-  const std::chrono::nanoseconds time(static_cast<std::int64_t>(tick) * kTick_ns);
+  const std::chrono::nanoseconds time(static_cast<std::int64_t>(tick) * kControlPeriod_ns);
   const std::int64_t stamp_ns = start_ns_ + time.count();
   // Due when the tick enters a new slot of the slower rate, even if the slot's first tick is
   // missing.

@@ -188,7 +188,7 @@ void RecordingWriter::write_events(const TickRecord& tick) {
 }
 
 std::uint64_t RecordingWriter::time_ns(std::uint64_t tick) const noexcept {
-  return static_cast<std::uint64_t>(start_time_ns_) + tick * (1'000'000'000 / kControlHz);
+  return static_cast<std::uint64_t>(start_time_ns_) + tick * kControlPeriod_ns;
 }
 
 }  // namespace sandrunner

@@ -13,7 +13,6 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 1'000'000'000 / kControlHz;
 constexpr std::int64_t kStart_ns = 1'000'000;
 
 /// Stands; each read takes as long as the test says.
@@ -108,7 +107,7 @@ TEST_F(ControlThreadTest, RunsEverySlotOnTheGridAndSwitchesTheDrivesOffAtTheEnd)
   EXPECT_EQ(d.skipped, 0u);
   EXPECT_EQ(d.late.max_ns(), 0u);
   EXPECT_EQ(d.releases, 25u);
-  EXPECT_EQ(clock_.now_ns(), kStart_ns + 999 * kPeriod_ns + 10'000);
+  EXPECT_EQ(clock_.now_ns(), kStart_ns + 999 * kControlPeriod_ns + 10'000);
   EXPECT_EQ(robot_.shut_downs, 1);
   const std::vector<TickRecord> ticks = records();
   ASSERT_EQ(ticks.size(), 1000u);
@@ -121,7 +120,7 @@ TEST_F(ControlThreadTest, RunsEverySlotOnTheGridAndSwitchesTheDrivesOffAtTheEnd)
 
 TEST_F(ControlThreadTest, LateByLessThanASlotRunsAtOnce) {
   robot_.duration_ns = [](std::uint64_t tick) {
-    return tick == 100 ? kPeriod_ns + 70'000 : 10'000;
+    return tick == 100 ? kControlPeriod_ns + 70'000 : 10'000;
   };
   const ControlDeadlines& d = run();
   EXPECT_EQ(d.skipped, 0u);
@@ -132,7 +131,7 @@ TEST_F(ControlThreadTest, LateByLessThanASlotRunsAtOnce) {
 
 TEST_F(ControlThreadTest, StallSkipsWholeSlotsWithTheLastCommandHeldAndKeepsTheGrid) {
   robot_.duration_ns = [](std::uint64_t tick) {
-    return tick == 100 ? 5 * kPeriod_ns + 90'000 : 10'000;
+    return tick == 100 ? 5 * kControlPeriod_ns + 90'000 : 10'000;
   };
   const ControlDeadlines& d = run();
   EXPECT_EQ(d.ticks, 996u);
