@@ -31,7 +31,8 @@ int run(int argc, char** argv) {
   CLI::App app{"Trains a policy from random weights on randomised deformable ground.",
                "sandrunner-train"};
   app.add_option("--out", options.out,
-                 "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png (required)")
+                 "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.html, curve.png "
+                 "(required)")
       ->type_name("DIR");
   app.add_option(
          "--config", config_file,

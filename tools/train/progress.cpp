@@ -3,6 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+
 #include "rt/base/output_files.h"
 #include "rt/plot/plot.h"
 
@@ -47,7 +53,99 @@ constexpr Column kColumns[] = {
     {"explained_variance", [](R r) { return r.explained_variance; }},
 };
 
-constexpr plot::Color kBlue{0.12, 0.37, 0.64}, kOrange{0.90, 0.45, 0.10};
+// What is drawn together, columns by their names in curve.csv.
+struct Panel {
+  const char* title;
+  const char* unit;
+  struct Line {
+    const char* name;
+    const char* column;
+  };
+  std::array<Line, 2> lines;  // the second may have no name
+};
+constexpr Panel kPanels[] = {
+    {"Reward", "a step", {{{"reward", "reward"}}}},
+    {"Velocity tracking", "kernel, 0 to 1", {{{"rigid", "kernel_rigid"}, {"soil", "kernel_soil"}}}},
+    {"Falls",
+     "per robot and 4 s",
+     {{{"rigid", "falls_rigid_per_4s"}, {"soil", "falls_soil_per_4s"}}}},
+    {"Gait: strides", "Hz", {{{"stride", "stride_hz"}}}},
+    {"Gait: feet together in the air",
+     "correlation",
+     {{{"diagonal", "diagonal"}, {"side by side", "abreast"}}}},
+    {"Curricula",
+     "m/s; 0 to 1",
+     {{{"commanded speed", "command_speed_mps"}, {"softness of the ground", "ground_open"}}}},
+    {"Estimator",
+     "rms error",
+     {{{"vx, m/s", "estimate_vx_rms_mps"}, {"body height, m", "estimate_height_rms_m"}}}},
+};
+constexpr const char* kAbscissa = "million transitions";
+constexpr plot::Color kColors[] = {{0.12, 0.37, 0.64}, {0.90, 0.45, 0.10}};
+
+// A column of curve.csv.
+struct Series {
+  std::string name;
+  std::vector<double> values;
+};
+
+std::vector<Series> series_of(const std::vector<ProgressRow>& rows) {
+  std::vector<Series> all;
+  for (const Column& column : kColumns) {
+    Series& series = all.emplace_back(column.name);
+    for (const ProgressRow& row : rows) series.values.push_back(column.value(row));
+  }
+  for (std::size_t i = 0; i < kRewardTerms; ++i) {
+    Series& series = all.emplace_back(fmt::format("reward_{}", reward_term_name(i)));
+    for (const ProgressRow& row : rows) series.values.push_back(row.window.terms[i]);
+  }
+  return all;
+}
+
+const std::vector<double>& values_of(const std::vector<Series>& all, std::string_view name) {
+  return std::ranges::find(all, name, &Series::name)->values;
+}
+
+std::vector<double> millions(const std::vector<ProgressRow>& rows) {
+  std::vector<double> x;
+  for (const ProgressRow& row : rows) x.push_back(row.transitions / 1e6);
+  return x;
+}
+
+void draw_curve(const std::vector<ProgressRow>& rows, const std::vector<Series>& all,
+                const std::string& path) {
+  plot::Figure figure;
+  figure.title = "Training";
+  figure.x_label = kAbscissa;
+  figure.x = millions(rows);
+  for (const Panel& panel : kPanels) {
+    plot::Panel& drawn = figure.panels.emplace_back();
+    drawn.title = panel.title;
+    drawn.y_label = panel.unit;
+    for (std::size_t i = 0; i < panel.lines.size() && panel.lines[i].name; ++i) {
+      plot::Series& series = drawn.series.emplace_back();
+      series.name = panel.lines[i].name;
+      series.color = kColors[i];
+      series.y = values_of(all, panel.lines[i].column);
+    }
+  }
+  figure.views.push_back({"", figure.x.front(), figure.x.back()});
+  plot::draw(figure, path);
+}
+
+// Means of every so many values, as a list of JSON.
+std::string json_list(const std::vector<double>& values, std::size_t every) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); i += every) {
+    const std::size_t end = std::min(values.size(), i + every);
+    double sum = 0.0;
+    for (std::size_t k = i; k < end; ++k) sum += values[k];
+    const double mean = sum / static_cast<double>(end - i);
+    text += text.empty() ? "" : ",";
+    text += std::isfinite(mean) ? fmt::format("{:.5g}", mean) : "null";
+  }
+  return fmt::format("[{}]", text);
+}
 
 }  // namespace
 
@@ -87,68 +185,55 @@ const char* Progress::explanation() {
          "  m/s      fastest command that is drawn; opens as the robots follow\n"
          "  min      minutes left\n"
          "curve.csv has a row for each update: all of these, hard ground besides, and each term of "
-         "the\nreward by its name (reward_...); curve.png draws the most telling ones.\n";
+         "the\nreward by its name (reward_...); curve.png draws the most telling ones, curve.html "
+         "all of them\nand, in 3D, a run of the policy as it is.\n";
 }
 
 void Progress::write(const std::string& dir) const {
+  const std::vector<Series> all = series_of(rows_);
   std::string csv;
-  for (const Column& c : kColumns) csv += fmt::format("{}{}", csv.empty() ? "" : ",", c.name);
-  for (std::size_t i = 0; i < kRewardTerms; ++i) {
-    csv += fmt::format(",reward_{}", reward_term_name(i));
-  }
+  for (const Series& s : all) csv += fmt::format("{}{}", csv.empty() ? "" : ",", s.name);
   csv += "\n";
-  for (const ProgressRow& row : rows_) {
-    bool first = true;
-    for (const Column& c : kColumns) {
-      csv += fmt::format("{}{:.6g}", first ? "" : ",", c.value(row));
-      first = false;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    for (const Series& s : all) {
+      csv += fmt::format("{}{:.6g}", &s == &all.front() ? "" : ",", s.values[row]);
     }
-    for (const double term : row.window.terms) csv += fmt::format(",{:.6g}", term);
     csv += "\n";
   }
   write_file(dir + "/curve.csv", csv);
-  if (rows_.size() < 2) return;
+  if (rows_.size() >= 2) draw_curve(rows_, all, dir + "/curve.png");
+}
 
-  plot::Figure figure;
-  figure.title = "Training";
-  figure.x_label = "transitions, millions";
-  for (const ProgressRow& row : rows_) figure.x.push_back(row.transitions / 1e6);
-  const auto series = [&](const char* name, plot::Color color, double (*value)(R)) {
-    plot::Series s;
-    s.name = name;
-    s.color = color;
-    for (const ProgressRow& row : rows_) s.y.push_back(value(row));
-    return s;
+std::string Progress::page_json(const std::string& title) const {
+  constexpr std::size_t kMostPoints = 1000;
+  const std::size_t every = (rows_.size() + kMostPoints - 1) / kMostPoints;
+  const std::vector<Series> all = series_of(rows_);
+  std::set<std::string_view> drawn = {"iteration", "transitions"};
+  std::string charts;
+  const auto add = [&](std::string_view name, std::string_view unit, const std::string& lines) {
+    charts += fmt::format(R"({}{{"title":"{}","unit":"{}","lines":[{}]}})",
+                          charts.empty() ? "" : ",", name, unit, lines);
   };
-  figure.panels.push_back(
-      {"Reward", "a step", {series("reward", kBlue, [](R r) { return r.window.reward; })}});
-  figure.panels.push_back({"Velocity tracking",
-                           "kernel, 0 to 1",
-                           {series("rigid", kBlue, [](R r) { return r.window.kernel[0]; }),
-                            series("soil", kOrange, [](R r) { return r.window.kernel[1]; })}});
-  figure.panels.push_back({"Falls",
-                           "per robot and 4 s",
-                           {series("rigid", kBlue, [](R r) { return r.window.falls[0]; }),
-                            series("soil", kOrange, [](R r) { return r.window.falls[1]; })}});
-  figure.panels.push_back(
-      {"Gait: strides", "Hz", {series("stride", kBlue, [](R r) { return r.window.stride_hz; })}});
-  figure.panels.push_back(
-      {"Gait: feet together in the air",
-       "correlation",
-       {series("diagonal", kBlue, [](R r) { return r.window.diagonal; }),
-        series("side by side", kOrange, [](R r) { return r.window.abreast; })}});
-  figure.panels.push_back(
-      {"Curricula",
-       "m/s; 0 to 1",
-       {series("commanded speed", kBlue, [](R r) { return r.command_speed_mps; }),
-        series("softness of the ground", kOrange, [](R r) { return r.ground_open; })}});
-  figure.panels.push_back(
-      {"Estimator",
-       "rms error",
-       {series("vx, m/s", kBlue, [](R r) { return r.estimate_vx_rms_mps; }),
-        series("body height, m", kOrange, [](R r) { return r.estimate_height_rms_m; })}});
-  figure.views.push_back({"", figure.x.front(), figure.x.back()});
-  plot::draw(figure, dir + "/curve.png");
+  const auto line = [&](std::string_view name, std::string_view column) {
+    drawn.insert(column);
+    return fmt::format(R"({{"name":"{}","values":{}}})", name,
+                       json_list(values_of(all, column), every));
+  };
+  for (const Panel& panel : kPanels) {
+    std::string lines = line(panel.lines[0].name, panel.lines[0].column);
+    if (panel.lines[1].name) {
+      lines.append(",").append(line(panel.lines[1].name, panel.lines[1].column));
+    }
+    add(panel.title, panel.unit, lines);
+  }
+  for (const bool terms : {true, false}) {  // what the robot earns comes first
+    for (const Series& series : all) {
+      if (series.name.starts_with("reward_") != terms || drawn.contains(series.name)) continue;
+      add(series.name, "", line("", series.name));
+    }
+  }
+  return fmt::format(R"({{"title":"{}","x_label":"{}","x":{},"every":{},"charts":[{}]}})", title,
+                     kAbscissa, json_list(millions(rows_), every), every, charts);
 }
 
 }  // namespace sandrunner::train

@@ -34,6 +34,9 @@ class Progress {
   static const char* explanation();
   /// Writes curve.csv and curve.png into `dir`. Throws InputError.
   void write(const std::string& dir) const;
+  /// All columns of curve.csv for a page (ViewPage::html); of long trainings means of rows, so that
+  /// there are at most 1000. `title` holds no quotes.
+  std::string page_json(const std::string& title) const;
 
  private:
   std::vector<ProgressRow> rows_;

@@ -16,7 +16,9 @@
 
 #include "rt/base/build.h"
 #include "rt/base/errors.h"
+#include "rt/base/output_files.h"
 #include "rt/base/standard_error.h"
+#include "tools/train/curve_page.h"
 #include "tools/train/task/leg_modes.h"
 
 namespace sandrunner::train {
@@ -145,8 +147,13 @@ void Training::save() {
   }
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
-  write_policy_file(options_.out + "/policy.safetensors", policy_file());
+  const PolicyFile policy = policy_file();
+  write_policy_file(options_.out + "/policy.safetensors", policy);
   progress_.write(options_.out);
+  pool_.run(1, [&](int, int) {
+    write_file(options_.out + "/curve.html",
+               curve_page(progress_, policy, robot_, config_.task.command.speed_start_mps));
+  });
   saved_at_s_ = wall_seconds();
   fallbacks_ = 0;
 }

@@ -15,7 +15,8 @@
 namespace sandrunner::train {
 
 struct TrainingOptions {
-  std::string out;  ///< folder for checkpoint.bin, policy.safetensors, curve.csv, curve.png
+  std::string
+      out;  ///< folder for checkpoint.bin, policy.safetensors, curve.csv, curve.html, curve.png
   int threads = 1;
   std::uint64_t seed = 1;  ///< of weights and environments
 };

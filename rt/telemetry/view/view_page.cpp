@@ -96,16 +96,16 @@ std::string ViewPage::note() const {
   return text.substr(0, text.empty() ? 0 : text.size() - 1);
 }
 
-std::string ViewPage::html() {
+std::string ViewPage::html(std::string_view curve) {
   if (const std::optional<ViewFrame> frame = maker_.take_last()) add_frame(*frame);
   while (true) {
-    std::string page = page_of_all();
+    std::string page = page_of_all(curve);
     if (page.size() <= limits_.bytes || frames_.size() < 8) return page;
     keep_less();
   }
 }
 
-std::string ViewPage::page_of_all() const {
+std::string ViewPage::page_of_all(std::string_view curve) const {
   const std::vector<ViewTile> tiles = view_tiles(scene_, frames_, kMostTiles);
   std::string page(embedded_page_file("page.html"));
   replace(page, "<link rel=\"stylesheet\" href=\"page.css\">",
@@ -116,6 +116,7 @@ std::string ViewPage::page_of_all() const {
               data("frames", pack_rows(view_frame_fields(), frames_)) +
               data("footprints", pack_rows(view_footprint_fields(), footprints_)) +
               data("tiles", pack_rows(view_tile_fields(), tiles)) +
+              (curve.empty() ? "" : data("curve-data", base64(gzip(curve)))) +
               data("program", base64(embedded_page_file("page.js.gz"))) +
               fmt::format("<script>\n{}</script>", embedded_page_file("unpack.js")));
   return page;

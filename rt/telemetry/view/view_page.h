@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rt/core/robot_description.h"
@@ -28,15 +29,17 @@ class ViewPage {
   /// Every tick, in order.
   void add(const TickRecord& tick);
 
-  /// After the last tick.
-  std::string html();
+  /// After the last tick. `curve`: a learning curve that is drawn above the run, as JSON: {title,
+  /// x_label, x: [...], every: rows that each value is the mean of, charts: [{title, unit, lines:
+  /// [{name, values: [...]}]}]}; empty: none.
+  std::string html(std::string_view curve = {});
 
  private:
   void add_frame(ViewFrame frame);
   /// Every second frame, or where that would be too few, the younger three quarters.
   void keep_less();
   std::string note() const;
-  std::string page_of_all() const;
+  std::string page_of_all(std::string_view curve) const;
 
   const RunScene scene_;
   const RobotDescription robot_;

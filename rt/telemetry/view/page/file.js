@@ -33,6 +33,11 @@ function unpack(fields, planes) {
   return new Table(rows, columns);
 }
 
+/** The learning curve that a training's page has besides; else nothing. */
+export async function readCurve() {
+  return document.getElementById('curve-data') && JSON.parse(new TextDecoder().decode(await inflate('curve-data')));
+}
+
 export const hasRun = () => document.getElementById('frames') !== null;
 
 /** @returns what main.js draws: {hello, frames, footprints, tiles}, the last three as Tables */

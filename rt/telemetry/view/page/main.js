@@ -2,8 +2,9 @@
 // The page: takes a run from its source and draws it over time.
 import './three_notice.js';
 import { kSpan_s, makeCharts } from './charts.js';
+import { showCurve } from './curve.js';
 import { Drive } from './drive.js';
-import { hasRun, readRun } from './file.js';
+import { hasRun, readCurve, readRun } from './file.js';
 import { Live } from './live.js';
 import { LivePlayer } from './live_player.js';
 import { momentAt } from './moment.js';
@@ -169,4 +170,11 @@ function show(run) {
   };
 }
 
-if (hasRun()) readRun().then(show); else new Live(show);
+async function showFile() {
+  const curve = await readCurve();
+  if (curve) showCurve(curve);
+  show(await readRun());
+  if (curve) window.sandrunner.curve = curve;
+}
+
+if (hasRun()) showFile(); else new Live(show);

@@ -20,16 +20,20 @@ export function markStep(range, wanted) {
   return power * ([1, 2, 5, 10].find((m) => m * power >= rough) ?? 10);
 }
 
-const kLeft = 40, kRight = 8, kTop = 21, kBottom = 7, kFont = 'system-ui, sans-serif';
+const digitsOf = (step) => Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+
+const kLeft = 40, kRight = 8, kFont = 'system-ui, sans-serif';
 
 export class Strip {
   /**
    * @param {object[]} lines {name, color, value(row), dash?, wide?}
    * @param {object} more limits: values of dashed red lines, always in sight; least: smallest range of the axis;
-   *   zero: the axis holds 0
+   *   zero: the axis holds 0; marks: times stand below it; pointed: time of an upright line
    */
   constructor(canvas, title, unit, lines, more = {}) {
-    Object.assign(this, { canvas, title, unit, lines, limits: [], least: 0.1, zero: false, ...more });
+    Object.assign(this, { canvas, title, unit, lines, limits: [], least: 0.1, zero: false, marks: false, pointed: NaN, ...more });
+    this.top = this.marks ? 35 : 21;  // names below the title: values stand beside them
+    this.bottom = this.marks ? 19 : 7;
   }
 
   draw(frames, t, span) {
@@ -44,11 +48,11 @@ export class Strip {
     });
     const [low, high] = this.#range(series);
     const x = (at) => kLeft + (width - kLeft - kRight) * (at - from) / span;
-    const y = (value) => kTop + (height - kTop - kBottom) * (high - value) / (high - low);
+    const y = (value) => this.top + (height - this.top - this.bottom) * (high - value) / (high - low);
     this.#axis(g, width, low, high, y);
     g.save();
     g.beginPath();
-    g.rect(kLeft, kTop - 2, width - kLeft - kRight, height - kTop - kBottom + 4);
+    g.rect(kLeft, this.top - 2, width - kLeft - kRight, height - this.top - this.bottom + 4);
     g.clip();
     this.lines.forEach(({ color, dash, wide }, n) => {
       g.strokeStyle = color;
@@ -62,8 +66,18 @@ export class Strip {
       });
       g.stroke();
     });
+    if (this.pointed >= from) {
+      g.fillStyle = '#66717c';
+      g.fillRect(Math.round(x(this.pointed)), 0, 1, height);
+    }
     g.restore();
+    if (this.marks) this.#times(g, x, from, t, width, height);
     this.#head(g, width);
+  }
+
+  /** The time under a place that is `offset` pixels from the left side. */
+  timeAt(offset, t, span) {
+    return t - span + span * (offset - kLeft) / (this.canvas.clientWidth - kLeft - kRight);
   }
 
   #range(series) {
@@ -79,7 +93,7 @@ export class Strip {
   }
 
   #axis(g, width, low, high, y) {
-    const step = markStep(high - low, 4), digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    const step = markStep(high - low, 4), digits = digitsOf(step);
     g.font = `10px ${kFont}`;
     g.textAlign = 'right';
     g.lineWidth = 1;
@@ -100,6 +114,14 @@ export class Strip {
     g.setLineDash([]);
   }
 
+  #times(g, x, from, t, width, height) {
+    const step = markStep(t - from, 5), digits = digitsOf(step);
+    g.textAlign = 'center';
+    for (let n = Math.ceil(from / step); n * step <= t; ++n) {
+      g.fillText((n * step).toFixed(digits), Math.min(width - 12, x(n * step)), height - 6);
+    }
+  }
+
   #head(g, width) {
     g.textAlign = 'left';
     g.fillStyle = '#22282f';
@@ -114,7 +136,7 @@ export class Strip {
     for (const { name, color } of [...this.lines].reverse()) {
       if (!name) continue;
       g.fillStyle = color;
-      g.fillText(name, x, 14);
+      g.fillText(name, x, this.top - 7);
       x -= g.measureText(name).width + 9;
     }
   }

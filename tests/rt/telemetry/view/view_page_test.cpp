@@ -60,6 +60,14 @@ TEST(ViewPageTest, AShortRunIsThereFrameByFrame) {
   EXPECT_NE(hello.at("note").get<std::string>().find("measured or estimated"), std::string::npos);
 }
 
+TEST(ViewPageTest, ALearningCurveComesWithTheRunWhereThereIsOne) {
+  ViewPage page(example_scene(), example_robot());
+  page.add(example_tick(0));
+  const std::string curve = R"({"title":"<script>"})";
+  EXPECT_EQ(gunzip(from_base64(element(page.html(curve), "curve-data"))), curve);
+  EXPECT_EQ(page.html().find("curve-data"), std::string::npos);
+}
+
 TEST(ViewPageTest, LongRunsAreShownAtLowerRatesThatTheyState) {
   for (const auto& [count, rate] : {std::pair{1500, 50}, std::pair{3000, 25}}) {
     const std::string page = page_of(static_cast<std::size_t>(count), {.frames = 1000});

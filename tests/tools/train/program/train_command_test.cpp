@@ -210,6 +210,18 @@ TEST_F(TrainCommandTest, FolderThatCannotBeWrittenIsRefusedBeforeTheTraining) {
   expect_refused("file", {}, "--out");
 }
 
+TEST_F(TrainCommandTest, TheCurveIsAPageThatAsksForNothingToo) {
+  ASSERT_EQ(run("a", {}), 0);
+  const std::string page = read_file(folder_.path("a") + "/curve.html");
+  EXPECT_TRUE(page.starts_with("<!doctype html>"));
+  EXPECT_LT(page.size(), 2'000'000u);
+  for (const char* part : {"id=\"curve-data\"", "id=\"frames\"", "id=\"program\""}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(page.find("src=\""), std::string::npos);
+}
+
+// The page's run of the policy, after each window or only at the end, has no part in the weights.
 TEST_F(TrainCommandTest, InterruptKeepsEverythingAndResumeEndsInTheSameWeights) {
   ASSERT_EQ(run("whole", {"--threads", "1"}), 0);
   CheckpointWatch watch(folder_.path("stopped"));

@@ -3,80 +3,15 @@
 // FOLDER/run.csv. Pictures are judged by their structure, never pixel by pixel.
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import puppeteer from "puppeteer-core";
+import { kSoftware, openFile, picture, shares, within } from "./file_page.mjs";
 
 const [browserPath, folder] = process.argv.slice(2);
 const kLegs = ["LF", "RF", "LH", "RH"];
-const kSoftware = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const kNoGraphics = ["--disable-gpu", "--disable-software-rasterizer", "--disable-3d-apis"];
 
 const [head, ...lines] = fs.readFileSync(`${folder}/run.csv`, "utf8").trim().split("\n").map((line) => line.split(","));
 const column = Object.fromEntries(head.map((name, i) => [name, i]));
 const csv = (row, name) => Number(lines[row][column[name]]);
-
-async function open(flags, viewport, look) {
-  const args = ["--no-sandbox", "--hide-scrollbars", ...flags];
-  const browser = await puppeteer.launch({ executablePath: browserPath, headless: "shell", args, protocolTimeout: 120000 });
-  try {
-    const page = await browser.newPage();
-    await page.setViewport(viewport);
-    const [errors, requests] = [[], []];
-    page.on("pageerror", (error) => errors.push(error.message));
-    page.on("console", (message) => { if (message.type() === "error") errors.push(message.text()); });
-    page.on("request", (request) => { if (!/^(data|blob):/.test(request.url())) requests.push(request.url()); });
-    // #light: what a machine without a graphics card can draw.
-    const url = `file://${folder}/run.html`;
-    await page.goto(`${url}#light`);
-    await page.waitForFunction("window.sandrunner", { timeout: 60000 });
-    await page.evaluate("sandrunner.player.playing = false");
-    await look(page);
-    assert.deepEqual(errors, []);
-    assert.deepEqual(requests.map((request) => request.split("#")[0]), [url], "the page asks for nothing but itself");
-  } finally {
-    await browser.close();
-  }
-}
-
-/** The page's picture as {width, height, at(x, y)}: the canvas as it was just drawn. */
-async function picture(page, t) {
-  const shot = await page.evaluate((time) => {
-    const { view } = window.sandrunner;
-    window.sandrunner.seek(time);
-    view.renderer?.render(view.scene, view.camera);
-    const canvas = document.getElementById("scene"), copy = document.createElement("canvas");
-    [copy.width, copy.height] = [canvas.width, canvas.height];
-    const g = copy.getContext("2d");
-    g.drawImage(canvas, 0, 0);
-    const bytes = g.getImageData(0, 0, copy.width, copy.height).data;
-    let text = "";
-    for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
-    return { width: copy.width, height: copy.height, text: btoa(text) };
-  }, t);
-  const bytes = Buffer.from(shot.text, "base64");
-  return { ...shot, at: (x, y) => [...bytes.subarray(4 * (y * shot.width + x), 4 * (y * shot.width + x) + 3)] };
-}
-
-const kKinds = {
-  sand: ([r, g, b]) => r > g && g > b && r - b > 25 && r > 90 && r - g < 70,
-  sky: ([r, g, b]) => b >= r && b > 190 && b - r < 90,
-  force: ([r, g, b]) => r > 90 && g < 0.45 * r && b < 0.45 * r,
-  dark: ([r, g, b]) => Math.max(r, g, b) < 75,
-  orange: ([r, g, b]) => r > 190 && g > 90 && g < 160 && b < 70,
-};
-
-/** Share of the pixels of each kind. */
-function shares({ width, height, at }) {
-  const counts = Object.fromEntries(Object.keys(kKinds).map((kind) => [kind, 0]));
-  for (let y = 0; y < height; ++y) {
-    for (let x = 0; x < width; ++x) for (const kind in kKinds) counts[kind] += kKinds[kind](at(x, y)) ? 1 : 0;
-  }
-  for (const kind in counts) counts[kind] /= width * height;
-  return counts;
-}
-
-function within(share, kind, low, high) {
-  assert.ok(share[kind] >= low && share[kind] <= high, `${kind}: share ${share[kind]} of the pixels, expected ${low} to ${high}`);
-}
 
 /** Each of 50 moments of the run: the page's feet, by its own kinematics, are where run.csv has them. */
 async function checkFeet(page) {
@@ -167,7 +102,7 @@ async function checkMissingNumbers(page, t) {
   assert.ok(before.every(Number.isFinite), "the robot stays where it was last known to be");
 }
 
-await open(kSoftware, { width: 900, height: 560 }, async (page) => {
+await openFile(browserPath, `${folder}/run.html`, kSoftware, { width: 900, height: 560 }, async (page) => {
   assert.equal(await page.evaluate("sandrunner.kind"), "3d");
   const worst = await checkFeet(page), t = deepMoment();
   await checkHoles(page, t);
@@ -183,7 +118,7 @@ await open(kSoftware, { width: 900, height: 560 }, async (page) => {
   console.log(`WebGL: feet within ${(1e6 * worst).toFixed(2)} um at 50 times, ready after ${ready.toFixed(0)} ms, shares ${JSON.stringify(share)}`);
 });
 
-await open(kNoGraphics, { width: 700, height: 500 }, async (page) => {
+await openFile(browserPath, `${folder}/run.html`, kNoGraphics, { width: 700, height: 500 }, async (page) => {
   assert.equal(await page.evaluate("sandrunner.kind"), "side");
   assert.match(await page.$eval("#note", (note) => note.textContent), /no WebGL/);
   const worst = await checkFeet(page), share = shares(await picture(page, deepMoment()));
