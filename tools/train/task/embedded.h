@@ -5,8 +5,7 @@
 
 namespace sandrunner {
 
-/// The training's settings as built into the program ("training.toml", "raibo.toml"); empty for
-/// other names.
+/// The training's settings as built into the program ("training.toml"); empty for other names.
 std::string_view embedded_train_file(std::string_view name) noexcept;
 
 }  // namespace sandrunner

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reward of a policy step: scale * max(sum of what is paid - ramp * sum of what is charged, 0).
+// The reward of a policy step: scale * (max(sum of what is paid - ramp * sum of what is charged, 0)
+// - ramp * fall). What is below zero is cut, so that no sum of prices makes lying down the better
+// choice; a fall alone is not, or where everything is cut, as on soft soil at speed, falling would
+// cost nothing.
 //
 // A new term is a function here, its row in kPaid or kCharged, which also makes it a column of the
 // learning curve, and its settings in RewardSettings and kRewardSettings, with values in
@@ -78,6 +81,7 @@ struct RewardSettings {
   double height_m = 0;         ///< of the base above the deformed ground
   double clearance = 0;        ///< per m^2 below clearance_m, times the root of the foot's speed
   double clearance_m = 0;      ///< of a foot in the air above the surface
+  double fall = 0;             ///< a fall, besides what is not earned after it
 };
 
 /// What read_task_config reads, with the ranges.
@@ -138,6 +142,7 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"height_m", &RewardSettings::height_m, 0.0, kNoLimit},
     {"clearance", &RewardSettings::clearance, 0.0, kNoLimit},
     {"clearance_m", &RewardSettings::clearance_m, 0.0, kNoLimit},
+    {"fall", &RewardSettings::fall, 0.0, kNoLimit},
 };
 
 /// Factors that change during the training. As they stand here: the reward that remains.
@@ -245,7 +250,7 @@ inline double paired_swing_paid(const StepOutcome& s, const RewardSettings& r,
 /// backwards and turning take more energy: charged like going ahead, standing would be cheaper.
 inline double energy_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   const double ahead = s.command[0] > 0.0f ? s.command[0] : -2.0 * s.command[0];
-  const double distance = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
+  const double distance = std::hypot(ahead, 2.0 * s.command[1]) + std::fabs(s.command[2]);
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
   return energy * ramp.energy * r.energy_speed_mps / (r.energy_offset_mps + distance);
 }
@@ -360,11 +365,12 @@ inline constexpr RewardTerm kCharged[] = {
     {"clearance_rh", clearance_charged<3>, 7},
 };
 
-inline constexpr std::size_t kRewardTerms = std::size(kPaid) + std::size(kCharged);
+inline constexpr std::size_t kRewardTerms = std::size(kPaid) + std::size(kCharged) + 1;
 
-/// Name of term i, of those paid and then those charged.
+/// Name of term i, of those paid, then those charged, then the fall.
 constexpr const char* reward_term_name(std::size_t i) {
-  return i < std::size(kPaid) ? kPaid[i].name : kCharged[i - std::size(kPaid)].name;
+  if (i < std::size(kPaid)) return kPaid[i].name;
+  return i + 1 < kRewardTerms ? kCharged[i - std::size(kPaid)].name : "fall";
 }
 
 /// Sum of the terms; writes each of them to `values`.
@@ -397,7 +403,9 @@ inline Reward reward(const StepOutcome& s, const RewardSettings& r, const CostRa
   const double charged = sum_of(kCharged, s, r, ramp, charged_terms);
   const double price = r.cost_weight * ramp.all;
   for (std::size_t i = 0; i < std::size(kCharged); ++i) charged_terms[i] *= -price;
-  out.value = static_cast<float>(r.scale * std::max(paid - price * charged, 0.0));
+  const double fall = s.fell ? r.fall * ramp.all : 0.0;
+  out.terms.back() = -fall;
+  out.value = static_cast<float>(r.scale * (std::max(paid - price * charged, 0.0) - fall));
   return out;
 }
 

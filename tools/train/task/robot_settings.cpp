@@ -10,8 +10,9 @@
 namespace sandrunner::train {
 namespace {
 
-// Raibo's mass and nominal height, of which its settings are known to be good.
+// Raibo's mass and nominal height, for which the figures below are known to be good.
 constexpr double kMass_kg = 26.817, kHeight_m = 0.4725;
+constexpr double kKneeMargin_rad = 0.12;  // from a knee's stop to where it is priced
 
 }  // namespace
 
@@ -19,26 +20,38 @@ std::string robot_settings(const sim::Robot& robot) {
   const double length = robot.nominal_height_m / kHeight_m;
   const double speed = std::sqrt(length);
   const double weight = robot.model.mass() / kMass_kg;
-  const double knee_low_rad = robot.model.lower_rad[2], knee_high_rad = robot.model.upper_rad[2];
-  return fmt::format(
-      "[policy]\naction_scale_rad = 0.3\nkp_nmprad = {}\nkd_nmsprad = {}\nbody_height_m = {}\n"
-      "[robot]\nbase_com_m = [{}, {}, {}]\n"
-      "[command]\nspeed_start_mps = {}\nspeed_max_mps = {}\nspeed_step_mps = {}\n"
-      "backward_mps = {}\nlateral_mps = {}\n"
-      "[reward]\ntorque = {}\npower = {}\njoint_speed = {}\nclearance_m = {}\nknee_low_rad = {}\n"
-      "knee_high_rad = {}\nheight_m = {}\nheight_end_m = {}\n",
-      0.5 * robot.stand_kp_nmprad, 0.5 * robot.stand_kd_nmsprad, 0.48 * length,  //
-      0.03 * length, 0.02 * length, 0.015 * length,                              //
-      speed, 4.0 * speed, 0.02 * speed, speed, 0.5 * speed,                      //
-      1.0e-3 / (weight * length * weight * length), 8.0e-3 / (weight * speed), 3e-4 * length,
-      0.08 * length, knee_low_rad + 0.12, knee_high_rad - 0.12, 0.475 * length, 0.495 * length);
+  std::string toml;
+  const auto set = [&](const char* key, double value) {
+    toml += fmt::format("{} = {}\n", key, value);
+  };
+  toml += "[policy]\n";
+  set("action_scale_rad", 0.3);                   // paper authors' code
+  set("kp_nmprad", 0.5 * robot.stand_kp_nmprad);  // 50 of Raibo, paper authors' code
+  set("kd_nmsprad", 0.5 * robot.stand_kd_nmsprad);
+  set("body_height_m", 0.48 * length);  // about which the estimated body height is scaled
+  toml += fmt::format("[robot]\nbase_com_m = [{}, {}, {}]\n", 0.03 * length, 0.02 * length,
+                      0.015 * length);
+  toml += "[command]\n";
+  set("speed_start_mps", speed);  // those of Raibo: recipe and paper
+  set("speed_max_mps", 4.0 * speed);
+  set("speed_step_mps", 0.02 * speed);
+  set("backward_mps", speed);
+  set("lateral_mps", 0.5 * speed);
+  toml += "[reward]\n";
+  set("torque", 1.0e-3 / std::pow(weight * length, 2));  // per N^2 m^2: copper losses; recipe
+  set("power", 8.0e-3 / (weight * speed));  // per W: with less the gait shuffles on hard ground
+  set("joint_speed", 3e-4 * length);        // recipe
+  set("clearance_m", 0.08 * length);
+  set("knee_low_rad", robot.model.lower_rad[2] + kKneeMargin_rad);
+  set("knee_high_rad", robot.model.upper_rad[2] - kKneeMargin_rad);
+  set("height_m", 0.475 * length);
+  set("height_end_m", 0.495 * length);  // a higher body is cheaper on sand
+  return toml;
 }
 
 void add_training_layers(ConfigTree& config, const sim::Robot& robot) {
   config.add_text(embedded_train_file("training.toml"), "training.toml");
-  const std::string& name = robot.description.name;
-  config.add_text(robot_settings(robot), fmt::format("robot '{}'", name));
-  if (name == "raibo") config.add_text(embedded_train_file("raibo.toml"), "raibo.toml");
+  config.add_text(robot_settings(robot), fmt::format("robot '{}'", robot.description.name));
 }
 
 }  // namespace sandrunner::train

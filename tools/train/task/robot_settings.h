@@ -8,14 +8,14 @@
 
 namespace sandrunner::train {
 
-/// The settings that depend on the robot, as TOML: Raibo's (raibo.toml), scaled by what its own
-/// file says. A leg of other length is the same in its own units of length and time (Froude):
-/// speeds as the root of the height, rates as its inverse; torques are priced as shares of weight
-/// times height, power of weight times speed.
+/// The settings that depend on the robot, as TOML: those that are good for Raibo, scaled by what
+/// the robot's own file says. A leg of other length is the same in its own units of length and time
+/// (Froude): speeds as the root of the height, rates as its inverse; torques are priced as shares
+/// of weight times height, power of weight times speed.
 std::string robot_settings(const sim::Robot& robot);
 
-/// The settings of a training of `robot`, from the weakest layer up: training.toml, what is derived
-/// from the robot, and for the robot that ships its own raibo.toml.
+/// The settings of a training of `robot`, from the weakest layer up: training.toml, and what is
+/// derived from the robot.
 void add_training_layers(ConfigTree& config, const sim::Robot& robot);
 
 }  // namespace sandrunner::train

@@ -33,6 +33,7 @@ struct StepOutcome {
   std::array<float, kNumLegs> foot_clearance{};     ///< of its lowest point above the surface, m
   std::array<float, kNumLegs> foot_speed{};         ///< horizontal, m/s
   int lift_offs = 0;  ///< feet that were loaded a step ago and are not now
+  bool fell = false;
 };
 
 /// Square of the commanded speed, m^2/s^2.

@@ -134,10 +134,11 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
   const sim::RobotState<float> state = batch_.state(env);
   const sim::BatchReport<float> report = batch_.report(env);
   const sim::BatchSums<float> sums = batch_.sums(env);
-  const StepOutcome s = follow(e, state, report, sums);
+  StepOutcome s = follow(e, state, report, sums);
   const bool absurd = sim::diverged(state.rigid);
   const bool fell =
       sums.base_contact > 0.0f || sums.thigh_contact > 0.0f || s.up_z < tilt_end_cos_ || absurd;
+  s.fell = fell;
   const int kind = is_rigid(env) ? 0 : 1;
   rollout.reward(t, env) = 0.0f;
   if (!absurd) {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/train/task/robot_settings.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/small_robot.h"
+#include "tools/train/task/task_config.h"
+
+namespace sandrunner::train {
+namespace {
+
+TaskConfig settings_of(const sim::Robot& robot) {
+  ConfigTree tree;
+  add_training_layers(tree, robot);
+  return read_task_config(tree);
+}
+
+TEST(RobotSettingsTest, TheShippedRobotGetsTheFiguresItsTrainingWasTunedWith) {
+  const TaskConfig config = settings_of(sim::load_raibo());
+  EXPECT_NEAR(config.policy.kp_nmprad, 50.0, 1e-9);
+  EXPECT_NEAR(config.command.speed_max_mps, 4.0, 1e-9);
+  EXPECT_NEAR(config.reward.torque, 1.0e-3, 1e-6);
+  EXPECT_NEAR(config.reward.power, 8.0e-3, 1e-5);
+  EXPECT_NEAR(config.reward.knee_low_rad, -2.35, 1e-3);
+  EXPECT_NEAR(config.reward.height_m, 0.475, 1e-9);
+}
+
+TEST(RobotSettingsTest, ASmallerRobotIsSlowerLowerAndItsTorqueDearer) {
+  const TemporaryFolder folder;
+  const TaskConfig raibo = settings_of(sim::load_raibo()),
+                   small = settings_of(sim::load_robot(write_small_robot(folder)));
+  EXPECT_LT(small.command.speed_max_mps, raibo.command.speed_max_mps);
+  EXPECT_LT(small.reward.height_m, raibo.reward.height_m);
+  EXPECT_LT(small.reward.clearance_m, raibo.reward.clearance_m);
+  EXPECT_GT(small.reward.torque, raibo.reward.torque);
+  EXPECT_GT(small.reward.power, raibo.reward.power);
+}
+
+}  // namespace
+}  // namespace sandrunner::train
