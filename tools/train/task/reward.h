@@ -81,7 +81,7 @@ struct RewardSettings {
   double height_m = 0;         ///< of the base above the deformed ground
   double clearance = 0;        ///< per m^2 below clearance_m, times the root of the foot's speed
   double clearance_m = 0;      ///< of a foot in the air above the surface
-  double fall = 0;             ///< a fall, besides what is not earned after it
+  double fall = 0;             ///< of a fall, at the end; besides what is not earned after it
 };
 
 /// What read_task_config reads, with the ranges.
@@ -250,7 +250,7 @@ inline double paired_swing_paid(const StepOutcome& s, const RewardSettings& r,
 /// backwards and turning take more energy: charged like going ahead, standing would be cheaper.
 inline double energy_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   const double ahead = s.command[0] > 0.0f ? s.command[0] : -2.0 * s.command[0];
-  const double distance = std::hypot(ahead, 2.0 * s.command[1]) + std::fabs(s.command[2]);
+  const double distance = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
   return energy * ramp.energy * r.energy_speed_mps / (r.energy_offset_mps + distance);
 }
@@ -403,7 +403,7 @@ inline Reward reward(const StepOutcome& s, const RewardSettings& r, const CostRa
   const double charged = sum_of(kCharged, s, r, ramp, charged_terms);
   const double price = r.cost_weight * ramp.all;
   for (std::size_t i = 0; i < std::size(kCharged); ++i) charged_terms[i] *= -price;
-  const double fall = s.fell ? r.fall * ramp.all : 0.0;
+  const double fall = s.fell ? r.fall * ramp.late : 0.0;
   out.terms.back() = -fall;
   out.value = static_cast<float>(r.scale * (std::max(paid - price * charged, 0.0) - fall));
   return out;

@@ -12,7 +12,7 @@ namespace {
 
 // Raibo's mass and nominal height, for which the figures below are known to be good.
 constexpr double kMass_kg = 26.817, kHeight_m = 0.4725;
-constexpr double kKneeMargin_rad = 0.12;  // from a knee's stop to where it is priced
+constexpr double kKneeMargin_rad = 0.124;  // from a knee's stop to where it is priced
 
 }  // namespace
 
@@ -21,16 +21,16 @@ std::string robot_settings(const sim::Robot& robot) {
   const double speed = std::sqrt(length);
   const double weight = robot.model.mass() / kMass_kg;
   std::string toml;
-  const auto set = [&](const char* key, double value) {
-    toml += fmt::format("{} = {}\n", key, value);
+  const auto set = [&](const char* key, double value) {  // nothing here is known better
+    toml += fmt::format("{} = {:.3g}\n", key, value);
   };
   toml += "[policy]\n";
   set("action_scale_rad", 0.3);                   // paper authors' code
   set("kp_nmprad", 0.5 * robot.stand_kp_nmprad);  // 50 of Raibo, paper authors' code
   set("kd_nmsprad", 0.5 * robot.stand_kd_nmsprad);
   set("body_height_m", 0.48 * length);  // about which the estimated body height is scaled
-  toml += fmt::format("[robot]\nbase_com_m = [{}, {}, {}]\n", 0.03 * length, 0.02 * length,
-                      0.015 * length);
+  toml += fmt::format("[robot]\nbase_com_m = [{:.3g}, {:.3g}, {:.3g}]\n", 0.03 * length,
+                      0.02 * length, 0.015 * length);
   toml += "[command]\n";
   set("speed_start_mps", speed);  // those of Raibo: recipe and paper
   set("speed_max_mps", 4.0 * speed);

@@ -63,8 +63,8 @@ TEST(RewardTest, EnergyIsSharedByDoubleTheWaySidewaysOrBackwardsAndByTurns) {
   EXPECT_NEAR(energy_cost(obedient(-0.5f, 0.0f, 0.0f)), ahead, 1e-9);
   EXPECT_NEAR(energy_cost(obedient(0.0f, 0.5f, 0.0f)), ahead, 1e-9);
   EXPECT_NEAR(energy_cost(obedient(0.0f, -0.5f, 0.0f)), ahead, 1e-9);
-  EXPECT_NEAR(energy_cost(obedient(0.0f, 0.0f, 1.0f)), ahead, 1e-9);
-  EXPECT_NEAR(energy_cost(obedient(0.0f, 0.0f, -1.0f)), ahead, 1e-9);
+  EXPECT_NEAR(energy_cost(obedient(0.0f, 0.0f, 2.0f)), ahead, 1e-9);
+  EXPECT_NEAR(energy_cost(obedient(0.0f, 0.0f, -2.0f)), ahead, 1e-9);
 }
 
 TEST(RewardTest, DriftCostsMuchMoreThanTheSwingOfTheGait) {
@@ -89,13 +89,13 @@ TEST(RewardTest, CostsGrowWithTheirRampAndPricesNeverMakeARewardNegative) {
   EXPECT_EQ(reward(s, r, {}).value, 0.0f);
 }
 
-TEST(RewardTest, AFallCostsEvenWherePricesLeaveNothing) {
+TEST(RewardTest, LateAFallCostsEvenWherePricesLeaveNothing) {
   const RewardSettings r = shipped_settings();
   StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
   s.power = 1e6f;
   s.fell = true;
-  EXPECT_FLOAT_EQ(reward(s, r, {}).value, static_cast<float>(-r.scale * r.fall));
-  EXPECT_FLOAT_EQ(reward(s, r, {.all = 0.1}).value, static_cast<float>(-r.scale * r.fall * 0.1));
+  EXPECT_FLOAT_EQ(reward(s, r, {.late = 1.0}).value, static_cast<float>(-r.scale * r.fall));
+  EXPECT_EQ(reward(s, r, {.late = 0.0}).value, 0.0f);  // early it would quicken the strides
 }
 
 TEST(RewardTest, PriorFadesToExactlyNothing) {
@@ -141,7 +141,7 @@ TEST(RewardTest, TermsAddUpToTheRewardBeforeItsScale) {
   s.foot_speed[2] = 1.0f;
   s.action[3] = 0.4f;
   s.fell = true;
-  const Reward earned = reward(s, r, {.all = 0.7, .energy = 1.5});
+  const Reward earned = reward(s, r, {.all = 0.7, .energy = 1.5, .late = 0.5});
   double sum = 0.0;
   for (const double term : earned.terms) sum += term;
   EXPECT_NEAR(earned.value, r.scale * sum, 1e-6);
