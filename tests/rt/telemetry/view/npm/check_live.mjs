@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// node check_live.mjs BROWSER SANDRUNNER RECORDING: looks at a run while it goes, holds and steps it, loses its server
-// and finds it again, drives the robot; then opens a recording.
+// node check_live.mjs BROWSER SANDRUNNER RECORDING BLACK_BOX: looks at a run while it goes, holds and steps it, loses its server
+// and finds it again, drives the robot; then opens both recordings.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import puppeteer from "puppeteer-core";
+import { groundAt } from "./file_page.mjs";
 
-const [browserPath, sandrunner, recording] = process.argv.slice(2);
+const [browserPath, sandrunner, recording, blackBox] = process.argv.slice(2);
 const children = new Set();
 
 /** Starts a program with --view; resolves to {url, child} once it has said where to look. */
@@ -75,7 +76,7 @@ async function looksAndHolds() {
 
   await page.evaluate("window.sameDocument = true");
   first.child.kill("SIGKILL");
-  await until(page, "document.getElementById('lost').textContent !== ''", 10000);
+  await until(page, "document.getElementById('lost').textContent !== ''");
   assert.ok(await page.evaluate("sandrunner.frames > 150"), "what was seen stays");
   await serve(sandrunner, "--set", `view.port=${port}`, "--duration", "600");
   await until(page, "document.getElementById('lost').textContent === '' && sandrunner.run.frames.time(0) < 0.1 && sandrunner.frames > 20");
@@ -104,29 +105,35 @@ async function drives() {
   await page.keyboard.down("w");
   await asked(0.5);
   // A page that is gone says nothing more: the age of its last word stops the robot.
-  const look = await open(url.split("#")[0]);
   await page.close();
+  const look = await open(url.split("#")[0]);
   await until(look, "sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) === 0");
   assert.ok(await look.$eval("#drive", (element) => element.hidden), "without the key there is nothing to drive with");
   child.kill("SIGINT");
   await look.close();
 }
 
-async function opensARecording() {
-  const { url } = await serve(`${sandrunner}-replay`, recording, "--set", "view.port=0");
+async function opensARecording(file, frames) {
+  const { url, child } = await serve(`${sandrunner}-replay`, file, "--set", "view.port=0");
   const page = await open(url);
-  assert.ok(await page.evaluate("sandrunner.frames > 300"));
-  assert.equal(await page.evaluate("sandrunner.player.begin"), 0);
-  await page.evaluate("sandrunner.seek(2)");
-  assert.equal(await page.evaluate("sandrunner.player.t"), 2);
+  assert.ok((await page.evaluate("sandrunner.frames")) > frames);
+  const [begin, end] = await page.evaluate("[sandrunner.player.begin, sandrunner.player.end]"), t = (begin + end) / 2;
+  const ground = await groundAt(page, t);
+  assert.equal(await page.evaluate("sandrunner.player.t"), t);
+  assert.notEqual(await groundAt(page, begin), ground);
+  await groundAt(page, end);
+  assert.equal(await groundAt(page, t), ground, "the same time shows the same ground, wherever one came from");
   assert.equal(await text(page, "lost"), "");
   await page.close();
+  child.kill("SIGINT");
+  return begin;
 }
 
 try {
   await looksAndHolds();
   await drives();
-  await opensARecording();
+  assert.equal(await opensARecording(recording, 300), 0);
+  await opensARecording(blackBox, 100);
   assert.deepEqual(errors, []);
 } finally {
   await browser.close();

@@ -9,4 +9,8 @@ folder=$2
 source "$(dirname -- "${BASH_SOURCE[0]}")/prepare.sh"
 prepare "the look at a live run" "$folder"
 "$sandrunner" --duration 2 --record "$folder/recording" >"$folder/recording.log" || { cat "$folder/recording.log"; exit 1; }
-node "$folder/check_live.mjs" "$browser" "$sandrunner" "$folder/recording/run.mcap"
+# A fault in real time leaves a black box.
+rm -rf "$folder/faulted"
+"$sandrunner" --clock realtime --start walk --duration 20 --set controller.gate.speed_fault_radps=9 --out "$folder/faulted" \
+  >"$folder/faulted.log" 2>&1 || [[ $? == 1 ]] || { cat "$folder/faulted.log"; exit 1; }
+node "$folder/check_live.mjs" "$browser" "$sandrunner" "$folder/recording/run.mcap" "$folder"/faulted/black-box-*.mcap

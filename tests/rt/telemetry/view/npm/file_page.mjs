@@ -48,6 +48,12 @@ export async function picture(page, t) {
   return { ...shot, at: (x, y) => [...bytes.subarray(4 * (y * shot.width + x), 4 * (y * shot.width + x) + 3)] };
 }
 
+/** What the ground looks like at time t of the run, as a number. */
+export const groundAt = (page, t) => page.evaluate((time) => {
+  window.sandrunner.seek(time);
+  return window.sandrunner.view.heights.texels.reduce((hash, texel) => (Math.imul(hash, 31) + texel) | 0, 0);
+}, t);
+
 const kKinds = {
   sand: ([r, g, b]) => r > g && g > b && r - b > 25 && r > 90 && r - g < 70,
   sky: ([r, g, b]) => b >= r && b > 190 && b - r < 90,
