@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "rt/base/output_files.h"
 #include "rt/plot/plot.h"
@@ -92,12 +93,14 @@ struct Series {
 std::vector<Series> series_of(const std::vector<ProgressRow>& rows) {
   std::vector<Series> all;
   for (const Column& column : kColumns) {
-    Series& series = all.emplace_back(column.name);
+    Series series{column.name, {}};
     for (const ProgressRow& row : rows) series.values.push_back(column.value(row));
+    all.push_back(std::move(series));
   }
   for (std::size_t i = 0; i < kRewardTerms; ++i) {
-    Series& series = all.emplace_back(fmt::format("reward_{}", reward_term_name(i)));
+    Series series{fmt::format("reward_{}", reward_term_name(i)), {}};
     for (const ProgressRow& row : rows) series.values.push_back(row.window.terms[i]);
+    all.push_back(std::move(series));
   }
   return all;
 }
