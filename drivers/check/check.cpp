@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "drivers/check/bus_scan.h"
 #include "drivers/check/check_report.h"
@@ -15,6 +16,7 @@
 #include "drivers/check/zero.h"
 #include "drivers/robot/bring_up.h"
 #include "drivers/robot/bus_plan.h"
+#include "drivers/robot/emergency_stop.h"
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
@@ -45,7 +47,9 @@ class Check {
     } else {
       for (auto& socket : sockets_) socket.reset();
     }
+    open_emergency_stop();
     measure();
+    judge_emergency_stop();
     fmt::print("{}", check_report(config_, task_.robot, task_.gate, findings_));
     return findings_.problems.empty() ? kExitOk : kExitRobotFailed;
   }
@@ -158,6 +162,31 @@ class Check {
         fmt::format("wrote the zero_rad of {} drives to {}\n", kNumJoints, task_.path));
   }
 
+  void open_emergency_stop() {
+    if (config_.emergency_stop.chip.empty()) return;
+    try {
+      stop_line_.emplace(config_.emergency_stop);
+    } catch (const InputError& error) {
+      findings_.problems.emplace_back(error.what());
+    }
+  }
+
+  std::string emergency_stop_words() const {
+    const StopLineConfig& c = config_.emergency_stop;
+    if (c.chip.empty()) return "emergency stop: the file names no line (hardware.emergency_stop)";
+    const char* state = !stop_line_                  ? "cannot be read"
+                        : stop_line_->high() == true ? "not pressed"
+                                                     : "PRESSED, or its wire is broken";
+    return fmt::format("emergency stop, {} line {}: {}", c.chip, c.line, state);
+  }
+
+  void judge_emergency_stop() {
+    findings_.emergency_stop = emergency_stop_words();
+    if (stop_line_ && stop_line_->high() != true) {
+      findings_.problems.push_back(findings_.emergency_stop);
+    }
+  }
+
   void measure() {
     std::unique_ptr<MipImu> imu;
     try {
@@ -198,7 +227,7 @@ class Check {
   std::size_t draw(const DriveLook& look, std::size_t drawn_lines) const {
     std::string picture = joint_table(config_, task_.robot, task_.gate, look.drives());
     if (findings_.imu) picture += imu_line(config_.imu, *findings_.imu);
-    picture += "live until Enter; nothing is powered\n";
+    picture += emergency_stop_words() + "\nlive until Enter; nothing is powered\n";
     const std::string back = drawn_lines > 0 ? fmt::format("\x1b[{}A\x1b[J", drawn_lines) : "\n";
     to_standard_error(back + picture);
     return static_cast<std::size_t>(std::count(picture.begin(), picture.end(), '\n'));
@@ -208,6 +237,7 @@ class Check {
   HardwareConfig config_;
   CanSockets sockets_;
   Lines lines_;
+  std::optional<StopLine> stop_line_;
   CheckFindings findings_;
 };
 

@@ -142,6 +142,7 @@ std::string check_report(const HardwareConfig& config, const RobotDescription& r
     text += joint_table(config, robot, gate, findings.drives) + "\n";
   }
   if (findings.imu) text += imu_line(config.imu, *findings.imu) + "\n";
+  text += findings.emergency_stop + "\n\n";
   if (!findings.moves.empty()) {
     text += "turned by hand\n";
     for (const std::string& move : findings.moves) text += "  " + move + "\n";

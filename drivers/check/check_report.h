@@ -25,6 +25,7 @@ struct CheckFindings {
   std::vector<std::vector<ScannedDrive>> scanned;  ///< by bus; empty: not scanned
   JointArray<FoundDrive> drives;
   std::optional<ImuFindings> imu;     ///< none: it could not be set up
+  std::string emergency_stop;         ///< what its switch says
   std::vector<std::string> moves;     ///< what came of each joint turned by hand, a line each
   std::vector<std::string> problems;  ///< a line each
 };

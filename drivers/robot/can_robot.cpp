@@ -23,6 +23,12 @@ std::uint64_t tick_of(std::int64_t age_ns, std::uint64_t tick) noexcept {
   return tick - std::min(ago, tick);
 }
 
+std::unique_ptr<EmergencyStop> open_emergency_stop(const StopLineConfig& config) {
+  if (config.chip.empty()) return nullptr;
+  const auto line = std::make_shared<StopLine>(config);
+  return std::make_unique<EmergencyStop>([line] { return line->high(); });
+}
+
 const HardwareConfig& within_capacity(const HardwareConfig& config) {
   require_capacity(config);
   return config;
@@ -33,6 +39,7 @@ const HardwareConfig& within_capacity(const HardwareConfig& config) {
 CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
                    const GateConfig& gate)
     : config_(within_capacity(config)),
+      emergency_stop_(open_emergency_stop(config.emergency_stop)),
       imu_(config.imu),
       sockets_(open_buses(config)),
       counters_(config.buses.size()),
@@ -65,6 +72,8 @@ void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
     frame.imu = imu_.sample();
     frame.imu.tick = tick_of(clock_ns(CLOCK_MONOTONIC) - imu_.sample_time_ns(), tick);
   }
+  const bool stop = emergency_stop_ && emergency_stop_->pressed(clock_ns(CLOCK_MONOTONIC));
+  frame.emergency_stop = stop ? 1 : 0;
   frame.drives_cut = cut_.load(std::memory_order_relaxed) ? 1 : 0;
 }
 

@@ -12,6 +12,7 @@
 #include "drivers/imu/imu_thread.h"
 #include "drivers/robot/drive.h"
 #include "drivers/robot/drive_look.h"
+#include "drivers/robot/emergency_stop.h"
 #include "drivers/robot/hardware_config.h"
 #include "rt/core/robot_io.h"
 
@@ -63,7 +64,8 @@ class CanRobot final : public RobotIo {
   void send(int bus, std::span<const CanFrame> frames) noexcept;
 
   HardwareConfig config_;
-  ImuThread imu_;  // before the buses: without it nothing is sent
+  std::unique_ptr<EmergencyStop> emergency_stop_;  // null: there is none
+  ImuThread imu_;  // both before the buses: without them nothing is sent
   CanSockets sockets_;
   std::vector<BusCounters> counters_;
   JointArray<Drive> drives_;

@@ -218,6 +218,19 @@ MipImuConfig read_imu(ConfigTree& config) {
   return imu;
 }
 
+StopLineConfig read_emergency_stop(ConfigTree& config) {
+  StopLineConfig stop;
+  stop.chip = config.text("hardware.emergency_stop.chip", "");
+  if (stop.chip.empty()) return stop;
+  if (!config.has("hardware.emergency_stop.line")) {
+    throw InputError(
+        fmt::format("hardware.emergency_stop.line: found none, expected the number of a line of {}",
+                    stop.chip));
+  }
+  stop.line = static_cast<int>(config.integer("hardware.emergency_stop.line", 0, 0, 1023));
+  return stop;
+}
+
 }  // namespace
 
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
@@ -255,6 +268,7 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
   }
   read_drives(config, robot, gate, h);
   h.imu = read_imu(config);
+  h.emergency_stop = read_emergency_stop(config);
   return h;
 }
 

@@ -10,6 +10,7 @@
 #include "drivers/can/mit.h"
 #include "drivers/can/moteus.h"
 #include "drivers/imu/mip_imu.h"
+#include "drivers/robot/emergency_stop.h"
 #include "rt/base/config_tree.h"
 #include "rt/core/gate_config.h"
 #include "rt/core/messages.h"
@@ -63,11 +64,13 @@ struct HardwareConfig {
   std::vector<BusConfig> buses;
   JointArray<DriveConfig> drives;
   MipImuConfig imu;
+  StopLineConfig emergency_stop;
 
   int ticks_per_exchange() const noexcept { return kControlHz / rate_hz; }
 };
 
-/// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu]. Drives are
+/// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu],
+/// [hardware.emergency_stop]. Drives are
 /// named by the joints of `robot`, each exactly once. Throws InputError: a joint without a drive or
 /// with two, two drives of one identifier, an unknown protocol or model, a rate that does not
 /// divide the control rate, a drive whose range is below what `gate` lets through (torque, speed,

@@ -35,6 +35,7 @@ CheckFindings good_findings() {
   f.imu = ImuFindings{
       .figures = {.samples = 200, .rate_hz = 500.0, .acceleration_mps2 = {0.0, 0.0, 9.8}},
       .state = "streaming"};
+  f.emergency_stop = "emergency stop, /dev/gpiochip0 line 4: not pressed";
   return f;
 }
 
@@ -45,6 +46,7 @@ TEST(CheckReportTest, ShowsEveryJointAndThatAllIsWell) {
   EXPECT_THAT(report, HasSubstr("RH_KFE        can3         3   200/200   0.40  1.10     0.1234 "
                                 "(-2.50 to 2.50)"));
   EXPECT_THAT(report, HasSubstr("500.0 of 500 samples/s, |a| 9.800 m/s^2"));
+  EXPECT_THAT(report, HasSubstr("\nemergency stop, /dev/gpiochip0 line 4: not pressed\n"));
   EXPECT_THAT(report, HasSubstr("nothing is wrong"));
 }
 

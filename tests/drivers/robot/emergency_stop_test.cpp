@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/robot/emergency_stop.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "rt/base/clock_ns.h"
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+namespace {
+
+std::int64_t now_ns() { return clock_ns(CLOCK_MONOTONIC); }
+
+bool comes(const std::function<bool()>& holds) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+/// A line that a test moves.
+enum class Level { kLow, kHigh, kUnreadable };
+struct FakeLine {
+  std::atomic<Level> level{Level::kHigh};
+  EmergencyStop::Read read() {
+    return [this]() -> std::optional<bool> {
+      if (level == Level::kUnreadable) return std::nullopt;
+      return level == Level::kHigh;
+    };
+  }
+};
+
+TEST(EmergencyStopTest, AClosedSwitchIsKnownAtOnce) {
+  FakeLine line;
+  const EmergencyStop stop(line.read());
+  EXPECT_TRUE(comes([&] { return !stop.pressed(now_ns()); }));
+}
+
+TEST(EmergencyStopTest, PressedOrBrokenOrUnreadableAllStop) {
+  for (const Level level : {Level::kLow, Level::kUnreadable}) {
+    FakeLine line;
+    const EmergencyStop stop(line.read());
+    ASSERT_TRUE(comes([&] { return !stop.pressed(now_ns()); }));
+    line.level = level;
+    EXPECT_TRUE(comes([&] { return stop.pressed(now_ns()); }));
+    line.level = Level::kHigh;
+    EXPECT_TRUE(comes([&] { return !stop.pressed(now_ns()); }));
+  }
+}
+
+TEST(EmergencyStopTest, OpenFromTheStartIsNeverClosed) {
+  FakeLine line;
+  line.level = Level::kLow;
+  const EmergencyStop stop(line.read());
+  EXPECT_TRUE(stop.pressed(now_ns()));
+}
+
+TEST(EmergencyStopTest, ALineThatIsNotReadAnyMoreStops) {
+  std::atomic<bool> hangs{false};
+  std::atomic<int> hanging{0};
+  const EmergencyStop stop([&]() -> std::optional<bool> {
+    if (hangs) {
+      hanging = 1;
+      hangs.wait(true);
+    }
+    return true;
+  });
+  hangs = true;
+  ASSERT_TRUE(comes([&] { return hanging == 1; }));
+  EXPECT_TRUE(stop.pressed(now_ns() + EmergencyStop::kLongest_ns));
+  hangs = false;
+  hangs.notify_all();
+}
+
+TEST(StopLineTest, AChipThatIsNoneIsRefusedWithItsName) {
+  for (const char* chip : {"/dev/nosuch", "/dev/null"}) {
+    try {
+      const StopLine line({.chip = chip, .line = 4});
+      FAIL() << chip;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(std::string(chip) + " line 4"), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner
