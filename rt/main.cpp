@@ -24,6 +24,7 @@
 #include "rt/base/standard_error.h"
 #include "rt/core/floating_point.h"
 #include "rt/operator/operator_desk.h"
+#include "rt/operator/stand_again.h"
 #include "rt/realtime/rt_report.h"
 #include "rt/report/run_csv.h"
 #include "rt/report/run_pictures.h"
@@ -36,6 +37,7 @@
 #include "rt/run/run.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
+#include "rt/run/simulator_hand.h"
 #include "rt/telemetry/view/view_feed.h"
 #include "rt/telemetry/view/view_pace.h"
 #include "rt/telemetry/view/view_page.h"
@@ -125,22 +127,26 @@ TheRobot make_robot(const Options& options, const ProcessConfig& config) {
 
 // A run in a browser.
 struct LiveView {
+  /// `simulator`: null unless in lockstep on simulated ground; so is `stand_again` without
+  /// operators.
   LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
-           const std::atomic<bool>& interrupt, OperatorDesk* desk)
+           const std::atomic<bool>& interrupt, OperatorDesk* desk, sim::Simulator* simulator,
+           StandAgain* stand_again)
       : feed(scene, config.robot.description) {
     if (lockstep) pace.emplace(interrupt);
+    if (lockstep && simulator) {
+      hand.emplace(*simulator, config.simulator.terrain, config.effective, stand_again);
+    }
     server.emplace(config.view_port, ViewServer::Parts{.feed = feed,
                                                        .pace = pace ? &*pace : nullptr,
-                                                       .desk = config.view_drive ? desk : nullptr});
+                                                       .desk = config.view_drive ? desk : nullptr,
+                                                       .hand = hand ? &*hand : nullptr});
     to_standard_error(fmt::format("sandrunner: look at {}\n", server->url()));
-  }
-  void add(const TickRecord& tick) {
-    feed.add(tick);
-    if (pace) pace->wait();
   }
 
   ViewFeed feed;
   std::optional<ViewPace> pace;
+  std::optional<SimulatorHand> hand;
   std::optional<ViewServer> server;
 };
 
@@ -159,7 +165,17 @@ struct Listeners {
       if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
       if (page) page->add(tick);
-      if (view) view->add(tick);  // last: it waits
+      if (view) view->feed.add(tick);
+    };
+  }
+  BetweenTicks between() {
+    if (!view || !view->pace) return {};
+    return [this](std::uint64_t next) {
+      view->pace->wait();
+      return view->hand &&
+             view->hand->act(next, [this](std::uint64_t tick, const auto& kind, const auto& text) {
+               if (recorder) recorder->note(tick, kind, text);
+             });
     };
   }
   void begin(std::int64_t start_ns) {
@@ -242,6 +258,8 @@ int run(int argc, char** argv) {
     desk.emplace(*remote, config.dds.stale_s, true);
   }
   OperatorDesk* const open_desk = desk ? &*desk : nullptr;
+  std::optional<StandAgain> stand_again;
+  if (remote && options->view && !options->realtime) stand_again.emplace(*remote);
   Listeners listeners;
   if (config.dds.enabled) listeners.dds.emplace(config, open_desk, !options->realtime);
   listeners.recorder = make_recorder(*options, config, policy_text, policy);
@@ -252,7 +270,8 @@ int run(int argc, char** argv) {
   const RunScene scene = scene_of(config, policy.spec().name);
   if (out) listeners.page.emplace(scene, config.robot.description);
   if (options->view) {
-    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted(), open_desk);
+    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted(), open_desk,
+                           robot.simulator.get(), stand_again ? &*stand_again : nullptr);
   }
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -262,12 +281,15 @@ int run(int argc, char** argv) {
       .policy = &policy,
       .command = command,
       .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
-      .live = remote ? &*remote : nullptr,
+      .live = stand_again ? static_cast<OperatorInput*>(&*stand_again)
+              : remote    ? &*remote
+                          : nullptr,
       .scene = scene,
       .keep_record = out,
       .progress = terminal ? show_progress : std::function<void(const RunSample&)>(),
       .tap = listeners.tap(),
       .begin_tap = [&](std::int64_t start_ns) { listeners.begin(start_ns); },
+      .between = listeners.between(),
       .interrupt = signals.interrupted()};
   SystemClock clock;
   const RunResult result =

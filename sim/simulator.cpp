@@ -2,6 +2,8 @@
 #include "sim/simulator.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "sim/lanes/random.h"
 #include "sim/robot/clearance.h"
@@ -55,6 +57,58 @@ void Simulator::reset_lying() {
   state_ = {};
   state_.robot.rigid.q = robot_.lying_rad;
   disturb(0.0);
+}
+
+void Simulator::push(double vx_mps, double vy_mps) noexcept {
+  Vec3<double>& v = state_.robot.rigid.velocity;
+  v = v + Vec3<double>{vx_mps, vy_mps, 0.0};
+}
+
+bool Simulator::carry_to_stand() noexcept {
+  constexpr double kTurn_radps = 3.0, kLift_mps = 1.0, kAbove_m = 0.005, kThere = 0.02;
+  RigidState<double>& x = state_.robot.rigid;
+  const auto towards = [](double way, double most) {
+    return std::clamp(way * kControlHz, -most, most);
+  };
+  bool there = true;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const double way = robot_.nominal_rad[j] - x.q[j];
+    there = there && std::abs(way) < kThere;
+    x.qd[j] = towards(way, kTurn_radps);
+  }
+  const Vec3<double> up = transposed_times(rotation_matrix(x.orientation), {0.0, 0.0, 1.0});
+  const double sine = std::hypot(up.x, up.y), tilt = std::atan2(sine, up.z);
+  there = there && tilt < kThere;
+  const double rate = towards(tilt, kTurn_radps);
+  // About the axis that brings the body's z to the vertical; on its back any will do.
+  x.angular_velocity = sine > 1e-9 ? Vec3<double>{-rate * up.y / sine, rate * up.x / sine, 0.0}
+                                   : Vec3<double>{rate, 0.0, 0.0};
+  const double lift =
+      kAbove_m + surface_height(x.position.x, x.position.y) -
+      lowest_clearance(model_, robot_.nominal_rad, [](double, double) { return 0.0; }) -
+      x.position.z;
+  there = there && std::abs(lift) < kThere;
+  x.velocity = {0.0, 0.0, towards(lift, kLift_mps)};
+  state_.linear_acceleration_mps2 = {kGravity_mps2 * up.x, kGravity_mps2 * up.y,
+                                     kGravity_mps2 * up.z};
+  return there;
+}
+
+void Simulator::set_terrain(const TerrainDescription& terrain) {
+  const auto kinds = [](const TerrainDescription& t) {
+    std::vector<GroundKind> all;
+    for (const TerrainPatch& patch : t.patches) all.push_back(patch.ground.kind);
+    return all;
+  };
+  if (kinds(terrain) != kinds(config_.terrain)) {
+    double deepest = 0.0;
+    for (const double depth : report_.penetration) deepest = std::max(deepest, depth);
+    state_.robot.rigid.position.z += deepest;
+    state_.robot.feet = {};
+    state_.robot.impulse = {};
+  }
+  config_.terrain = terrain;
+  terrain_ = make_terrain(terrain, foot_, model_);
 }
 
 SensorFrame Simulator::sample() const noexcept {

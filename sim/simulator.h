@@ -63,6 +63,16 @@ class Simulator final : public RobotIo {
   /// On its belly in the lying pose, at rest; disturbed in the same way, but touching the ground.
   void reset_lying();
 
+  // What somebody does to the robot and its ground between two ticks; time goes on.
+  /// Gives the whole robot this much more speed, world frame, m/s: a push that is over at once.
+  void push(double vx_mps, double vy_mps) noexcept;
+  /// For a tick, moves the robot as a careful hand does towards its nominal pose, level and just
+  /// above the ground where it is; no faster than encoders and IMU can follow. True: it is there.
+  bool carry_to_stand() noexcept;
+  /// Other ground, with the feet as they were. Where it is of another kind, the robot is lifted out
+  /// of its holes, or hard ground would throw it up.
+  void set_terrain(const TerrainDescription& terrain);
+
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
   /// Takes the command and advances the robot by one tick.
   void write(const SafeCommand& command) noexcept override;

@@ -33,6 +33,8 @@ class ControlLoop {
             TickRecord& record) noexcept;
 
   const Controller& controller() const noexcept { return controller_; }
+  /// Somebody has changed the robot since the last tick: its truth is another one.
+  void robot_changed() noexcept { truth_is_old_ = true; }
   /// Goes on from a snapshot; the robot is restored by its owner.
   void restore(const ControllerState& state) noexcept;
 

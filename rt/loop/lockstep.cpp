@@ -33,7 +33,7 @@ std::int64_t wall_clock_ns() noexcept {
 
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
                      OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
-                     const StartTap& begin_tap) {
+                     const StartTap& begin_tap, const BetweenTicks& between) {
   Lockstep loop(robot, config, start, policy);
   if (begin_tap) begin_tap(wall_clock_ns());
   const auto begin = std::chrono::steady_clock::now();
@@ -41,6 +41,7 @@ LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start,
   while (running) {
     running = loop.tick(op, interrupt.load(std::memory_order_relaxed));
     tap(loop.record());
+    if (running && between && between(loop.next_tick())) loop.robot_changed();
   }
   robot.shut_down();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;

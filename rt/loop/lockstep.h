@@ -32,6 +32,9 @@ class Lockstep {
   /// The same under an operator; false: that was the last tick.
   bool tick(OperatorInput& op, bool interrupted) noexcept;
 
+  /// Somebody has changed the robot since the last tick.
+  void robot_changed() noexcept { loop_.robot_changed(); }
+
   /// The tick done last.
   const TickRecord& record() const noexcept { return record_; }
   std::uint64_t next_tick() const noexcept { return next_tick_; }
@@ -54,6 +57,9 @@ class Lockstep {
 using TickTap = std::function<void(const TickRecord&)>;
 /// Is told the wall clock of slot 0, ns since 1970, before the first tick, in the same thread.
 using StartTap = std::function<void(std::int64_t)>;
+/// Is called between two ticks, with the number of the next one, in the same thread; true: it has
+/// changed the robot.
+using BetweenTicks = std::function<bool(std::uint64_t)>;
 
 /// How a loop ended.
 struct LoopEnd {
@@ -69,6 +75,6 @@ std::int64_t wall_clock_ns() noexcept;
 /// Ticks until `op` or `interrupt` ends it, then the drives are off.
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
                      OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
-                     const StartTap& begin_tap = {});
+                     const StartTap& begin_tap = {}, const BetweenTicks& between = {});
 
 }  // namespace sandrunner

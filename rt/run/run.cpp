@@ -43,7 +43,7 @@ RunResult run(const RunParts& parts, const Loop& loop) {
 RunResult run_in_lockstep(const RunParts& parts) {
   return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
     result.end = run_lockstep(parts.robot, parts.controller, start, parts.policy, op,
-                              parts.interrupt, tap, parts.begin_tap);
+                              parts.interrupt, tap, parts.begin_tap, parts.between);
   });
 }
 

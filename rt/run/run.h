@@ -26,6 +26,7 @@ struct RunParts {
   std::function<void(const RunSample&)> progress = {};  ///< every half second of the robot's time
   TickTap tap = {};                                     ///< gets every tick: recorders, telemetry
   StartTap begin_tap = {};                              ///< is told when it starts
+  BetweenTicks between = {};                            ///< of a run in lockstep
   const std::atomic<bool>& interrupt;                   ///< ends the run in damping
 };
 

@@ -197,6 +197,11 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     player->replay->restore(state);
     player->in_step = true;
   };
+  visitor.event = [](std::uint64_t tick, const std::string& kind, const std::string& text) {
+    // What came from outside: the rest follows from the ticks.
+    if (kind != "push" && kind != "terrain" && kind != "hand") return;
+    fmt::print("before tick {} ({}): {}: {}\n", tick, seconds(tick), kind, one_line(text));
+  };
   const RecordingContents contents = read_recording(arguments.file, visitor);
 
   if (player->observer && drawn > 0) write_plots(*player, arguments.plot_dir);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -77,6 +78,13 @@ class CdrReader {
     const std::span<const std::byte> from = block(sizeof value, sizeof value);
     if (!failed_) std::memcpy(&value, from.data(), sizeof value);
     return value;
+  }
+  std::string text() {
+    const auto size = number<std::uint32_t>();
+    const std::span<const std::byte> bytes = block(size, 1);
+    if (bytes.empty()) failed_ = true;  // not even the zero behind it
+    return failed_ ? std::string()
+                   : std::string(reinterpret_cast<const char*>(bytes.data()), size - 1);
   }
   std::span<const std::byte> block(std::size_t size, std::size_t alignment) {
     while ((at_ - kHeader) % alignment != 0) ++at_;

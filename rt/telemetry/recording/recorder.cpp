@@ -28,6 +28,11 @@ Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingL
 
 Recorder::~Recorder() { close(); }
 
+void Recorder::note(std::uint64_t tick, const std::string& kind, const std::string& text) {
+  const std::lock_guard lock(notes_mutex_);
+  notes_.push_back({tick, kind, text});
+}
+
 RecordingResult Recorder::close() {
   if (thread_.joinable()) {
     queue_.finish();
@@ -58,6 +63,7 @@ void Recorder::work() {
 void Recorder::write(const TickQueue::Batch& batch) {
   if (!writer_) writer_.emplace(path_, info_);
   if (replay_ && writer_->bytes_written() != bytes_at_state_) write_state();
+  write_notes();
   writer_->write(batch);
   for (const TickRecord& tick : batch) {
     if (replay_ && replay_->check(tick)) replay_.reset();
@@ -68,6 +74,16 @@ void Recorder::write(const TickQueue::Batch& batch) {
   if (static_cast<double>(first) * kControlPeriod_s > limits_.time_s) {
     stop("its duration reached the limit", false);
   }
+}
+
+// What was noted by now is of this batch or, if the run is ahead of the disk, of a later one.
+void Recorder::write_notes() {
+  std::vector<Note> notes;
+  {
+    const std::lock_guard lock(notes_mutex_);
+    notes.swap(notes_);
+  }
+  for (const Note& note : notes) writer_->write_event(note.tick, note.kind, note.text);
 }
 
 // The first message of ticks in a chunk comes behind it: bytes are written when a chunk ends.

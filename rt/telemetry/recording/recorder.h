@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "policy/policy.h"
 #include "rt/core/controller.h"
@@ -52,12 +54,15 @@ class Recorder {
   void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
   /// Every tick, in order, from one ordinary thread.
   void add(const TickRecord& tick) { queue_.add(tick); }
+  /// What somebody did to the robot or its ground before the tick that is added next; same thread.
+  void note(std::uint64_t tick, const std::string& kind, const std::string& text);
   /// Finishes the file. Nothing may be added afterwards.
   RecordingResult close();
 
  private:
   void work();
   void write(const TickQueue::Batch& batch);
+  void write_notes();
   void write_state();
   void stop(const std::string& reason, bool failed);
 
@@ -65,6 +70,12 @@ class Recorder {
   const RecordingLimits limits_;
   RecordingInfo info_;  // from the first tick on, only the thread that writes uses it
   TickQueue queue_;
+  struct Note {
+    std::uint64_t tick;
+    std::string kind, text;
+  };
+  std::mutex notes_mutex_;
+  std::vector<Note> notes_;  // that are not written yet
   // Only the thread that writes uses what follows.
   std::optional<Policy> policy_;
   std::optional<Replay> replay_;  // before the next tick; nothing once ticks are missing

@@ -132,6 +132,7 @@ class RecordingReader {
     CdrReader cdr(message.data);
     if (is_ticks) take_ticks(cdr);
     if (channel.topic == kStatesTopic && visitor_.state) take_state(cdr);
+    if (channel.topic == kEventsTopic && visitor_.event) take_event(cdr);
   }
 
   void check_layout(const McapChannel& channel) const {
@@ -175,6 +176,13 @@ class RecordingReader {
     const std::span<const std::byte> bytes = cdr.block(cdr.number<std::uint32_t>(), 1);
     state_.emplace(read_replay_state({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
                                      fmt::format("{}: a state behind tick {}", path_, next_tick_)));
+  }
+
+  void take_event(CdrReader& cdr) const {
+    const auto tick = cdr.number<std::uint64_t>();
+    const std::string kind = cdr.text(), text = cdr.text();
+    if (cdr.failed()) fail(path_, fmt::format("an event behind tick {} is damaged", next_tick_));
+    visitor_.event(tick, kind, text);
   }
 
   const std::string& path_;

@@ -25,6 +25,8 @@ struct RecordingVisitor {
   /// Damage cost the ticks from the first to the second; nothing in its place: all to the end.
   std::function<void(std::uint64_t, std::optional<std::uint64_t>)> lost;
   std::function<void(const ReplayState&)> state;  ///< before the tick that follows
+  /// What happened in or before a tick: kind and text. It may come up to some seconds early.
+  std::function<void(std::uint64_t, const std::string&, const std::string&)> event;
 };
 
 /// Reads a recording from its start. Damage behind the beginning costs the ticks of its chunk: it

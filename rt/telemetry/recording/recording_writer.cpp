@@ -157,15 +157,20 @@ void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
   }
 }
 
+void RecordingWriter::write_event(std::uint64_t tick, const std::string& kind,
+                                  const std::string& text) {
+  CdrWriter cdr;
+  cdr.number(tick).text(kind).text(text);
+  file_.write_message({.channel_id = channels_.events,
+                       .sequence = static_cast<std::uint32_t>(++events_),
+                       .log_time_ns = time_ns(tick),
+                       .publish_time_ns = time_ns(tick),
+                       .data = cdr.bytes()});
+}
+
 void RecordingWriter::write_events(const TickRecord& tick) {
   const auto event = [&](const char* kind, const std::string& text) {
-    CdrWriter cdr;
-    cdr.number(tick.input.sensors.tick).text(kind).text(text);
-    file_.write_message({.channel_id = channels_.events,
-                         .sequence = static_cast<std::uint32_t>(++events_),
-                         .log_time_ns = time_ns(tick.input.sensors.tick),
-                         .publish_time_ns = time_ns(tick.input.sensors.tick),
-                         .data = cdr.bytes()});
+    write_event(tick.input.sensors.tick, kind, text);
   };
   const auto mode = static_cast<std::uint64_t>(tick.output.mode);
   const std::uint64_t request = tick.input.command.request_id;

@@ -5,7 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <numbers>
 
 namespace sandrunner {
 namespace {
@@ -41,6 +41,19 @@ class Reader {
     if (!value) return false;
     if (!value->is_boolean()) return amiss("{}: expected true or false", key), false;
     return value->get<bool>();
+  }
+  GroundSettings numbers(const char* key) {
+    GroundSettings all;
+    const Json* const value = find(key);
+    if (!value) return all;
+    if (!value->is_object()) return amiss("{}: expected an object", key), all;
+    for (const auto& [name, number] : value->items()) {
+      if (!number.is_number() || !std::isfinite(number.get<double>())) {
+        return amiss("{}: expected finite numbers", key), all;
+      }
+      all.emplace_back(name, number.get<double>());
+    }
+    return all;
   }
   /// What was read, if all is well and there is nothing else in the message.
   PageMessage all(PageMessage message) {
@@ -87,7 +100,14 @@ PageMessage parse_page_message(std::string_view text) {
   if (say == "step") {
     return in.all(PageStep{in.whole("ticks", 1, kMostSteps_ticks)});
   }
-  return PageNonsense{"say: expected hello, drive, request, pace, pause or step"};
+  if (say == "push") {
+    constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+    return in.all(PagePush{in.number("direction", -kTurn_rad, kTurn_rad)});
+  }
+  if (say == "set_on_legs") return in.all(PageSetOnLegs{});
+  if (say == "terrain") return in.all(PageTerrain{{in.text("preset"), in.numbers("set")}});
+  return PageNonsense{
+      "say: expected hello, drive, request, pace, pause, step, push, set_on_legs or terrain"};
 }
 
 }  // namespace sandrunner

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "rt/core/messages.h"
+#include "rt/telemetry/view/view_hand.h"
 
 namespace sandrunner {
 
@@ -37,13 +38,23 @@ struct PagePause {
 struct PageStep {
   int ticks = 1;
 };
+/// {"say":"push","direction":1.57}: rad from world x.
+struct PagePush {
+  double direction_rad = 0.0;
+};
+/// {"say":"set_on_legs"}
+struct PageSetOnLegs {};
+/// {"say":"terrain","preset":"wet-sand","set":{"friction":0.6}}
+struct PageTerrain {
+  WantedGround ground;
+};
 /// What it said instead of any of these.
 struct PageNonsense {
   std::string why;
 };
 
-using PageMessage =
-    std::variant<PageNonsense, PageHello, PageDrive, PageRequest, PagePace, PagePause, PageStep>;
+using PageMessage = std::variant<PageNonsense, PageHello, PageDrive, PageRequest, PagePace,
+                                 PagePause, PageStep, PagePush, PageSetOnLegs, PageTerrain>;
 
 /// Strict: one JSON object with exactly the keys of its kind, of their types and within their
 /// ranges.

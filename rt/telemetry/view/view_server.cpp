@@ -51,6 +51,20 @@ std::string dump(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+nlohmann::ordered_json ground_of(const GroundNow& ground) {
+  const auto object = [](const GroundSettings& values) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const auto& [key, value] : values) json[key] = value;
+    return json;
+  };
+  return {{"preset", ground.wanted.preset},
+          {"set", object(ground.wanted.set)},
+          {"name", ground.name},
+          {"kind", ground.kind},
+          {"presets", ground.presets},
+          {"values", object(ground.values)}};
+}
+
 class Page;
 
 // What all connections share; used by the server's thread alone.
@@ -63,11 +77,13 @@ struct Hub {
 
   std::string state() const {
     const ViewPace::Status pace = parts.pace ? parts.pace->status() : ViewPace::Status();
-    return dump({{"say", "state"},
-                 {"t_s", parts.feed.now_s()},
-                 {"ended", parts.feed.ended()},
-                 {"paused", pace.paused},
-                 {"rate", pace.rate}});
+    nlohmann::ordered_json json = {{"say", "state"},
+                                   {"t_s", parts.feed.now_s()},
+                                   {"ended", parts.feed.ended()},
+                                   {"paused", pace.paused},
+                                   {"rate", pace.rate}};
+    if (parts.hand) json["ground"] = ground_of(parts.hand->ground());
+    return dump(json);
   }
 };
 
@@ -179,6 +195,11 @@ class Page : public std::enable_shared_from_this<Page> {
     if (!has_key_) return "without the key this page only looks";
     if (const auto* drive = std::get_if<PageDrive>(&message)) return follow(*drive);
     if (const auto* request = std::get_if<PageRequest>(&message)) return follow(*request);
+    if (std::holds_alternative<PagePush>(message) ||
+        std::holds_alternative<PageSetOnLegs>(message) ||
+        std::holds_alternative<PageTerrain>(message)) {
+      return touch(message);
+    }
     ViewPace* const pace = hub_.parts.pace;
     if (!pace) return "this robot has its own time";
     if (const auto* order = std::get_if<PagePace>(&message)) pace->set_rate(order->rate);
@@ -213,6 +234,17 @@ class Page : public std::enable_shared_from_this<Page> {
                              {"accepted", outcome.accepted},
                              {"text", outcome.text}}));
     return {};
+  }
+
+  // Changes the robot or its ground.
+  std::string touch(const PageMessage& message) {
+    ViewHand* const hand = hub_.parts.hand;
+    if (!hand) return "only a simulated robot in lockstep can be touched, and its ground changed";
+    if (const auto* push = std::get_if<PagePush>(&message)) return hand->push(push->direction_rad);
+    if (std::holds_alternative<PageSetOnLegs>(message)) return hand->set_on_legs();
+    std::string refusal = hand->set_ground(std::get<PageTerrain>(message).ground);
+    state_ = hub_.state();
+    return refusal;
   }
 
   // Among operators: no participant of DDS has an identity that begins with zeros.

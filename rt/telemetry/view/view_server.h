@@ -6,6 +6,7 @@
 
 #include "rt/operator/operator_desk.h"
 #include "rt/telemetry/view/view_feed.h"
+#include "rt/telemetry/view/view_hand.h"
 #include "rt/telemetry/view/view_pace.h"
 
 namespace sandrunner {
@@ -19,6 +20,7 @@ class ViewServer {
     const ViewFeed& feed;
     ViewPace* pace = nullptr;  ///< null: the robot has its own time, or there is only a recording
     OperatorDesk* desk = nullptr;  ///< null: pages do not command
+    ViewHand* hand = nullptr;      ///< null: pages touch neither robot nor ground
     bool recorded = false;
   };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Driving: the keys, limits and habits of sandrunner-ctl drive. A velocity is sent only while something is held; what
 // guards the robot from a page that hangs or is gone is the age of its last one, not this file.
+import { isForPage } from './keys.js';
+import { Stick } from './stick.js';
+
 const kEvery_ms = 50, kZeros = 3, kDeadZone = 0.12;
 const kFull = { vx: 1, vy: 0.5, wz: 1 };
 const kKeys = { w: ['vx', 1], s: ['vx', -1], a: ['vy', 1], d: ['vy', -1], q: ['wz', 1], e: ['wz', -1] };
@@ -12,6 +15,7 @@ export class Drive {
   constructor(live) {
     this.live = live;
     this.held = new Set();
+    this.stick = new Stick();
     this.tenths = 5;
     this.zeros = 0;
     for (const name of kRequests) {
@@ -40,17 +44,18 @@ export class Drive {
 
   /** What the robot said to a request, or why it did not do something. */
   answer({ say, to, accepted, text, why }) {
-    element(this.allowed ? 'answer' : 'note').textContent = say === 'refused' ? why : `${to.replace('_', ' ')}: ${accepted ? '' : 'refused, '}${text.replace('_', ' ')}`;
+    if (say === 'refused') element('refusal').textContent = why;
+    else element('answer').textContent = `${to.replace('_', ' ')}: ${accepted ? '' : 'refused, '}${text.replace('_', ' ')}`;
   }
 
   show() {
-    element('drive').hidden = !this.allowed;
+    element('drive').hidden = element('touch-drive').hidden = !this.allowed;
     element('scale').textContent = `w a s d q e at ${this.tenths / 10}, + -; space: stop`;
   }
 
   #down(event) {
     const key = event.key.toLowerCase();
-    if (!this.allowed || event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === 'SELECT') return;
+    if (!this.allowed || !isForPage(event)) return;
     if (kKeys[key]) this.held.add(key);
     else if (kRequestKeys[key]) { if (!event.repeat) this.request(kRequestKeys[key]); }
     else if (key === '+' || key === '=') this.tenths = Math.min(20, this.tenths + 1);
@@ -64,6 +69,7 @@ export class Drive {
   #letGo() {
     const drove = this.held.size > 0 || this.zeros > 0;
     this.held.clear();
+    this.stick.letGo();
     this.zeros = 0;
     if (drove) this.live.say({ say: 'drive', vx: 0, vy: 0, wz: 0 });
   }
@@ -71,10 +77,12 @@ export class Drive {
   /** What is held, as shares of the full speed; null: nothing. */
   #wanted() {
     const pad = document.hidden ? null : [...(navigator.getGamepads?.() ?? [])].find((p) => p?.buttons[4]?.pressed);
-    if (this.held.size === 0 && !pad) return null;
+    if (this.held.size === 0 && !pad && !this.stick.held) return null;
     const wanted = { vx: 0, vy: 0, wz: 0 };
     for (const key of this.held) wanted[kKeys[key][0]] += kKeys[key][1];
-    if (this.held.size === 0) {
+    if (this.held.size === 0 && this.stick.held) {
+      Object.assign(wanted, { vx: this.stick.y, wz: -this.stick.x });
+    } else if (this.held.size === 0) {
       const axis = (i) => (Math.abs(pad.axes[i] ?? 0) > kDeadZone ? -pad.axes[i] : 0);
       Object.assign(wanted, { vx: axis(1), vy: axis(0), wz: axis(2) });
     }

@@ -45,6 +45,7 @@ const kDeclare = `
 uniform sampler2D heights;
 uniform sampler2D grains;
 uniform vec2 middle;
+uniform float soft;
 varying vec2 vWorld;
 float heightAt(vec2 p) { return texture2D(heights, p / ${kWindow_m.toFixed(4)}).r; }
 float within(float from, float to) { vec2 d = abs(vWorld - middle); return 1.0 - smoothstep(from, to, max(d.x, d.y)); }
@@ -84,23 +85,27 @@ export class Ground {
       THREE.UVMapping, THREE.RepeatWrapping, THREE.RepeatWrapping, THREE.LinearFilter, THREE.LinearFilter);
     this.texture.needsUpdate = true;
     this.middle = new THREE.Vector2();
-    const color = new THREE.Color(soft ? 0xd9bd8e : 0xaeb4ba).convertSRGBToLinear();
-    const material = new THREE.MeshPhongMaterial({ color, shininess: 0, specular: 0 });
+    const material = new THREE.MeshPhongMaterial({ shininess: 0, specular: 0 });
     this.grains = noise();
-    const uniforms = { heights: { value: this.texture }, grains: { value: this.grains }, middle: { value: this.middle } };
+    const uniforms = { heights: { value: this.texture }, grains: { value: this.grains }, middle: { value: this.middle }, soft: { value: 1 } };
     // A flat sheet that only looks uneven beyond the fine part; rough hard ground is displaced as far as it is known.
-    const displaced = soft ? 'within(1.2, 1.6)' : 'within(4.2, 4.9)';
+    const displaced = '(soft > 0.5 ? within(1.2, 1.6) : within(4.2, 4.9))';
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, uniforms);
       shader.vertexShader = kDeclare + shader.vertexShader.replace('#include <begin_vertex>', `#include <begin_vertex>
         vWorld = (modelMatrix * vec4(transformed, 1.0)).xy;
         transformed.z += ${displaced} * heightAt(vWorld);`);
-      shader.fragmentShader = `${kDeclare}const float soft = ${soft ? '1.0' : '0.0'};\n` + shader.fragmentShader
+      shader.fragmentShader = kDeclare + shader.fragmentShader
         .replace('#include <normal_fragment_begin>', kNormal).replace('#include <color_fragment>', kColor);
     };
     this.mesh = new THREE.Mesh(sheet(0.016, 1.14), material);
     this.mesh.receiveShadow = true;
     this.mesh.frustumCulled = false;
+    this.setSoft = (is) => {
+      uniforms.soft.value = is ? 1 : 0;
+      material.color.set(is ? 0xd9bd8e : 0xaeb4ba).convertSRGBToLinear();
+    };
+    this.setSoft(soft);
   }
 
   /** For slow machines. */

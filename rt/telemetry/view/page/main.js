@@ -5,6 +5,7 @@ import { kSpan_s, makeCharts } from './charts.js';
 import { showCurve } from './curve.js';
 import { Drive } from './drive.js';
 import { hasRun, readCurve, readRun } from './file.js';
+import { Hand } from './hand.js';
 import { Live } from './live.js';
 import { LivePlayer } from './live_player.js';
 import { momentAt } from './moment.js';
@@ -66,8 +67,13 @@ function savePicture(view, t) {
 }
 
 // What only a page has that somebody serves.
-function makeLive({ live }, player, view, changed) {
+function makeLive({ live, frames, hello }, player, view, changed) {
   const showTime = makeRobotTime(live), drive = new Drive(live), lost = element('lost');
+  const hand = new Hand(live, frames, view, (kind) => {
+    hello.granular = kind === 'granular';
+    view.groundIsSoft?.(hello.granular);
+    changed();
+  });
   element('now').hidden = live.recorded;
   element('now').onclick = () => player.follow();
   live.onRun = () => {
@@ -78,6 +84,7 @@ function makeLive({ live }, player, view, changed) {
   live.onState = () => {
     showTime();
     drive.show();
+    hand.show();
   };
   live.onAnswer = (message) => drive.answer(message);
   showTime();
@@ -106,8 +113,8 @@ function show(run) {
   element('rate').onchange = () => { player.rate = Number(element('rate').value); };
   element('camera').onclick = () => view.resetCamera();
   element('picture').onclick = () => savePicture(view, player.t);
-  // A button that was clicked does not take the space key.
-  window.addEventListener('click', (event) => { if (event.detail > 0) document.activeElement?.blur(); });
+  // A button that was clicked does not take the space key; a field to write in keeps its keys.
+  window.addEventListener('click', (event) => { if (event.detail > 0 && event.target.type !== 'number') document.activeElement?.blur(); });
   window.addEventListener('keydown', (event) => { if (event.key === 'c' && !event.ctrlKey) view.resetCamera?.(); });
 
   // Nothing is drawn again while nothing changes.

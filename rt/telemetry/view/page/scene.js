@@ -62,6 +62,15 @@ export class Scene {
   /** Squares of ground, m, that are known now; their heights are in the surface already. */
   groundCame(squares) { for (const square of squares) this.heights.groundCame(square); }
 
+  /** Sand, or something hard. */
+  groundIsSoft(soft) { this.ground.setSoft(soft); }
+
+  /** Where on the ground, rad from world x, a way in the picture goes, pixels right and down. */
+  directionOf(dx, dy) {
+    const right = new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+    return Math.atan2(right.y, right.x) + Math.atan2(-dy, dx);
+  }
+
   /** The frames are another run's. */
   beginAnew() { this.overlays.beginAnew(); }
 

@@ -121,5 +121,11 @@ export class SideView {
     });
   }
 
+  /** Where a way in the picture goes, rad from world x: forward or back. */
+  directionOf(dx) {
+    const forward = new THREE.Vector3(1, 0, 0).applyQuaternion(this.robot.root.quaternion);
+    return Math.atan2(forward.y, forward.x) + (dx < 0 ? Math.PI : 0);
+  }
+
   picture(done) { this.canvas.toBlob(done, 'image/png'); }
 }

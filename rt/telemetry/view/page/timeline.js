@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The time line: where the run is in what mode, how fast it went, faults, and the shown time; pointer and keys move it.
+import { isForPage } from './keys.js';
 import { context2d, markStep } from './plots.js';
 
 export const kModeColors = { passive: '#e3e7eb', damping: '#f3d9b1', stand_up: '#d5e3d0', stand: '#bfdcb8', walk: '#a9c9ea', fault: '#f0a9a4' };
@@ -24,7 +25,7 @@ export class Timeline {
   }
 
   #key(event) {
-    if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === 'SELECT') return;
+    if (!isForPage(event)) return;
     if (event.key === ' ' && event.target.tagName === 'BUTTON') return;  // its own click
     const { player, frames } = this, row = frames.countUntil(player.t) - 1;
     const by = (frameStep, s) => (event.shiftKey ? player.seek(player.t + s)

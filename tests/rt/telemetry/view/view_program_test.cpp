@@ -69,6 +69,31 @@ TEST(ViewProgramTest, ARunThatIsLookedAtHeldAndSteppedIsTheSameToTheBit) {
   EXPECT_EQ(read_file(folder.path("viewed/run.csv")), read_file(folder.path("plain/run.csv")));
 }
 
+TEST(ViewProgramTest, ARunThatIsTouchedIsRecordedWithWhatWasDoneToItAndReplays) {
+  const TemporaryFolder folder;
+  ChildProcess program(
+      viewed("--start walk --duration 600 --set view.port=0 --record " + folder.path("recording"),
+             folder.path("errors")));
+  const Address address = address_in(folder.path("errors"));
+  ASSERT_NE(address.port, 0);
+  WebPage page(address.port);
+  page.say(R"({"say":"hello","key":")" + address.key + "\"}");
+  page.say(R"({"say":"push","direction":0})");
+  page.say(R"({"say":"terrain","preset":"grass","set":{"friction":0.7}})");
+  Json state = page.hear("state");
+  while (state.at("ground").at("name") != "grass") state = page.hear("state");
+  const double then_s = state.at("t_s");
+  while (page.hear("state").at("t_s") < then_s + 0.1) {
+  }
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait().code, 0);
+  const Ended replay = run_shell(SANDRUNNER_REPLAY " " + folder.path("recording/run.mcap"));
+  EXPECT_EQ(replay.code, 0) << replay.err;
+  EXPECT_NE(replay.out.find(" s): push: 0.5 m/s towards 0 degrees\n"), std::string::npos);
+  EXPECT_NE(replay.out.find(" s): terrain: grass friction=0.7\n"), std::string::npos);
+  EXPECT_NE(replay.out.find("every bit agrees"), std::string::npos) << replay.out;
+}
+
 TEST(ViewProgramTest, APortThatIsTakenEndsItBeforeAnythingMoves) {
   const TemporaryFolder folder;
   ChildProcess first(viewed("--set view.port=0", folder.path("errors")));

@@ -31,9 +31,9 @@ const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swifts
 const browser = await puppeteer.launch({ executablePath: browserPath, headless: "shell", args, protocolTimeout: 120000 });
 const errors = [];
 
-async function open(url) {
+async function open(url, viewport = { width: 480, height: 300 }) {  // what a machine without a graphics card can draw
   const page = await browser.newPage();
-  await page.setViewport({ width: 480, height: 300 });  // what a machine without a graphics card can draw
+  await page.setViewport(viewport);
   page.on("pageerror", (error) => errors.push(error.message));
   page.on("console", (message) => {
     // A server that is gone is what this test wants; the browser says so by itself.
@@ -113,6 +113,68 @@ async function drives() {
   await look.close();
 }
 
+async function touches() {
+  const { url, child } = await serve(sandrunner, "--set", "view.port=0", "--command", "live", "--record", `${recording}.touched`);
+  const page = await open(url);
+  const mode = (name) => until(page, `document.getElementById('mode').textContent === '${name}'`);
+  const ground = (what) => until(page, `sandrunner.run.live.state.ground.${what}`);
+  const last = (field, k) => page.evaluate(`sandrunner.run.frames.at(sandrunner.frames - 1, '${field}', ${k})`);
+  await click(page, "on-legs");
+  await mode("stand");
+
+  const fill = (name, value) => page.$eval(`[name="${name} as a number"]`, (field, text) => {
+    field.value = text;
+    field.dispatchEvent(new Event("change"));
+  }, value);
+  await fill("stiffness", "250000");
+  await ground("values.sigma_flat_npm3 === 250000");
+  await ground("values.sigma_cone_npm3 === 50000");
+  await fill("friction", "9");
+  await until(page, "/^--set terrain.friction: .* from 0 to 5$/.test(document.getElementById('refusal').textContent)");
+  await ground("values.friction === 0.8");
+  await page.select("#preset", "wet-sand");
+  await ground("name === 'wet-sand'");
+  assert.equal(await text(page, "refusal"), "");
+
+  // Dragged to the right with shift held: pushed to the right of the picture.
+  const fastest = "Math.max(...[...Array(20).keys()].map((i) => Math.hypot(...[0, 1].map((k) => sandrunner.run.frames.at(sandrunner.frames - 1 - i, 'motion', k)))))";
+  await page.keyboard.down("Shift");
+  await page.mouse.move(240, 120);
+  await page.mouse.down();
+  await page.mouse.move(300, 120);
+  await page.mouse.up();
+  await page.keyboard.up("Shift");
+  await until(page, `${fastest} > 0.2`);
+  for (let i = 0; i < 12; ++i) await click(page, "push");
+  await mode("fault");
+  await click(page, "on-legs");
+  await mode("stand");
+  assert.ok((await last("position_m", 2)) > 0.4);
+  child.kill("SIGINT");
+  await page.close();
+}
+
+async function drivesWithAFinger() {
+  const { url, child } = await serve(sandrunner, "--set", "view.port=0", "--command", "live");
+  const page = await open(url, { width: 390, height: 600, isMobile: true, hasTouch: true });
+  const middle = (id) => page.$eval(`#${id}`, (element) => {
+    const { left, top, width, height } = element.getBoundingClientRect();
+    return { x: left + width / 2, y: top + height / 2, height };
+  });
+  await until(page, "document.getElementById('stick').clientHeight > 0");
+  const asked = (k, test) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', ${k}) ${test}`);
+  const stick = await middle("stick"), hold = await middle("stick-hold");
+  const finger = await page.touchscreen.touchStart(stick.x, stick.y - 0.45 * stick.height);
+  assert.equal(await page.evaluate("sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0)"), 0, "a stick alone does nothing");
+  const other = await page.touchscreen.touchStart(hold.x, hold.y);
+  await asked(0, "> 0.4");
+  await other.end();
+  await asked(0, "=== 0");
+  await finger.end();
+  child.kill("SIGINT");
+  await page.close();
+}
+
 async function opensARecording(file, frames) {
   const { url, child } = await serve(`${sandrunner}-replay`, file, "--set", "view.port=0");
   const page = await open(url);
@@ -132,6 +194,8 @@ async function opensARecording(file, frames) {
 try {
   await looksAndHolds();
   await drives();
+  await touches();
+  await drivesWithAFinger();
   assert.equal(await opensARecording(recording, 300), 0);
   await opensARecording(blackBox, 100);
   assert.deepEqual(errors, []);

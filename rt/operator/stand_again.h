@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "rt/loop/operator_input.h"
+
+namespace sandrunner {
+
+/// Lets another operator speak, until it is told to bring the robot to Stand: then it asks for what
+/// the mode machine needs from wherever it is, a latched fault included, and the other one has
+/// nothing to say but another request, which ends it. For a simulated robot, which somebody holds
+/// upright meanwhile. Called from the control thread.
+class StandAgain final : public OperatorInput {
+ public:
+  /// `other` must outlive it.
+  explicit StandAgain(OperatorInput& other) : other_(other) {}
+
+  void begin() noexcept;
+  /// The robot is to be held: it does not carry itself yet.
+  bool holds() const noexcept;
+  /// It is held so that it can stand from there; before, nothing but its rest is asked for.
+  void is_upright() noexcept { upright_ = true; }
+
+  OperatorCommand command(std::uint64_t tick) noexcept override;
+  OperatorVerdict advance(const TickFacts& facts) noexcept override;
+
+ private:
+  enum class Phase { kIdle, kDown, kUp };  // kDown: until it rests and is upright
+  ModeRequest wanted() const noexcept;
+  void request(ModeRequest r) noexcept;
+
+  OperatorInput& other_;
+  Phase phase_ = Phase::kIdle;
+  bool upright_ = false;
+  Mode mode_ = Mode::kPassive;
+  OperatorCommand command_;
+  std::uint64_t others_id_ = 0;  // of the other operator's latest request
+  std::uint64_t ticks_ = 0;      // since begin()
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/run/simulator_hand.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "rt/base/config_tree.h"
+#include "rt/base/errors.h"
+
+namespace sandrunner {
+namespace {
+
+struct Setting {
+  const char* key;
+  double sim::GroundParameters::*value;
+};
+constexpr std::array kSettings = {
+    Setting{"sigma_flat_npm3", &sim::GroundParameters::sigma_flat_npm3},
+    Setting{"sigma_cone_npm3", &sim::GroundParameters::sigma_cone_npm3},
+    Setting{"stiffness_npm", &sim::GroundParameters::stiffness_npm},
+    Setting{"friction", &sim::GroundParameters::friction},
+    Setting{"drag", &sim::GroundParameters::drag},
+    Setting{"packing", &sim::GroundParameters::packing},
+};
+constexpr const char* kKinds[] = {"granular", "rigid", "linear"};
+
+GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& wanted) {
+  const sim::GroundParameters& ground = terrain.patches.front().ground;
+  GroundNow now;
+  now.wanted = wanted;
+  now.name = terrain.name;
+  now.kind = kKinds[static_cast<int>(ground.kind)];
+  now.presets = sim::terrain_preset_names();
+  for (const Setting& setting : kSettings)
+    now.values.emplace_back(setting.key, ground.*setting.value);
+  return now;
+}
+
+// Throws InputError: the line that --set gives.
+sim::TerrainDescription read(const WantedGround& wanted, const std::string& settings) {
+  ConfigTree tree;
+  if (wanted.preset.empty()) {
+    tree.add_text(settings, "the run's settings");
+  } else if (std::ranges::count(sim::terrain_preset_names(), wanted.preset) == 1) {
+    sim::add_terrain_layer(tree, wanted.preset);
+  } else {
+    throw InputError(fmt::format("terrain: '{}', expected one of {}", one_line(wanted.preset),
+                                 fmt::join(sim::terrain_preset_names(), ", ")));
+  }
+  for (const auto& [key, value] : wanted.set) {
+    if (std::ranges::find(kSettings, key, &Setting::key) == kSettings.end()) {
+      std::vector<std::string> keys;
+      for (const Setting& setting : kSettings) keys.emplace_back(setting.key);
+      throw InputError(
+          fmt::format("terrain: '{}', expected one of {}", one_line(key), fmt::join(keys, ", ")));
+    }
+    tree.set(fmt::format("terrain.{}={}", key, value));
+  }
+  return sim::read_terrain(tree);
+}
+
+std::string text_of(const WantedGround& wanted) {
+  std::string text = wanted.preset.empty() ? "as the run began" : wanted.preset;
+  for (const auto& [key, value] : wanted.set) text += fmt::format(" {}={}", key, value);
+  return text;
+}
+
+}  // namespace
+
+SimulatorHand::SimulatorHand(sim::Simulator& simulator, const sim::TerrainDescription& terrain,
+                             std::string settings, StandAgain* stand_again)
+    : simulator_(simulator),
+      settings_(std::move(settings)),
+      stand_again_(stand_again),
+      uneven_(simulator.terrain().highest > 0.0),
+      ground_(describe(terrain, {})) {}
+
+std::string SimulatorHand::push(double direction_rad) {
+  const std::lock_guard lock(mutex_);
+  constexpr std::size_t kMost = 16;  // while the robot's time stands still
+  if (pushes_rad_.size() == kMost) return "enough pushes wait for the next tick";
+  pushes_rad_.push_back(direction_rad);
+  return {};
+}
+
+std::string SimulatorHand::set_on_legs() {
+  if (!stand_again_) {
+    return "this run follows its command line: only with --command live is the robot set on its "
+           "legs";
+  }
+  const std::lock_guard lock(mutex_);
+  set_on_legs_ = true;
+  return {};
+}
+
+std::string SimulatorHand::set_ground(const WantedGround& wanted) {
+  if (uneven_ && !wanted.preset.empty())
+    return "uneven ground cannot be changed for another preset";
+  try {
+    sim::TerrainDescription terrain = read(wanted, settings_);
+    const std::lock_guard lock(mutex_);
+    ground_ = describe(terrain, wanted);
+    terrain_ = std::move(terrain);
+    terrain_text_ = text_of(wanted);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+GroundNow SimulatorHand::ground() const {
+  const std::lock_guard lock(mutex_);
+  return ground_;
+}
+
+bool SimulatorHand::act(std::uint64_t next, const Note& note) {
+  bool changed = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (terrain_) {
+      simulator_.set_terrain(*terrain_);
+      terrain_.reset();
+      note(next, "terrain", terrain_text_);
+      changed = true;
+    }
+    for (const double direction_rad : std::exchange(pushes_rad_, {})) {
+      simulator_.push(kPush_mps * std::cos(direction_rad), kPush_mps * std::sin(direction_rad));
+      note(next, "push",
+           fmt::format("{} m/s towards {:.0f} degrees", kPush_mps,
+                       direction_rad * (180.0 / std::numbers::pi)));
+      changed = true;
+    }
+    if (std::exchange(set_on_legs_, false)) stand_again_->begin();
+  }
+  return hold(next, note) || changed;
+}
+
+// Upright, until it carries itself.
+bool SimulatorHand::hold(std::uint64_t next, const Note& note) {
+  const bool holds = stand_again_ && stand_again_->holds();
+  if (holds != holding_) note(next, "hand", holds ? "sets the robot on its legs" : "lets it go");
+  holding_ = holds;
+  if (holds && simulator_.carry_to_stand()) stand_again_->is_upright();
+  return holds;
+}
+
+}  // namespace sandrunner
