@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::uint64_t kSecond = kControlHz;
 constexpr const char* kSoft =
-    R"({"say":"terrain","preset":"","set":{"sigma_flat_npm3":1250000,"sigma_cone_npm3":100000}})";
+    R"({"say":"terrain","preset":"","set":{"sigma_flat_npm3":2500000,"sigma_cone_npm3":150000}})";
 constexpr const char* kPushLeft = R"({"say":"push","direction":1.5707963267948966})";
 
 Policy shipped() { return load_policy_text(std::string(shipped_policy_text()), "built in"); }
@@ -92,7 +92,7 @@ struct HandTest : testing::Test {
   }
 
   Policy policy = shipped();
-  const ProcessConfig config = config_of("grass", {}, &policy.spec());
+  const ProcessConfig config = config_of("wet-sand", {}, &policy.spec());
   sim::Simulator simulator{config.robot, config.simulator};
   RemoteOperator remote{1200};
   StandAgain stand_again{remote};
@@ -144,7 +144,7 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
   read_recording(folder.path("run.mcap"), visitor);
   EXPECT_EQ(replay.ticks(), ticks.size());
   EXPECT_EQ(events, std::vector<std::string>{
-                        "8000 as the run began sigma_cone_npm3=100000 sigma_flat_npm3=1250000"});
+                        "8000 as the run began sigma_cone_npm3=150000 sigma_flat_npm3=2500000"});
 }
 
 TEST_F(HandTest, ARunThatNobodyTouchesIsTheSameToTheBit) {
@@ -197,7 +197,7 @@ TEST_F(HandTest, ARobotThatHasFallenWithAFaultStandsAgainByTheWaysOfTheModeMachi
       &stand_again);
   using enum Mode;
   EXPECT_EQ(modes, (std::vector<Mode>{kPassive, kDamping, kStandUp, kStand, kFault, kPassive,
-                                      kDamping, kStandUp, kStand}));
+                                      kDamping, kStandUp, kStand, kDamping}));
   const auto& [w, x, y, z] = ticks[ticks.size() - kDampingEnd_ticks].truth.orientation_wxyz;
   EXPECT_GT(1.0 - 2.0 * (x * x + y * y), 0.98);
   EXPECT_EQ(result.end.gate.faults, 0u);
