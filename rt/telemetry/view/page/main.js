@@ -88,6 +88,7 @@ function makeLive({ live, frames, hello }, player, view, changed) {
   };
   live.onAnswer = (message) => drive.answer(message);
   showTime();
+  hand.show();
   return () => {
     const text = live.lost ? 'LOST: nothing is heard of the robot' : '';
     if (lost.textContent !== text) lost.textContent = text;
