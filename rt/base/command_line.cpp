@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <memory>
 #include <string_view>
@@ -89,9 +90,21 @@ void set_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
   }
 }
 
-void reject_empty_values(CLI::App& app) {
+// "--out --record DIR": the value of --out was forgotten, and a folder of the name --record is not
+// meant.
+bool looks_like_an_option(const std::string& value) {
+  return value.size() >= 2 && value[0] == '-' &&
+         (value[1] == '-' || std::isalpha(static_cast<unsigned char>(value[1])) != 0);
+}
+
+void reject_missing_values(CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& value : option->results()) {
+      if (!option->get_positional() && looks_like_an_option(value)) {
+        throw InputError(
+            fmt::format("{0}: found '{1}', expected a value (a file of that name is './{1}')",
+                        option->get_name(), value));
+      }
       if (value.empty()) {
         throw InputError(
             fmt::format("{}: found an empty value, expected one (is a variable of the shell not "
@@ -100,7 +113,7 @@ void reject_empty_values(CLI::App& app) {
       }
     }
   }
-  for (CLI::App* command : app.get_subcommands()) reject_empty_values(*command);
+  for (CLI::App* command : app.get_subcommands()) reject_missing_values(*command);
 }
 
 }  // namespace
@@ -119,7 +132,7 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     throw InputError(fmt::format("command line: {}", error.what()));
   }
-  reject_empty_values(app);
+  reject_missing_values(app);
   return true;
 }
 

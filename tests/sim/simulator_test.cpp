@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -343,6 +344,41 @@ TEST(SimulatorTest, TruthHoldsTheEstimatedQuantities) {
         x.position + rotation_matrix(x.orientation) * hip_to_base(robot.model.legs[l], p, p.foot);
     EXPECT_NEAR(truth.foot_height_m[l], foot.z, 1e-12);
   }
+}
+
+TEST(SimulatorTest, AHandPutsARobotThatLiesOnItsBackUprightWithoutAJump) {
+  const Robot robot = load_raibo();
+  Simulator simulator(robot, config_of("dry-sand"));
+  simulator.reset_lying();
+  SimulatorState on_its_back = simulator.state();
+  on_its_back.robot.rigid.orientation = {0.0, 1.0, 0.0, 0.0};
+  on_its_back.robot.rigid.position.z = 0.3;
+  simulator.restore(on_its_back);
+  int ticks = 0;
+  for (; !simulator.carry_to_stand() && ticks < 2 * kControlHz; ++ticks) {
+    const JointArray<double> before = simulator.state().robot.rigid.q;
+    simulator.write({});
+    for (int j = 0; j < kNumJoints; ++j) {
+      ASSERT_NEAR(simulator.state().robot.rigid.q[j], before[j], 0.003) << j << " at " << ticks;
+    }
+  }
+  EXPECT_LT(ticks, 2 * kControlHz);
+  const RigidState<double>& x = simulator.state().robot.rigid;
+  EXPECT_NEAR(x.position.z, robot.nominal_height_m, 0.05);
+  EXPECT_NEAR(std::hypot(x.orientation.x, x.orientation.y), 0.0, 0.02);
+}
+
+TEST(SimulatorTest, HardGroundUnderFeetThatHaveSunkInLiftsThemOut) {
+  const Robot robot = load_raibo();
+  Simulator simulator(robot, config_of("dry-sand"));
+  run(simulator, robot, 2000);
+  const double deepest = std::ranges::max(simulator.report().penetration);
+  ASSERT_GT(deepest, 0.01);
+  const double before = simulator.state().robot.rigid.position.z;
+  simulator.set_terrain(config_of("rigid").terrain);
+  EXPECT_DOUBLE_EQ(simulator.state().robot.rigid.position.z, before + deepest);
+  run(simulator, robot, 400);
+  EXPECT_LT(simulator.state().robot.rigid.position.z, before + deepest + 0.05);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ def measure(program, seconds, kinds):
             for pid in clients:
                 os.kill(pid, signal.SIGKILL)
                 os.waitpid(pid, 0)
-            run.send_signal(signal.SIGINT)
+            run.terminate()
             run.communicate()
 
 

@@ -55,6 +55,12 @@ TEST_F(BadInputTest, EmptyValuesAreRefused) {
   }
 }
 
+TEST_F(BadInputTest, AnOptionIsNotTheValueOfAnother) {
+  ProgramTest::expect_refused("--out --record", "--out: found '--record', expected a value");
+  expect_refused("--policy -x", "--policy: found '-x', expected a value");
+  expect_refused("--command --view", "--command: found '--view', expected a value");
+}
+
 TEST_F(BadInputTest, WhatWasProbablyMeantIsSaid) {
   expect_refused("--terain rigid", "'--terain', did you mean '--terrain'?");
   expect_refused("--dds_security=x", "did you mean '--dds-security'?");

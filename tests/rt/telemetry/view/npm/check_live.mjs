@@ -115,7 +115,7 @@ async function drives() {
 
 async function touches() {
   const { url, child } = await serve(sandrunner, "--set", "view.port=0", "--command", "live", "--record", `${recording}.touched`);
-  const page = await open(url);
+  const page = await open(url, { width: 780, height: 320 });  // wide enough for the layout of a desk
   const mode = (name) => until(page, `document.getElementById('mode').textContent === '${name}'`);
   const ground = (what) => until(page, `sandrunner.run.live.state.ground.${what}`);
   const last = (field, k) => page.evaluate(`sandrunner.run.frames.at(sandrunner.frames - 1, '${field}', ${k})`);
@@ -137,11 +137,13 @@ async function touches() {
   assert.equal(await text(page, "refusal"), "");
 
   // Dragged to the right with shift held: pushed to the right of the picture.
-  const fastest = "Math.max(...[...Array(20).keys()].map((i) => Math.hypot(...[0, 1].map((k) => sandrunner.run.frames.at(sandrunner.frames - 1 - i, 'motion', k)))))";
+  const before = await page.evaluate("sandrunner.frames");
+  const fastest = `Math.max(...[...Array(sandrunner.frames - ${before}).keys()].map((i) => Math.hypot(...[0, 1].map((k) => sandrunner.run.frames.at(${before} + i, 'motion', k)))))`;
+  const { left, top } = await page.$eval("#scene", (canvas) => canvas.getBoundingClientRect().toJSON());
   await page.keyboard.down("Shift");
-  await page.mouse.move(240, 120);
+  await page.mouse.move(left + 150, top + 90);
   await page.mouse.down();
-  await page.mouse.move(300, 120);
+  await page.mouse.move(left + 220, top + 90);
   await page.mouse.up();
   await page.keyboard.up("Shift");
   await until(page, `${fastest} > 0.2`);
