@@ -23,9 +23,11 @@ export class Stick {
     };
     stick.onpointermove = (event) => { if (stick.hasPointerCapture(event.pointerId)) follow(event); };
     stick.onlostpointercapture = () => move(0, 0);
-    hold.onpointerdown = (event) => hold.setPointerCapture(event.pointerId);
-    hold.ongotpointercapture = () => { this.#set(true); };
-    hold.onlostpointercapture = () => { this.#set(false); };
+    hold.onpointerdown = (event) => {
+      hold.setPointerCapture(event.pointerId);
+      this.#set(true);
+    };
+    hold.onpointerup = hold.onpointercancel = hold.onlostpointercapture = () => this.#set(false);
     for (const part of [stick, hold]) part.oncontextmenu = (event) => event.preventDefault();  // of a long touch
     this.#set(false);
   }
