@@ -41,12 +41,10 @@ TEST(ViewMessagesTest, WhatAPageMaySayIsUnderstood) {
 }
 
 TEST(ViewMessagesTest, EverythingElseIsRefusedAndSaidWhy) {
-  for (const char* text : {"", "[]", "1", "null", "{",
-                           R"({"say":"hello","key":"a"} )"
-                           "x",
-                           "{'say':'pause'}", R"({"say":"hello","key":"a",})", "\xff",
-                           R"({"say":"drive","vx":NaN,"vy":0,"wz":0})",
-                           R"({"say":"drive","vx":1e999,"vy":0,"wz":0})"}) {
+  for (const char* text :
+       {"", "[]", "1", "null", "{", R"({"say":"hello","key":"a"} x)", "{'say':'pause'}",
+        R"({"say":"hello","key":"a",})", "\xff", R"({"say":"drive","vx":NaN,"vy":0,"wz":0})",
+        R"({"say":"drive","vx":1e999,"vy":0,"wz":0})"}) {
     EXPECT_EQ(why(text), "expected a JSON object") << text;
   }
   EXPECT_EQ(why("{}"), kNone);

@@ -27,7 +27,7 @@ std::vector<std::string> viewed(const std::string& arguments, const std::string&
 /// Waits until it has said where to look.
 Address address_in(const std::string& errors) {
   std::string said;
-  while (said.find("\n") == std::string::npos) {
+  while (said.find('\n') == std::string::npos) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::ostringstream text;
     text << std::ifstream(errors).rdbuf();
