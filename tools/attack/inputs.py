@@ -118,7 +118,7 @@ class Inputs:
             value = number(rng) if rng.random() < 0.4 else near(rng, good)
             if rng.random() < 0.15:
                 key = rng.choice([key + 'x', key.split('.')[0], key + '.x', '.' + key, 'x', key.upper(), 'a.' * 5000])
-                broken = True
+                broken = broken or value != '{}'  # an empty table sets nothing
             arguments += ['--set', f'{key}={value}']
         if rng.random() < 0.3:
             (folder / 'more.toml').write_bytes(mutated_text(rng, self.seeds['config.toml'].decode()))
@@ -192,6 +192,7 @@ class Inputs:
                 key, good = rng.choice(self.keys)
                 value = {'--plot': 'plots', '--set': f'{key}={rng.choice([good, number(rng)])}'}
                 command += [option, value.get(option, number(rng))]
+                broken = broken and option != '--to'  # the damage may lie behind it
         return Input('recording', command, broken)
 
     def command_line(self, rng, folder):
