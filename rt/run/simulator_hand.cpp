@@ -27,14 +27,13 @@ constexpr std::array kSettings = {
     Setting{"drag", &sim::GroundParameters::drag},
     Setting{"packing", &sim::GroundParameters::packing},
 };
-constexpr const char* kKinds[] = {"granular", "rigid", "linear"};
 
 GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& wanted) {
   const sim::GroundParameters& ground = terrain.patches.front().ground;
   GroundNow now;
   now.wanted = wanted;
   now.name = terrain.name;
-  now.kind = kKinds[static_cast<int>(ground.kind)];
+  now.kind = sim::kind_name(ground.kind);
   now.presets = sim::terrain_preset_names();
   for (const Setting& setting : kSettings)
     now.values.emplace_back(setting.key, ground.*setting.value);
@@ -106,7 +105,6 @@ std::string SimulatorHand::set_ground(const WantedGround& wanted) {
     const std::lock_guard lock(mutex_);
     ground_ = describe(terrain, wanted);
     terrain_ = std::move(terrain);
-    terrain_text_ = text_of(wanted);
     return {};
   } catch (const InputError& error) {
     return error.what();
@@ -125,7 +123,7 @@ bool SimulatorHand::act(std::uint64_t next, const Note& note) {
     if (terrain_) {
       simulator_.set_terrain(*terrain_);
       terrain_.reset();
-      note(next, "terrain", terrain_text_);
+      note(next, "terrain", text_of(ground_.wanted));
       changed = true;
     }
     for (const double direction_rad : std::exchange(pushes_rad_, {})) {

@@ -48,7 +48,6 @@ class SimulatorHand final : public ViewHand {
   std::vector<double> pushes_rad_;
   bool set_on_legs_ = false;
   std::optional<sim::TerrainDescription> terrain_;
-  std::string terrain_text_;
 };
 
 }  // namespace sandrunner

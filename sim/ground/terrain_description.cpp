@@ -18,6 +18,9 @@ namespace {
 const std::vector<std::string> kPresets = {"dry-sand",       "wet-sand", "grass",
                                            "athletic-track", "vinyl",    "rigid"};
 
+// In the order of GroundKind.
+constexpr const char* kKinds[] = {"granular", "rigid", "linear"};
+
 // As short as it converts back: 60, not 59.99999999999999.
 double degrees_of(double angle_rad) {
   const double degrees = angle_rad * (180.0 / std::numbers::pi);
@@ -32,11 +35,10 @@ void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) 
     value = c.number(prefix + key, value, min, max);
   };
   const auto flag = [&](const char* key, bool& value) { value = c.flag(prefix + key, value); };
-  const char* const kinds[] = {"granular", "rigid", "linear"};
   const std::string kind =
-      c.choice(prefix + "kind", kinds[static_cast<int>(p.kind)], {kinds[0], kinds[1], kinds[2]});
+      c.choice(prefix + "kind", kind_name(p.kind), {kKinds[0], kKinds[1], kKinds[2]});
   for (int i = 0; i < 3; ++i) {
-    if (kind == kinds[i]) p.kind = static_cast<GroundKind>(i);
+    if (kind == kKinds[i]) p.kind = static_cast<GroundKind>(i);
   }
   number("friction", p.friction, 0.0, 5.0);
   number("sigma_flat_npm3", p.sigma_flat_npm3, 1.0, 1e10);
@@ -81,6 +83,8 @@ const std::string& checked_preset(const std::string& name) {
 }
 
 }  // namespace
+
+const char* kind_name(GroundKind kind) noexcept { return kKinds[static_cast<int>(kind)]; }
 
 std::vector<std::string> terrain_preset_names() { return kPresets; }
 

@@ -23,6 +23,9 @@ struct TerrainDescription {
   double hydraulic_factor = 0.0;  ///< c_h of r_h = c_h A/P; 0: 4 for a tyre, 2 otherwise
 };
 
+/// "granular", "rigid", "linear": as in `terrain.kind`.
+const char* kind_name(GroundKind kind) noexcept;
+
 /// Names of the presets built in: "dry-sand", "rigid", ...
 std::vector<std::string> terrain_preset_names();
 

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
 #include <thread>
 #include <vector>
 
 #include "drivers/imu/mip_device.h"
 #include "tests/drivers/imu/pty.h"
+#include "tests/support/wait_until.h"
 
 namespace sandrunner {
 namespace {
@@ -31,26 +31,17 @@ void play_sensor(const Pty& pty, const std::stop_token& stop) {
   }
 }
 
-bool comes(const std::function<bool()>& holds) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::yield();
-  }
-  return true;
-}
-
 TEST(ImuThreadTest, HandsOnTheNewestSampleOnceAndEndsWithTheLine) {
   Pty pty;
   MipImuConfig config;
   config.device = pty.path();
   std::jthread sensor([&](const std::stop_token& stop) { play_sensor(pty, stop); });
   ImuThread imu(config);
-  ASSERT_TRUE(comes([&] { return imu.poll(); }));
+  ASSERT_TRUE(wait_until([&] { return imu.poll(); }));
   double last = imu.sample().angular_velocity_radps[1];
   EXPECT_LT(last, 0.0) << "FRD has become FLU";
   for (int i = 0; i < 10; ++i) {
-    ASSERT_TRUE(comes([&] { return imu.poll(); }));
+    ASSERT_TRUE(wait_until([&] { return imu.poll(); }));
     EXPECT_LT(imu.sample().angular_velocity_radps[1], last) << "a newer one";
     last = imu.sample().angular_velocity_radps[1];
   }

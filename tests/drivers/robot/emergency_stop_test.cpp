@@ -4,28 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
-#include <functional>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
+#include "tests/support/wait_until.h"
 
 namespace sandrunner {
 namespace {
 
 std::int64_t now_ns() { return clock_ns(CLOCK_MONOTONIC); }
-
-bool comes(const std::function<bool()>& holds) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::yield();
-  }
-  return true;
-}
 
 /// A line that a test moves.
 enum class Level { kLow, kHigh, kUnreadable };
@@ -42,18 +31,18 @@ struct FakeLine {
 TEST(EmergencyStopTest, AClosedSwitchIsKnownAtOnce) {
   FakeLine line;
   const EmergencyStop stop(line.read());
-  EXPECT_TRUE(comes([&] { return !stop.pressed(now_ns()); }));
+  EXPECT_TRUE(wait_until([&] { return !stop.pressed(now_ns()); }));
 }
 
 TEST(EmergencyStopTest, PressedOrBrokenOrUnreadableAllStop) {
   for (const Level level : {Level::kLow, Level::kUnreadable}) {
     FakeLine line;
     const EmergencyStop stop(line.read());
-    ASSERT_TRUE(comes([&] { return !stop.pressed(now_ns()); }));
+    ASSERT_TRUE(wait_until([&] { return !stop.pressed(now_ns()); }));
     line.level = level;
-    EXPECT_TRUE(comes([&] { return stop.pressed(now_ns()); }));
+    EXPECT_TRUE(wait_until([&] { return stop.pressed(now_ns()); }));
     line.level = Level::kHigh;
-    EXPECT_TRUE(comes([&] { return !stop.pressed(now_ns()); }));
+    EXPECT_TRUE(wait_until([&] { return !stop.pressed(now_ns()); }));
   }
 }
 
@@ -75,7 +64,7 @@ TEST(EmergencyStopTest, ALineThatIsNotReadAnyMoreStops) {
     return true;
   });
   hangs = true;
-  ASSERT_TRUE(comes([&] { return hanging == 1; }));
+  ASSERT_TRUE(wait_until([&] { return hanging == 1; }));
   EXPECT_TRUE(stop.pressed(now_ns() + EmergencyStop::kLongest_ns));
   hangs = false;
   hangs.notify_all();

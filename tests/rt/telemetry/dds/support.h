@@ -24,6 +24,7 @@
 #include "rt/telemetry/dds/telemetry.h"
 #include "tests/rt/core/fake_robot.h"
 #include "tests/rt/telemetry/example_tick.h"
+#include "tests/support/wait_until.h"
 
 namespace sandrunner {
 
@@ -43,16 +44,6 @@ inline DdsConfig test_config() {
     close(held);
   }
   return config;
-}
-
-/// Waits until `holds()`, for this long at most; returns whether it held.
-inline bool wait_until(const std::function<bool()>& holds, int limit_s = 5) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(limit_s);
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
 }
 
 inline void sleep_s(double duration_s) {

@@ -2,33 +2,11 @@
 // node check_live.mjs BROWSER SANDRUNNER RECORDING BLACK_BOX: looks at a run while it goes, holds and steps it, loses its server
 // and finds it again, drives the robot; then opens both recordings.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import puppeteer from "puppeteer-core";
 import { groundAt } from "./file_page.mjs";
+import { endServers, launch, serve } from "./served_page.mjs";
 
 const [browserPath, sandrunner, recording, blackBox] = process.argv.slice(2);
-const children = new Set();
-
-/** Starts a program with --view; resolves to {url, child} once it has said where to look. */
-function serve(program, ...words) {
-  const child = spawn(program, [...words, "--view"], { stdio: ["ignore", "ignore", "pipe"] });
-  children.add(child);
-  return new Promise((resolve, reject) => {
-    let said = "";
-    child.stderr.on("data", (text) => {
-      said += text;
-      const url = /look at (\S+)/.exec(said)?.[1];
-      if (url) resolve({ url, child });
-    });
-    child.on("exit", (code) => {
-      children.delete(child);
-      reject(new Error(`${program} ended with ${code}: ${said}`));
-    });
-  });
-}
-
-const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const browser = await puppeteer.launch({ executablePath: browserPath, headless: "shell", args, protocolTimeout: 120000 });
+const browser = await launch(browserPath);
 const errors = [];
 
 async function open(url, viewport = { width: 480, height: 300 }) {  // what a machine without a graphics card can draw
@@ -203,5 +181,5 @@ try {
   assert.deepEqual(errors, []);
 } finally {
   await browser.close();
-  for (const child of children) child.kill("SIGKILL");
+  endServers();
 }

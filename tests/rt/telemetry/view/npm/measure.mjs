@@ -1,35 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // node measure.mjs BROWSER SANDRUNNER FOLDER: times between a robot in real time and a page in Chromium, in milliseconds.
 // What the robot did and when is read from the recording's clock and run.csv. For a computer that does little else.
-import { spawn } from "node:child_process";
 import fs from "node:fs";
-import puppeteer from "puppeteer-core";
+import { endServers, launch as launchBrowser, serve } from "./served_page.mjs";
 
 const [browserPath, sandrunner, folder] = process.argv.slice(2);
-const kArgs = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const now = () => performance.timeOrigin + performance.now();
 const ms = (value) => `${value.toFixed(0)} ms`;
 const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
-const children = new Set(), browsers = new Set();
+const browsers = new Set();
 
-function start(...words) {
-  const child = spawn(sandrunner, ["--view", ...words], { stdio: ["ignore", "ignore", "pipe"] });
-  children.add(child);
-  child.on("exit", () => children.delete(child));
-  return new Promise((resolve, reject) => {
-    let said = "";
-    child.stderr.on("data", (text) => {
-      said += text;
-      const url = /look at (\S+)/.exec(said)?.[1];
-      if (url) resolve({ url, child });
-    });
-    child.on("exit", (code) => reject(new Error(`${sandrunner} ended with ${code}: ${said}`)));
-  });
-}
+const start = (...words) => serve(sandrunner, ...words);
 
 async function launch() {
-  const browser = await puppeteer.launch({ executablePath: browserPath, headless: "shell", args: kArgs, protocolTimeout: 120000 });
+  const browser = await launchBrowser(browserPath);
   browsers.add(browser);
   return browser;
 }
@@ -179,5 +164,5 @@ try {
   await drives("server's thread stopped", ({ child }) => stopThread(child.pid));
 } finally {
   for (const browser of browsers) browser.process()?.kill("SIGKILL");
-  for (const child of children) child.kill("SIGKILL");
+  endServers();
 }
