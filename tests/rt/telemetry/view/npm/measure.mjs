@@ -2,6 +2,7 @@
 // node measure.mjs BROWSER SANDRUNNER FOLDER: times between a robot in real time and a page in Chromium, in milliseconds.
 // What the robot did and when is read from the recording's clock and run.csv. For a computer that does little else.
 import fs from "node:fs";
+import { spawn } from "node:child_process";
 import { endServers, launch as launchBrowser, serve } from "./served_page.mjs";
 
 const [browserPath, sandrunner, folder] = process.argv.slice(2);
