@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/fuzz.sh MINUTES [NAME...]: builds the libFuzzer programs with clang and the sanitizers, and runs each, or those
-# named, for so long. What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with 1 at the
+# tools/fuzz.sh TIME [NAME...]: builds the libFuzzer programs with clang and the sanitizers, and runs each, or those
+# named, for so long (10m, 20s). What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with 1 at the
 # first finding, which lies in build/fuzz/findings.
 set -euo pipefail
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
-if ! [[ ${1:-} =~ ^[0-9]+$ ]]; then
-  echo "fuzz.sh: found '${1:-}', expected the number of minutes" >&2
+if ! [[ ${1:-} =~ ^([1-9][0-9]{0,5})([ms])$ ]]; then
+  echo "fuzz.sh: found '${1:-}', expected a time such as 10m or 20s" >&2
   exit 2
 fi
-seconds=$((60 * $1))
+seconds=${BASH_REMATCH[1]}
+[[ ${BASH_REMATCH[2]} == s ]] || seconds=$((60 * seconds))
 shift
 
 bash "$root/tools/install_packages.sh" checks

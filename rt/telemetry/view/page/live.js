@@ -43,7 +43,10 @@ export class Live {
       this.heard = performance.now();
       if (typeof data === 'string') this.#text(JSON.parse(data)); else this.#rows(data);
     };
-    socket.onclose = () => setTimeout(() => this.#connect(), kAgain_ms);
+    socket.onclose = () => {
+      this.heard = -Infinity;  // what ended is lost at once, what is only silent after a while
+      setTimeout(() => this.#connect(), kAgain_ms);
+    };
   }
 
   #text(message) {
