@@ -71,17 +71,23 @@ double cos_of_degrees(double angle_deg) noexcept {
   return cosine;
 }
 
+/// What a joint at rest may be told to have: some steps of the coarsest drive's speed.
+constexpr double kRest_radps = 0.05;
+
 /// As the table says.
 bool judged_in(Mode mode, Fault fault) noexcept {
   return (kFaultTable[std::countr_zero(bit(fault))].modes & mode_set(mode)) != 0;
 }
 
-/// Adds `found` and the joints it is about to the latch, and remembers what began it.
+/// Adds `found` and the joints it is about to the latch, and remembers what began it: a stall of
+/// the loop, if there was one, as whatever else is found after it may be its doing.
 void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept {
   if (found == 0) return;
   if (state.faults == 0) {
     state.fault_joints = state.blind_joints = 0;
-    state.first_fault = static_cast<Fault>(std::uint64_t{1} << std::countr_zero(found));
+    const std::uint64_t stall = found & bit(Fault::kLoopStalled);
+    state.first_fault =
+        static_cast<Fault>(std::uint64_t{1} << std::countr_zero(stall != 0 ? stall : found));
     state.first_fault_tick = state.tick;
   }
   state.faults |= found;
@@ -258,7 +264,7 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, Ga
     }
     const bool same = same_bits(joints.position_rad[j], state.position_rad[j]) &&
                       same_bits(joints.velocity_radps[j], state.velocity_radps[j]);
-    if (!same || state.sent == 0) {
+    if (!same || (state.sent == 0 && mode != Mode::kFault)) {
       state.changed_tick[j] = tick;
       state.told_rad[j] = state.sent_rad[j];
     } else if (judged_in(mode, Fault::kEncoderFrozen)) {
@@ -268,6 +274,11 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, Ga
       const double told_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
       const bool deaf = frozen_ticks >= config_.frozen_ticks && told_rad > config_.frozen_told_rad;
       if (deaf || moved_rad > config_.frozen_moved_rad) faults |= bit(Fault::kEncoderFrozen);
+    } else if (mode == Mode::kFault && std::fabs(joints.velocity_radps[j]) > kRest_radps &&
+               std::fabs(joints.velocity_radps[j]) * seconds(tick - state.changed_tick[j]) >
+                   config_.frozen_moved_rad) {
+      // Damped by a speed that it no longer has it would be driven, not braked.
+      state.blind_joints |= std::uint64_t{1} << j;
     }
     if (faults != 0) at_fault |= std::uint64_t{1} << j;
     found |= faults;

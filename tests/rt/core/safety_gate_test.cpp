@@ -74,6 +74,33 @@ TEST_F(SafetyGateTest, DefaultCommandIsOff) {
   EXPECT_EQ(command_off.joints().kd_nmsprad[0], 0.0);
 }
 
+TEST_F(SafetyGateTest, AfterAFaultAJointWhoseEncoderFreezesIsNoLongerBrakedByItsOldSpeed) {
+  sensors.joints.velocity_radps.fill(0.02);  // at rest, by a coarse drive
+  sensors.joints.velocity_radps[4] = 3.0;
+  judge(Mode::kWalk);
+  sensors.emergency_stop = 1;
+  judge(Mode::kWalk);
+  constexpr int kSoonest = 6;  // ticks: 3 rad/s for them is less than 0.005 rad
+  for (int n = 0; n < kSoonest; ++n) judge(Mode::kFault);
+  EXPECT_EQ(pass(wanted).blind_joints(), 0u);
+  judge(Mode::kFault);
+  EXPECT_EQ(pass(wanted).blind_joints(), 1u << 4);
+  for (int n = 0; n < 4000; ++n) judge(Mode::kFault);
+  EXPECT_EQ(pass(wanted).blind_joints(), 1u << 4);
+  EXPECT_EQ(state.faults, static_cast<std::uint64_t>(Fault::kEmergencyStop));
+}
+
+TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
+  judge(Mode::kWalk);
+  sensors.tick += config.stall_fault_ticks + 2;
+  sensors.joints.tick.fill(sensors.tick);
+  sensors.imu.tick = sensors.tick;
+  sensors.joints.velocity_radps[2] = 2.0 * config.speed_fault_radps;
+  EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kLoopStalled) |
+                                    static_cast<std::uint64_t>(Fault::kJointSpeed));
+  EXPECT_EQ(state.first_fault, Fault::kLoopStalled);
+}
+
 TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
   wanted.velocity_radps.fill(25.0);
   wanted.feedforward_nm.fill(30.0);  // and 25 N m of damping
