@@ -174,9 +174,9 @@ void Training::run(const std::atomic<bool>& interrupted) {
   const double before = transitions(), all = config_.run.transitions;
   while (transitions() < all && !interrupted) {
     const double t0_s = wall_seconds();
-    settle();
     step_window();
     const double t1_s = wall_seconds();
+    settle();
     const learner::UpdateStats update = learner_.update();
     const double t2_s = wall_seconds();
     if (!update.finite) {
@@ -197,14 +197,13 @@ void Training::run(const std::atomic<bool>& interrupted) {
   if (transitions() > before) save();
 }
 
-// In the last part no pull towards symmetry, softer soils, dearer falls, smaller and smaller
-// updates, and less and less noise: the policy settles.
+// In the last part no pull towards symmetry, smaller and smaller updates, and less and less noise:
+// the policy settles, on what it does without.
 void Training::settle() {
   const RunSettings& run = config_.run;
   const learner::LearnerConfig& learner = config_.learner;
   const double left = (run.transitions - static_cast<double>(learner_.transitions())) /
                       std::max(run.transitions * run.settle_share, 1.0);
-  if (left < 1.0) task_.settle();
   // What is left of it would take from a trot its first step.
   learner_.set_symmetry_weight(left < 1.0 ? 0.0 : learner.loss.symmetry_weight * task_.late());
   learner_.set_kl_target(std::clamp(left, run.settle_kl_share, 1.0) * learner.kl_target);

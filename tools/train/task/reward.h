@@ -81,8 +81,7 @@ struct RewardSettings {
   double height_m = 0;         ///< of the base above the deformed ground
   double clearance = 0;        ///< per m^2 below clearance_m, times the root of the foot's speed
   double clearance_m = 0;      ///< of a foot in the air above the surface
-  double fall = 0;             ///< of a fall, late; besides what is not earned after it
-  double fall_end = 0;         ///< from when the policy settles
+  double fall = 0;             ///< of a fall, at the end; besides what is not earned after it
 };
 
 /// What read_task_config reads, with the ranges.
@@ -144,7 +143,6 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"clearance", &RewardSettings::clearance, 0.0, kNoLimit},
     {"clearance_m", &RewardSettings::clearance_m, 0.0, kNoLimit},
     {"fall", &RewardSettings::fall, 0.0, kNoLimit},
-    {"fall_end", &RewardSettings::fall_end, 0.0, kNoLimit},
 };
 
 /// Factors that change during the training. As they stand here: the reward that remains.

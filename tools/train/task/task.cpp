@@ -182,14 +182,6 @@ WindowStats Task::end_window(double transitions) {
   return w;
 }
 
-void Task::settle() {
-  GroundSettings& g = config_.ground;
-  g.sigma_flat_low = g.sigma_flat_low_end;
-  g.sigma_cone_low = g.sigma_cone_low_end;
-  g.softness_exponent = g.softness_exponent_end;
-  config_.reward.fall = config_.reward.fall_end;
-}
-
 void Task::advance_curriculum(const WindowStats& w) {
   const CommandSettings& c = config_.command;
   const GroundSettings& g = config_.ground;

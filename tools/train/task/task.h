@@ -56,8 +56,6 @@ class Task {
   /// Means over the window just done; clears its sums and advances the curricula and the ramp of
   /// the costs. `transitions`: since the start of the training.
   WindowStats end_window(double transitions);
-  /// The policy settles: from here on soils, and the price of a fall, are those of the end.
-  void settle();
   const Curriculum& curriculum() const { return curriculum_; }
   CommandRange command_range() const;
   /// 0 to 1: how far the costs have risen to their values at the end of the training.

@@ -67,14 +67,11 @@ constexpr NumberSetting<G> kGround[] = {
     {"roughness_wavelength_m", &G::roughness_wavelength_m, 0.05, 100.0},
     {"sigma_flat_low_start", &G::sigma_flat_low_start, 1.0, 1e10},
     {"sigma_flat_low", &G::sigma_flat_low, 1.0, 1e10},
-    {"sigma_flat_low_end", &G::sigma_flat_low_end, 1.0, 1e10},
     {"sigma_flat_high", &G::sigma_flat_high, 1.0, 1e10},
     {"sigma_cone_low_start", &G::sigma_cone_low_start, 1.0, 1e10},
     {"sigma_cone_low", &G::sigma_cone_low, 1.0, 1e10},
-    {"sigma_cone_low_end", &G::sigma_cone_low_end, 1.0, 1e10},
     {"sigma_cone_high", &G::sigma_cone_high, 1.0, 1e10},
     {"softness_exponent", &G::softness_exponent, 0.0, kNoLimit},
-    {"softness_exponent_end", &G::softness_exponent_end, 0.0, kNoLimit},
     {"open_step", &G::open_step, 0.0, kNoLimit},
     {"gate_kernel", &G::gate_kernel, 0.0, kNoLimit},
     {"gate_falls", &G::gate_falls, 0.0, kNoLimit},
@@ -122,10 +119,6 @@ GroundSettings read_ground_settings(ConfigTree& config) {
   read_numbers(config, "ground", kGround, g);
   require_order("ground.sigma_flat_low", g.sigma_flat_low, "ground.sigma_flat_low_start",
                 g.sigma_flat_low_start);
-  require_order("ground.sigma_flat_low_end", g.sigma_flat_low_end, "ground.sigma_flat_high",
-                g.sigma_flat_high);
-  require_order("ground.sigma_cone_low_end", g.sigma_cone_low_end, "ground.sigma_cone_high",
-                g.sigma_cone_high);
   require_order("ground.sigma_flat_low_start", g.sigma_flat_low_start, "ground.sigma_flat_high",
                 g.sigma_flat_high);
   require_order("ground.sigma_cone_low", g.sigma_cone_low, "ground.sigma_cone_low_start",
