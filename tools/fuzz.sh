@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # tools/fuzz.sh TIME [NAME...]: builds the libFuzzer programs with clang and the sanitizers, and runs each, or those
-# named, for so long (10m, 20s). What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with 1 at the
-# first finding, which lies in build/fuzz/findings.
+# named, for so long (10m, 20s). What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with
+# 1 at the first finding, which lies in build/fuzz/findings.
 set -euo pipefail
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)

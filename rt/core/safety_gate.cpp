@@ -267,18 +267,20 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, Ga
     if (!same || (state.sent == 0 && mode != Mode::kFault)) {
       state.changed_tick[j] = tick;
       state.told_rad[j] = state.sent_rad[j];
-    } else if (judged_in(mode, Fault::kEncoderFrozen)) {
+    } else {
       // What its own speed says that it moved, and what it was told to.
       const std::uint64_t frozen_ticks = tick - state.changed_tick[j];
-      const double moved_rad = std::fabs(joints.velocity_radps[j]) * seconds(frozen_ticks);
-      const double told_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
-      const bool deaf = frozen_ticks >= config_.frozen_ticks && told_rad > config_.frozen_told_rad;
-      if (deaf || moved_rad > config_.frozen_moved_rad) faults |= bit(Fault::kEncoderFrozen);
-    } else if (mode == Mode::kFault && std::fabs(joints.velocity_radps[j]) > kRest_radps &&
-               std::fabs(joints.velocity_radps[j]) * seconds(tick - state.changed_tick[j]) >
-                   config_.frozen_moved_rad) {
-      // Damped by a speed that it no longer has it would be driven, not braked.
-      state.blind_joints |= std::uint64_t{1} << j;
+      const double speed_radps = std::fabs(joints.velocity_radps[j]);
+      const bool moves = speed_radps * seconds(frozen_ticks) > config_.frozen_moved_rad;
+      if (judged_in(mode, Fault::kEncoderFrozen)) {
+        const double told_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
+        const bool deaf =
+            frozen_ticks >= config_.frozen_ticks && told_rad > config_.frozen_told_rad;
+        if (deaf || moves) faults |= bit(Fault::kEncoderFrozen);
+      } else if (mode == Mode::kFault && moves && speed_radps > kRest_radps) {
+        // Damped by a speed that it no longer has it would be driven, not braked.
+        state.blind_joints |= std::uint64_t{1} << j;
+      }
     }
     if (faults != 0) at_fault |= std::uint64_t{1} << j;
     found |= faults;
