@@ -262,7 +262,7 @@ class Page : public std::enable_shared_from_this<Page> {
   Hub& hub_;
   Place place_;
   const std::uint64_t number_ = ++hub_.pages_so_far;
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<beast::tcp_stream, false> socket_;  // without compression, which is never asked
   beast::flat_buffer buffer_{2 * kViewMessageBytes};
   MessageRate rate_;
   ViewFeed::Place in_feed_;

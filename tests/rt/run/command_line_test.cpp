@@ -4,7 +4,6 @@
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <thread>
 
 #include "policy/policy_file.h"
@@ -13,6 +12,7 @@
 #include "tests/policy/random_policy.h"
 #include "tests/support/program_test.h"
 #include "tests/support/small_robot.h"
+#include "tests/support/text_match.h"
 
 namespace sandrunner {
 namespace {
@@ -40,10 +40,8 @@ TEST_F(CommandLineTest, HelpNamesEveryOption) {
   EXPECT_EQ(error(), "");
   // The parser writes the help from the options that it knows: none of them is missing here.
   std::set<std::string> options;
-  const std::regex option("\n +(?:-[a-z],)?(--[a-z-]+)");
-  for (auto match = std::sregex_iterator(output().begin(), output().end(), option);
-       match != std::sregex_iterator(); ++match) {
-    options.insert((*match)[1]);
+  for (const auto& match : matches_in(output(), "\n +(-[a-z],)?(--[a-z-]+)")) {
+    options.insert(match[2]);
   }
   EXPECT_EQ(options,
             (std::set<std::string>{"--help", "--version", "--policy", "--robot", "--hardware",

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "tests/rt/telemetry/mcap_content.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text_match.h"
 
 namespace sandrunner {
 
@@ -105,18 +105,13 @@ class RecordingProgramTest : public testing::Test {
       const std::string plots = folder_.path("plots");
       EXPECT_EQ(run(SANDRUNNER_REPLAY, damaged + " --plot '" + plots + "'"), 2);
       const std::string text = output();
-      std::smatch span;
-      ASSERT_TRUE(
-          std::regex_search(text, span, std::regex("LOST by damage: tick (\\d+) .* to (\\d+) ")))
-          << text;
-      const std::uint64_t lost = std::stoull(span[2]) - std::stoull(span[1]) + 1;
+      const auto spans = matches_in(text, "LOST by damage: tick ([0-9]+) .* to ([0-9]+) ");
+      ASSERT_EQ(spans.size(), 1u) << text;
+      const std::uint64_t lost = std::stoull(spans[0][2]) - std::stoull(spans[0][1]) + 1;
       EXPECT_GT(lost, 40u);
       EXPECT_LT(lost, 2200u);  // half a second, the most that a chunk holds
-      std::smatch left_out;
-      const std::uint64_t not_compared =
-          std::regex_search(text, left_out, std::regex("(\\d+) ticks behind the damage"))
-              ? std::stoull(left_out[1])
-              : 0;
+      const auto left_out = matches_in(text, "([0-9]+) ticks behind the damage");
+      const std::uint64_t not_compared = left_out.empty() ? 0 : std::stoull(left_out[0][1]);
       EXPECT_LE(not_compared, next) << text;
       EXPECT_NE(text.find(std::to_string(ticks - lost - not_compared) + " ticks and "),
                 std::string::npos)

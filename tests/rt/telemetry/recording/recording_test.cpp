@@ -3,7 +3,6 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "rt/base/errors.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
@@ -14,6 +13,7 @@
 #include "tests/rt/telemetry/mcap_content.h"
 #include "tests/rt/telemetry/recording/recording_program.h"
 #include "tests/support/small_robot.h"
+#include "tests/support/text_match.h"
 
 namespace sandrunner {
 namespace {
@@ -326,16 +326,12 @@ TEST_F(RecordingTest, FoxgloveLayoutShowsWhatExists) {
   const std::string layout = read_file(SANDRUNNER_FOXGLOVE_LAYOUT);
   ASSERT_TRUE(nlohmann::json::accept(layout));
   int shown = 0;
-  const std::regex shown_topic("\"(/[a-z_/]+)([^\" ]*)\"");
-  for (auto match = std::sregex_iterator(layout.begin(), layout.end(), shown_topic);
-       match != std::sregex_iterator(); ++match) {
-    const std::string topic = (*match)[1], fields = (*match)[2];
+  for (const auto& match : matches_in(layout, "\"(/[a-z_/]+)([^\" ]*)\"")) {
+    const std::string& topic = match[1];
     ASSERT_TRUE(schema_of.contains(topic)) << topic;
-    const std::regex name("[a-z_]+");
-    for (auto field = std::sregex_iterator(fields.begin(), fields.end(), name);
-         field != std::sregex_iterator(); ++field) {
-      const std::string word = field->str();
-      EXPECT_NE(schema_of[topic].find(word), std::string::npos) << topic << " has no " << word;
+    for (const auto& field : matches_in(match[2], "[a-z_]+")) {
+      EXPECT_NE(schema_of[topic].find(field[0]), std::string::npos)
+          << topic << " has no " << field[0];
     }
     ++shown;
   }
