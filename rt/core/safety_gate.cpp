@@ -71,7 +71,7 @@ double cos_of_degrees(double angle_deg) noexcept {
   return cosine;
 }
 
-/// What a joint at rest may be told to have: some steps of the coarsest drive's speed.
+/// What a braked joint at rest may be told to have: some steps of the coarsest drive's speed.
 constexpr double kRest_radps = 0.05;
 
 /// As the table says.
@@ -264,20 +264,22 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, Ga
     }
     const bool same = same_bits(joints.position_rad[j], state.position_rad[j]) &&
                       same_bits(joints.velocity_radps[j], state.velocity_radps[j]);
-    if (!same || (state.sent == 0 && mode != Mode::kFault)) {
+    const bool braked = mode == Mode::kDamping || mode == Mode::kFault;
+    if (!same || (state.sent == 0 && !braked)) {
       state.changed_tick[j] = tick;
       state.told_rad[j] = state.sent_rad[j];
     } else {
       // What its own speed says that it moved, and what it was told to.
       const std::uint64_t frozen_ticks = tick - state.changed_tick[j];
       const double speed_radps = std::fabs(joints.velocity_radps[j]);
-      const bool moves = speed_radps * seconds(frozen_ticks) > config_.frozen_moved_rad;
+      const bool moves = speed_radps * seconds(frozen_ticks) > config_.frozen_moved_rad &&
+                         !(braked && speed_radps <= kRest_radps);
       if (judged_in(mode, Fault::kEncoderFrozen)) {
         const double told_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
         const bool deaf =
             frozen_ticks >= config_.frozen_ticks && told_rad > config_.frozen_told_rad;
         if (deaf || moves) faults |= bit(Fault::kEncoderFrozen);
-      } else if (mode == Mode::kFault && moves && speed_radps > kRest_radps) {
+      } else if (mode == Mode::kFault && moves) {
         // Damped by a speed that it no longer has it would be driven, not braked.
         state.blind_joints |= std::uint64_t{1} << j;
       }

@@ -90,6 +90,15 @@ TEST_F(SafetyGateTest, AfterAFaultAJointWhoseEncoderFreezesIsNoLongerBrakedByIts
   EXPECT_EQ(state.faults, static_cast<std::uint64_t>(Fault::kEmergencyStop));
 }
 
+TEST_F(SafetyGateTest, AJointInDampingWhoseEncoderFreezesIsAFaultUnlessItRests) {
+  sensors.joints.velocity_radps.fill(0.02);  // at rest, by a coarse drive
+  for (int n = 0; n < 4000; ++n) ASSERT_EQ(judge(Mode::kDamping), 0u);
+  sensors.joints.velocity_radps[4] = 3.0;
+  for (int n = 0; n < 7; ++n) ASSERT_EQ(judge(Mode::kDamping), 0u);  // less than 0.005 rad
+  EXPECT_EQ(judge(Mode::kDamping), static_cast<std::uint64_t>(Fault::kEncoderFrozen));
+  EXPECT_EQ(pass(wanted).blind_joints(), 1u << 4);
+}
+
 TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
   judge(Mode::kWalk);
   sensors.tick += config.stall_fault_ticks + 2;

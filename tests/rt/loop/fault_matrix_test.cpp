@@ -65,6 +65,9 @@ std::vector<FaultCase> cases() {
                const JointArray<std::uint64_t> fresh = f.joints.tick;
                f.joints = g.joints;
                f.joints.tick = fresh;
+               // That of a joint at rest does no harm and is none: one that says that it moves.
+               double& velocity_radps = f.joints.velocity_radps[4];
+               if (std::fabs(velocity_radps) < 0.1) velocity_radps = 3.0;
              }),
       {Fault::kPolicyFrozen, 900,
        [](DisturbedLoop& p) {
