@@ -36,6 +36,16 @@ MoteusStatus encode(const MoteusDrive& drive, std::span<const MoteusRead> reads,
   return writer.finish() ? MoteusStatus::kOk : MoteusStatus::kTooLong;
 }
 
+bool possible_watchdog(double watchdog_s) noexcept {
+  return watchdog_s == 0.0 || (watchdog_s >= kMinWatchdog_s && watchdog_s <= kMaxWatchdog_s);
+}
+
+void write_watchdog(MoteusWriter& writer, MoteusFormat format, double watchdog_s) noexcept {
+  if (watchdog_s == 0.0) return;
+  const double values[] = {watchdog_s};
+  writer.values(MoteusOperation::kWrite, format, moteus_register::kCommandWatchdog, values);
+}
+
 void write_mode(MoteusWriter& writer, MoteusMode mode) noexcept {
   const double value[] = {static_cast<double>(mode)};
   writer.values(MoteusOperation::kWrite, MoteusFormat::kInt8, moteus_register::kMode, value);
@@ -194,10 +204,8 @@ MoteusStatus encode_moteus_position(const MoteusDrive& drive, const MoteusComman
         command.torque_nm, command.max_torque_nm, command.watchdog_s}) {
     if (!std::isfinite(value)) return MoteusStatus::kNotFinite;
   }
-  const bool has_watchdog = command.watchdog_s != 0.0;
   if (command.kp_nmprad < 0.0 || command.kd_nmsprad < 0.0 || command.max_torque_nm < 0.0 ||
-      (has_watchdog &&
-       !(command.watchdog_s >= kMinWatchdog_s && command.watchdog_s <= kMaxWatchdog_s))) {
+      !possible_watchdog(command.watchdog_s)) {
     return MoteusStatus::kBadValue;
   }
   double kp_scale = 0.0, kd_scale = 0.0;
@@ -211,24 +219,22 @@ MoteusStatus encode_moteus_position(const MoteusDrive& drive, const MoteusComman
                            kp_scale,
                            kd_scale,
                            command.max_torque_nm};
-  const double watchdog[] = {command.watchdog_s};
   return encode(drive, reads, frame, [&](MoteusWriter& writer) {
     write_mode(writer, MoteusMode::kPosition);
     writer.values(MoteusOperation::kWrite, drive.format, moteus_register::kCommandPosition, values);
-    if (has_watchdog) {
-      writer.values(MoteusOperation::kWrite, drive.format, moteus_register::kCommandWatchdog,
-                    watchdog);
-    }
+    write_watchdog(writer, drive.format, command.watchdog_s);
   });
 }
 
-MoteusStatus encode_moteus_torque(const MoteusDrive& drive, double torque_nm,
+MoteusStatus encode_moteus_torque(const MoteusDrive& drive, double torque_nm, double watchdog_s,
                                   std::span<const MoteusRead> reads, CanFrame& frame) noexcept {
-  if (!std::isfinite(torque_nm)) return MoteusStatus::kNotFinite;
+  if (!std::isfinite(torque_nm) || !std::isfinite(watchdog_s)) return MoteusStatus::kNotFinite;
+  if (!possible_watchdog(watchdog_s)) return MoteusStatus::kBadValue;
   const double values[] = {torque_nm, 0.0, 0.0};
   return encode(drive, reads, frame, [&](MoteusWriter& writer) {
     write_mode(writer, MoteusMode::kPosition);
     writer.values(MoteusOperation::kWrite, drive.format, moteus_register::kCommandTorque, values);
+    write_watchdog(writer, drive.format, watchdog_s);
   });
 }
 

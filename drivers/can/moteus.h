@@ -65,8 +65,8 @@ struct MoteusCommand {
   double kd_nmsprad = 0.0;
   double torque_nm = 0.0;
   double max_torque_nm = 0.0;  ///< of the whole
-  /// For how long the command holds; 0: the drive's setting servo.default_timeout_s. Else 1 ms to
-  /// 30 s: "for ever" can not be said.
+  /// For how long the command holds; 0: the drive's setting servo.default_timeout_s, 0.1 s as it is
+  /// delivered. Else 1 ms to 30 s: "for ever" can not be said.
   double watchdog_s = 0.0;
 };
 
@@ -103,8 +103,9 @@ struct MoteusReply {
 MoteusStatus encode_moteus_position(const MoteusDrive& drive, const MoteusCommand& command,
                                     std::span<const MoteusRead> reads, CanFrame& frame) noexcept;
 
-/// Torque alone, both gains 0, within the drive's own limit: the shortest command.
-MoteusStatus encode_moteus_torque(const MoteusDrive& drive, double torque_nm,
+/// Torque alone, both gains 0, within the drive's own limit: the shortest command. `watchdog_s` as
+/// in MoteusCommand.
+MoteusStatus encode_moteus_torque(const MoteusDrive& drive, double torque_nm, double watchdog_s,
                                   std::span<const MoteusRead> reads, CanFrame& frame) noexcept;
 
 /// No torque; ends kFault and kTimeout.

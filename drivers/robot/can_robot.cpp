@@ -80,19 +80,27 @@ void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
 void CanRobot::receive(std::uint64_t tick) noexcept {
   std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
   const std::int64_t now = clock_ns(CLOCK_REALTIME);  // of the kernel's stamps
+  const std::int64_t monotonic = clock_ns(CLOCK_MONOTONIC);
+  const std::int64_t longest = monotonic - emptied_ns_;
+  bool emptied = true;
   for (std::size_t b = 0; b < sockets_.size(); ++b) {
-    for (int taken = 0; taken < kMostFrames;) {
+    int taken = 0;
+    while (taken < kMostFrames) {
       const CanResult result = sockets_[b]->receive(received);
-      for (int i = 0; i < result.frames; ++i) take(static_cast<int>(b), received[i], tick, now);
+      for (int i = 0; i < result.frames; ++i) {
+        take(static_cast<int>(b), received[i], tick, now, longest);
+      }
       taken += result.frames;
       if (result.frames < CanSocket::kMaxFrames) break;
     }
+    emptied = emptied && taken < kMostFrames;
     counters_[b].overflowed = sockets_[b]->overflowed();
   }
+  if (emptied) emptied_ns_ = monotonic;
 }
 
-void CanRobot::take(int bus, const ReceivedFrame& received, std::uint64_t tick,
-                    std::int64_t now) noexcept {
+void CanRobot::take(int bus, const ReceivedFrame& received, std::uint64_t tick, std::int64_t now,
+                    std::int64_t longest) noexcept {
   BusCounters& counters = counters_[bus];
   if (received.frame.error) {
     const CanError error = decode_can_error(received.frame);
@@ -104,7 +112,8 @@ void CanRobot::take(int bus, const ReceivedFrame& received, std::uint64_t tick,
     return;
   }
   ++counters.received;
-  const std::uint64_t when = received.stamp_ns == 0 ? tick : tick_of(now - received.stamp_ns, tick);
+  const std::uint64_t when =
+      received.stamp_ns == 0 ? tick : tick_of(frame_age_ns(received.stamp_ns, now, longest), tick);
   for (int j = 0; j < kNumJoints; ++j) {
     if (config_.drives[j].bus == bus && drives_[j].take(received.frame, when)) return;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <memory>
@@ -28,6 +29,13 @@ struct BusCounters {
   std::uint64_t bus_off = 0;           ///< times
   std::uint64_t errors = 0;            ///< other error frames
 };
+
+/// How long ago a frame came that the kernel stamped at `stamp_ns`, by a clock that may be stepped:
+/// at most `longest_ns`, the time since there was none.
+constexpr std::int64_t frame_age_ns(std::int64_t stamp_ns, std::int64_t now_ns,
+                                    std::int64_t longest_ns) noexcept {
+  return std::clamp<std::int64_t>(now_ns - stamp_ns, 0, longest_ns);
+}
 
 /// A robot of drives on CAN buses and an IMU on a serial line.
 ///
@@ -58,8 +66,8 @@ class CanRobot final : public RobotIo {
   /// Tells all drives to be off until each has answered, for 0.1 s at most.
   void switch_off() noexcept;
   void receive(std::uint64_t tick) noexcept;
-  void take(int bus, const ReceivedFrame& received, std::uint64_t tick,
-            std::int64_t now_ns) noexcept;
+  void take(int bus, const ReceivedFrame& received, std::uint64_t tick, std::int64_t now_ns,
+            std::int64_t longest_ns) noexcept;
   void exchange(const SafeCommand* command) noexcept;
   void send(int bus, std::span<const CanFrame> frames) noexcept;
 
@@ -71,6 +79,7 @@ class CanRobot final : public RobotIo {
   JointArray<Drive> drives_;
   std::vector<std::vector<CanFrame>> off_frames_;  ///< of each bus, for cut_drives()
   std::uint64_t tick_ = 0, next_exchange_ = 0;
+  std::int64_t emptied_ns_ = 0;  ///< when nothing more was to be received, CLOCK_MONOTONIC
   bool enabled_ = false;
   std::atomic<bool> cut_{false};
   static_assert(std::atomic<bool>::is_always_lock_free);

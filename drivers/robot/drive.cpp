@@ -61,7 +61,7 @@ void Drive::command_frame(const JointSetPoint& joint, CanFrame& frame) const noe
                         .torque_nm = joint.torque_nm / turn},
                        frame);
   } else if (torque_only_) {
-    encode_moteus_torque(config_.moteus, joint.torque_nm / turn, kMoteusState, frame);
+    encode_moteus_torque(config_.moteus, joint.torque_nm / turn, timeout_s_, kMoteusState, frame);
   } else {
     encode_moteus_position(config_.moteus,
                            {.position_rad = turn * (joint.position_rad - config_.zero_rad),

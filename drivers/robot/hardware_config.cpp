@@ -131,6 +131,12 @@ DriveConfig read_drive(ConfigTree& t, const std::string& joint, const HardwareCo
   return drive;
 }
 
+/// The fastest joint that its drive's replies can tell.
+double reply_speed_radps(const DriveConfig& d) noexcept {
+  const bool mit = d.protocol == Protocol::kMit;
+  return (mit ? d.mit.limits.velocity_radps : kMoteusSpeed_radps) / d.gear;
+}
+
 /// What a joint may be told must be within what its drive's numbers can say.
 void require_range(const DriveConfig& d, int j, const std::string& joint, double torque_scale,
                    const GateConfig& gate) {
@@ -148,8 +154,7 @@ void require_range(const DriveConfig& d, int j, const std::string& joint, double
         d.gear * d.gear * (mit ? l.kp_nmprad : d.moteus.kp_nmprev / kTurn_rad), "N m/rad");
   check("kd", gate.kd_limit_nmsprad,
         d.gear * d.gear * (mit ? l.kd_nmsprad : d.moteus.kd_nmsprev / kTurn_rad), "N m s/rad");
-  check("speed", gate.speed_limit_radps[j], (mit ? l.velocity_radps : kMoteusSpeed_radps) / d.gear,
-        "rad/s");
+  check("speed", gate.speed_limit_radps[j], reply_speed_radps(d), "rad/s");
   const double farthest_rad = std::max(std::fabs(gate.joint_lower_rad[j] - d.zero_rad),
                                        std::fabs(gate.joint_upper_rad[j] - d.zero_rad));
   check("position", farthest_rad, (mit ? l.position_rad : kMoteusPosition_rad) / d.gear,
@@ -191,6 +196,9 @@ void read_drives(ConfigTree& config, const RobotDescription& robot, const GateCo
     seen[j] = true;
     h.drives[j] = read_drive(t, joint, h);
     require_range(h.drives[j], j, joint, h.torque_scale, gate);
+    // Of a moteus: the drive itself holds the joint's limit too, whatever becomes of this computer.
+    h.drives[j].max_torque_nm = std::min(
+        h.drives[j].max_torque_nm, h.torque_scale * gate.torque_limit_nm[j] / h.drives[j].gear);
   }
   for (int j = 0; j < kNumJoints; ++j) {
     if (seen[j]) continue;
@@ -282,6 +290,10 @@ void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
   gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
+  // A speed that no reply can say would never be a fault.
+  for (const DriveConfig& drive : h.drives) {
+    gate.speed_fault_radps = std::min(gate.speed_fault_radps, 0.98 * reply_speed_radps(drive));
+  }
   gate.hanging = h.hanging;
 }
 

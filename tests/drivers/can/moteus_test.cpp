@@ -79,7 +79,7 @@ TEST(MoteusTest, FramesAreAsLongAsTheBudgetCounts) {
   MoteusCommand command = golden_command();
   const MoteusDrive floats = drive_of(MoteusFormat::kFloat);
   EXPECT_EQ(length(encode_moteus_position(floats, command, kFloatQuery, frame), frame), 48);
-  EXPECT_EQ(length(encode_moteus_torque(drive_of(), 1.5, kQuery, frame), frame), 20);
+  EXPECT_EQ(length(encode_moteus_torque(drive_of(), 1.5, 0.0, kQuery, frame), frame), 20);
   EXPECT_EQ(hex(frame),
             "01000a0722960000000000110017011"
             "20e505050");
@@ -151,13 +151,15 @@ TEST(MoteusTest, GainsNeverExceedTheDrivesAndNeedThem) {
   EXPECT_EQ(encode_moteus_position(without, command, {}, frame), MoteusStatus::kOk);
 }
 
-TEST(MoteusTest, TorqueCommandHasNoGains) {
+TEST(MoteusTest, TorqueCommandHasATimeOutAndNoGains) {
   CanFrame frame;
   MoteusRequest request;
-  ASSERT_EQ(encode_moteus_torque(drive_of(), -2.5, kMoteusState, frame), MoteusStatus::kOk);
+  ASSERT_EQ(encode_moteus_torque(drive_of(), -2.5, 0.05, kMoteusState, frame), MoteusStatus::kOk);
+  EXPECT_EQ(frame.length, 24);
   ASSERT_EQ(decode_moteus_request(drive_of(), frame, request), MoteusStatus::kOk);
   EXPECT_EQ(request.mode, MoteusMode::kPosition);
   EXPECT_EQ(request.torque_nm, -2.5);
+  EXPECT_NEAR(request.watchdog_s, 0.05, 1e-3);
   EXPECT_EQ(request.kp_scale, 0.0);
   EXPECT_EQ(request.kd_scale, 0.0);
 }
@@ -203,7 +205,9 @@ TEST(MoteusTest, CommandsThatMakeNoSenseAreRefused) {
       << "would be sent as 0, the drive's default";
   EXPECT_EQ(status([](C& c) { c.watchdog_s = 31.0; }), MoteusStatus::kBadValue);
   CanFrame frame;
-  EXPECT_EQ(encode_moteus_torque(drive_of(), kNaN, {}, frame), MoteusStatus::kNotFinite);
+  EXPECT_EQ(encode_moteus_torque(drive_of(), kNaN, 0.0, {}, frame), MoteusStatus::kNotFinite);
+  EXPECT_EQ(encode_moteus_torque(drive_of(), 0.0, kNaN, {}, frame), MoteusStatus::kNotFinite);
+  EXPECT_EQ(encode_moteus_torque(drive_of(), 0.0, 31.0, {}, frame), MoteusStatus::kBadValue);
   EXPECT_EQ(encode_moteus_write(drive_of(), reg::kMode, kNaN, frame), MoteusStatus::kNotFinite);
   MoteusDrive nobody = drive_of();
   nobody.id = 0;

@@ -228,7 +228,14 @@ TEST(DriveTest, MoteusIsStoppedUntilThereIsASetPointAndToldWhenToLetGo) {
   EXPECT_NEAR(request.position_rad, 0.5, 4e-4);
   EXPECT_NEAR(request.kp_scale * 1300.0 / (2.0 * M_PI), 50.0, 0.01);
   EXPECT_NEAR(request.watchdog_s, 0.05, 1e-3);
-  EXPECT_NEAR(request.max_torque_nm, 65.0, 0.01);
+  EXPECT_NEAR(request.max_torque_nm, 63.45, 0.01);
+}
+
+TEST(DriveTest, MoteusHoldsTheScaledTorqueLimitItself) {
+  MoteusPair pair({"hardware.torque_scale=0.2"});
+  pair.state.mode = MoteusMode::kPosition;
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  EXPECT_NEAR(pair.exchange(&kPoint).max_torque_nm, 12.69, 0.01);
 }
 
 TEST(DriveTest, MoteusDampsByItsOwnGainAloneWithoutAPosition) {
@@ -251,13 +258,14 @@ TEST(DriveTest, MoteusThatTimedOutIsAFaultAndStopped) {
   EXPECT_EQ(pair.exchange(&kPoint).mode, MoteusMode::kStopped);
 }
 
-TEST(DriveTest, MoteusGetsTorqueAloneWhereTheHostClosesTheLoop) {
+TEST(DriveTest, MoteusGetsTorqueAndATimeOutAloneWhereTheHostClosesTheLoop) {
   MoteusPair pair({"hardware.mode=torque"});
   pair.state.mode = MoteusMode::kPosition;
   const JointSetPoint point{.torque_nm = 12.0};
   for (int i = 0; i < 3; ++i) pair.exchange(&point);
   const MoteusRequest request = pair.exchange(&point);
   EXPECT_NEAR(request.torque_nm, 12.0, 0.01);
+  EXPECT_NEAR(request.watchdog_s, 0.05, 1e-3);
   EXPECT_EQ(request.kp_scale, 0.0);
   EXPECT_EQ(request.kd_scale, 0.0);
 }

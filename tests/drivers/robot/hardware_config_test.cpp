@@ -118,6 +118,15 @@ TEST(HardwareConfigTest, AgesOfTheGateFollowTheRateOfTheExchange) {
   EXPECT_FALSE(gate.hanging);
 }
 
+TEST(HardwareConfigTest, ASpeedThatIsAFaultIsOneThatRepliesCanTell) {
+  for (const auto& [name, fastest_radps] : {std::pair{"mit", 50.0}, {"moteus", 51.47}}) {
+    GateConfig gate = example_gate();
+    gate.speed_fault_radps = 60.0;
+    adapt_gate(example_hardware(name), gate);
+    EXPECT_NEAR(gate.speed_fault_radps, 0.98 * fastest_radps, 0.01) << name;
+  }
+}
+
 TEST(HardwareConfigTest, TheSlowestRatesStayBelowTheGatesCeilings) {
   GateConfig gate = example_gate();
   adapt_gate(example_hardware("moteus", {"hardware.rate_hz=400", "hardware.imu.rate_hz=100",
