@@ -19,8 +19,9 @@ bool ControlThread::tick(const SlotGrid::Slot& slot) noexcept {
   const std::int64_t begin = clock_.now_ns();
   TickRecord* const claimed = ring_.claim();
   TickRecord& record = claimed ? *claimed : spare_;
-  const bool running =
-      loop_.tick(slot, operator_, interrupt_.load(std::memory_order_relaxed), record);
+  const bool ends =
+      interrupt_.load(std::memory_order_relaxed) || end_.load(std::memory_order_relaxed);
+  const bool running = loop_.tick(slot, operator_, ends, record);
 
   ControlDeadlines& d = deadlines_;
   ++d.ticks;

@@ -11,7 +11,8 @@
 namespace sandrunner {
 
 /// Half a second of ticks on their way to ordinary threads.
-using TickRing = SpscRing<TickRecord, 2048>;
+inline constexpr std::size_t kTickRingSize = 2048;
+using TickRing = SpscRing<TickRecord, kTickRingSize>;
 
 /// Counts and durations of the control thread. Its own while it runs.
 struct ControlDeadlines {
@@ -28,15 +29,17 @@ struct ControlDeadlines {
 /// it.
 class ControlThread {
  public:
-  /// `clock`: that of `loop`. Everything must outlive the thread.
+  /// `clock`: that of `loop`. Two that end it: `interrupt` is the user's, which no busy ordinary
+  /// thread can keep from the robot; `end` the process's. Everything must outlive the thread.
   ControlThread(RobotIo& robot, ControlLoop& loop, OperatorInput& op, TickRing& ring, Clock& clock,
-                const std::atomic<bool>& interrupt)
+                const std::atomic<bool>& interrupt, const std::atomic<bool>& end)
       : robot_(robot),
         loop_(loop),
         operator_(op),
         ring_(ring),
         clock_(clock),
-        interrupt_(interrupt) {}
+        interrupt_(interrupt),
+        end_(end) {}
 
   /// Runs from slot 0 at `start_ns` on, then switches the drives off. Real-time safe.
   void run(std::int64_t start_ns) noexcept;
@@ -54,6 +57,7 @@ class ControlThread {
   TickRing& ring_;
   Clock& clock_;
   const std::atomic<bool>& interrupt_;
+  const std::atomic<bool>& end_;
   TickRecord spare_;  // where a tick is recorded that finds the ring full
   ControlDeadlines deadlines_;
   std::atomic<std::uint64_t> ticks_{0};

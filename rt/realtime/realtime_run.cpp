@@ -101,14 +101,17 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   const auto ring = std::make_unique<TickRing>();
   std::atomic<bool> stop{false};
   ControlLoop loop(robot, config, start, *exchange, clock);
-  ControlThread control(robot, loop, op, *ring, clock, stop);
+  ControlThread control(robot, loop, op, *ring, clock, interrupt, stop);
   Watchdog watchdog(robot, control.ticks(), clock);
   std::optional<PolicyThread> policy_thread;
   if (policy) policy_thread.emplace(*policy, *exchange, clock);
 
   RealtimeEnd end;
+  // At most what the ring holds, or a tap slower than the ticks would never return.
   const auto drain = [&] {
-    while (const TickRecord* tick = ring->front()) {
+    for (std::size_t n = 0; n < kTickRingSize; ++n) {
+      const TickRecord* tick = ring->front();
+      if (!tick) return;
       tap(*tick);
       ring->pop();
     }
@@ -125,7 +128,6 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
     std::int64_t alive_ns = clock.now_ns();
     while (!threads.done()) {
       std::this_thread::sleep_for(kDrainEvery);
-      if (interrupt.load(std::memory_order_relaxed)) stop = true;
       drain();
       end_if_it_hangs(watchdog, control.ticks(), ticks_seen, alive_ns, clock.now_ns());
     }

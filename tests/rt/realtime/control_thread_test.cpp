@@ -96,9 +96,9 @@ class ControlThreadTest : public testing::Test {
   MortalPolicy policy_;
   NoOperator operator_;
   std::unique_ptr<TickRing> ring_ = std::make_unique<TickRing>();
-  std::atomic<bool> interrupt_{false};
+  std::atomic<bool> interrupt_{false}, end_{false};
   ControlLoop loop_{robot_, test_robot(), Mode::kWalk, policy_, clock_};
-  ControlThread thread_{robot_, loop_, operator_, *ring_, clock_, interrupt_};
+  ControlThread thread_{robot_, loop_, operator_, *ring_, clock_, interrupt_, end_};
 };
 
 TEST_F(ControlThreadTest, RunsEverySlotOnTheGridAndSwitchesTheDrivesOffAtTheEnd) {
@@ -168,6 +168,15 @@ TEST_F(ControlThreadTest, FullRingCostsRecordsAndNothingElse) {
 TEST_F(ControlThreadTest, InterruptReachesTheOperatorInTheTickAfterIt) {
   robot_.duration_ns = [this](std::uint64_t tick) {
     interrupt_ = tick >= 50;
+    return 10'000;
+  };
+  EXPECT_EQ(run().ticks, 52u);
+  EXPECT_EQ(robot_.shut_downs, 1);
+}
+
+TEST_F(ControlThreadTest, EndOfTheProcessIsAnInterruptToo) {
+  robot_.duration_ns = [this](std::uint64_t tick) {
+    end_ = tick >= 50;
     return 10'000;
   };
   EXPECT_EQ(run().ticks, 52u);

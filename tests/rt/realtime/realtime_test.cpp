@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <limits>
+#include <thread>
 
 #include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
@@ -153,6 +155,26 @@ TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
   EXPECT_TRUE(result.survived);
   EXPECT_LT(result.end.time_s, 10.0);
   EXPECT_EQ(result.record.samples.back().mode, Mode::kDamping);
+}
+
+TEST(RealtimeTest, InterruptReachesARobotWhoseTicksAreTakenTooSlowly) {
+  Policy policy = load_shipped_policy();
+  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  std::atomic<bool> interrupt{false};
+  const RunResult result =
+      simulate({.config = config,
+                .policy = &policy,
+                .plan = {.walk_s = 30.0, .start_walking = true},
+                .interrupt = &interrupt,
+                .tap =
+                    [&](const TickRecord& tick) {
+                      interrupt = tick.input.sensors.tick > 200;
+                      // Longer than a tick: the ring is never empty again.
+                      std::this_thread::sleep_for(std::chrono::microseconds(400));
+                    },
+                .realtime = true});
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_LT(result.end.time_s, 10.0);
 }
 
 TEST(RealtimeTest, RequiredProcessorThatIsRefusedIsBadInput) {
