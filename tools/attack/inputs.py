@@ -286,7 +286,8 @@ class Inputs:
             command = ['sandrunner-replay', 'r.mcap', '--plot', 'plots']
         one = Input('environment', command)
         one.shell = rng.choice(['', 'exec <&-', 'exec >&-', 'exec <&- >&-', 'exec >/dev/full', 'umask 777',
-                                f'ulimit -f {rng.randint(0, 500)}', f'ulimit -s {rng.randint(256, 1000)}',
+                                # At 0 not even standard error, a file here, takes a line.
+                                f'ulimit -f {rng.randint(1, 500)}', f'ulimit -s {rng.randint(256, 1000)}',
                                 f'ulimit -n {rng.randint(4, 20)}', 'mkdir -p out rec; chmod 555 out rec',
                                 'mkdir out; mkdir out/run.csv', 'touch out rec plots', 'ln -s /dev/full out',
                                 'trap "" INT TERM HUP PIPE'])
