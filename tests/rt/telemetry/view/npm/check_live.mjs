@@ -96,7 +96,7 @@ async function drives() {
 
 async function touches() {
   const { url, child } = await serve(sandrunner, "--set", "view.port=0", "--command", "live", "--record", `${recording}.touched`);
-  const page = await open(url, { width: 780, height: 320 });  // wide enough for the layout of a desk
+  const page = await open(url, { width: 780, height: 320 });  // a phone on its side, without touch
   const mode = (name) => until(page, `document.getElementById('mode').textContent === '${name}'`);
   const ground = (what) => until(page, `sandrunner.run.live.state.ground.${what}`);
   const last = (field, k) => page.evaluate(`sandrunner.run.frames.at(sandrunner.frames - 1, '${field}', ${k})`);
@@ -117,24 +117,34 @@ async function touches() {
   await ground("name === 'wet-sand'");
   assert.equal(await text(page, "refusal"), "");
 
-  // Dragged to the right with shift held: pushed. Step by step, as the legs stop it within two frames.
+  // Dragged to the right with shift held: pushed. Step by step, and every frame looked at, as the legs stop it within two.
   await hold(page);
+  const before = await page.evaluate("sandrunner.frames");
+  const fastest = () => page.evaluate((first) => {
+    let found = 0;
+    for (let i = first; i < sandrunner.frames; ++i) {
+      found = Math.max(found, Math.hypot(sandrunner.run.frames.at(i, "motion", 0), sandrunner.run.frames.at(i, "motion", 1)));
+    }
+    return found;
+  }, before);
   const { x, y } = await page.evaluate(() => {
     const free = (x, y) => [x, x + 40].every((at) => document.elementFromPoint(at, y)?.id === "scene");
     for (let y = 0; y < innerHeight; y += 4) for (let x = 0; x < innerWidth; x += 10) if (free(x, y)) return { x, y };
     throw new Error("controls cover the whole scene");
   });
-  await page.keyboard.down("Shift");
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.mouse.move(x + 40, y);
-  await page.mouse.up();
-  await page.keyboard.up("Shift");
-  for (let steps = 0; Math.hypot(await last("motion", 0), await last("motion", 1)) < 0.4; ++steps) {
-    assert.ok(steps < 100, "the push reaches the robot");
-    const seen = await page.evaluate("sandrunner.frames");
-    await click(page, "policy-step");
-    await until(page, `sandrunner.frames > ${seen}`);
+  for (let drags = 0; await fastest() < 0.4; ++drags) {  // a busy browser may lose one
+    assert.ok(drags < 3, `the push reaches the robot: ${await fastest()} m/s; ${await text(page, "refusal")}`);
+    await page.keyboard.down("Shift");
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 40, y);
+    await page.mouse.up();
+    await page.keyboard.up("Shift");
+    for (let steps = 0; steps < 30 && await fastest() < 0.4; ++steps) {
+      const seen = await page.evaluate("sandrunner.frames");
+      await click(page, "policy-step");
+      await until(page, `sandrunner.frames > ${seen}`);
+    }
   }
   await click(page, "hold");
   for (let i = 0; i < 12; ++i) await click(page, "push");
