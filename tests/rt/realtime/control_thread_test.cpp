@@ -90,6 +90,14 @@ class ControlThreadTest : public testing::Test {
     }
     return all;
   }
+  void expect_ends_in_the_tick_after(std::atomic<bool>& flag) {
+    robot_.duration_ns = [&flag](std::uint64_t tick) {
+      flag = tick >= 50;
+      return 10'000;
+    };
+    EXPECT_EQ(run().ticks, 52u);
+    EXPECT_EQ(robot_.shut_downs, 1);
+  }
 
   ManualClock clock_;
   SlowRobot robot_{clock_};
@@ -166,22 +174,10 @@ TEST_F(ControlThreadTest, FullRingCostsRecordsAndNothingElse) {
 }
 
 TEST_F(ControlThreadTest, InterruptReachesTheOperatorInTheTickAfterIt) {
-  robot_.duration_ns = [this](std::uint64_t tick) {
-    interrupt_ = tick >= 50;
-    return 10'000;
-  };
-  EXPECT_EQ(run().ticks, 52u);
-  EXPECT_EQ(robot_.shut_downs, 1);
+  expect_ends_in_the_tick_after(interrupt_);
 }
 
-TEST_F(ControlThreadTest, EndOfTheProcessIsAnInterruptToo) {
-  robot_.duration_ns = [this](std::uint64_t tick) {
-    end_ = tick >= 50;
-    return 10'000;
-  };
-  EXPECT_EQ(run().ticks, 52u);
-  EXPECT_EQ(robot_.shut_downs, 1);
-}
+TEST_F(ControlThreadTest, EndOfTheProcessIsAnInterruptToo) { expect_ends_in_the_tick_after(end_); }
 
 }  // namespace
 }  // namespace sandrunner

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <thread>
 
@@ -139,18 +140,23 @@ TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
   EXPECT_GT(result.walked_s, 0.1);
 }
 
-TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
+/// A walk in which `interrupts` sees every tick, and says when to interrupt it.
+RunResult walk_until(const std::function<bool(const TickRecord&)>& interrupts) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
   std::atomic<bool> interrupt{false};
+  return simulate({.config = config,
+                   .policy = &policy,
+                   .plan = {.walk_s = 60.0, .start_walking = true},
+                   .keep_record = true,
+                   .interrupt = &interrupt,
+                   .tap = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
+                   .realtime = true});
+}
+
+TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
   const RunResult result =
-      simulate({.config = config,
-                .policy = &policy,
-                .plan = {.walk_s = 60.0, .start_walking = true},
-                .keep_record = true,
-                .interrupt = &interrupt,
-                .tap = [&](const TickRecord& tick) { interrupt = tick.input.sensors.tick > 800; },
-                .realtime = true});
+      walk_until([](const TickRecord& tick) { return tick.input.sensors.tick > 800; });
   EXPECT_TRUE(result.interrupted);
   EXPECT_TRUE(result.survived);
   EXPECT_LT(result.end.time_s, 10.0);
@@ -158,21 +164,11 @@ TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
 }
 
 TEST(RealtimeTest, InterruptReachesARobotWhoseTicksAreTakenTooSlowly) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  std::atomic<bool> interrupt{false};
-  const RunResult result =
-      simulate({.config = config,
-                .policy = &policy,
-                .plan = {.walk_s = 30.0, .start_walking = true},
-                .interrupt = &interrupt,
-                .tap =
-                    [&](const TickRecord& tick) {
-                      interrupt = tick.input.sensors.tick > 200;
-                      // Longer than a tick: the ring is never empty again.
-                      std::this_thread::sleep_for(std::chrono::microseconds(400));
-                    },
-                .realtime = true});
+  const RunResult result = walk_until([](const TickRecord& tick) {
+    // Longer than a tick: the ring is never empty again.
+    std::this_thread::sleep_for(std::chrono::microseconds(400));
+    return tick.input.sensors.tick > 200;
+  });
   EXPECT_TRUE(result.interrupted);
   EXPECT_LT(result.end.time_s, 10.0);
 }
