@@ -36,6 +36,21 @@ const HardwareConfig& within_capacity(const HardwareConfig& config) {
 
 }  // namespace
 
+JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
+                        bool answers) noexcept {
+  const JointCommand& c = command.joints();
+  const bool blind = (command.blind_joints() >> j & 1) != 0;
+  if (mode == DriveMode::kGains) {
+    if (blind && answers) return {};
+    return {c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j],
+            c.feedforward_nm[j]};
+  }
+  if (blind) return {};
+  return {.torque_nm = joint_torque(drive.position_rad(), drive.velocity_radps(), c.position_rad[j],
+                                    c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j],
+                                    c.feedforward_nm[j])};
+}
+
 CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
                    const GateConfig& gate)
     : config_(within_capacity(config)),
@@ -139,19 +154,9 @@ void CanRobot::exchange(const SafeCommand* command) noexcept {
       if (config_.drives[j].bus != static_cast<int>(b)) continue;
       JointSetPoint point;
       if (command != nullptr) {
-        const JointCommand& c = command->joints();
-        point = {c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j],
-                 c.feedforward_nm[j]};
-        if (config_.mode == DriveMode::kTorque) {
-          const Drive& d = drives_[j];
-          const bool blind = (command->blind_joints() >> j & 1) != 0;
-          const double torque_nm =
-              blind ? 0.0
-                    : joint_torque(d.position_rad(), d.velocity_radps(), point.position_rad,
-                                   point.velocity_radps, point.kp_nmprad, point.kd_nmsprad,
-                                   point.torque_nm);
-          point = {.torque_nm = torque_nm};
-        }
+        const Drive& d = drives_[j];
+        const bool answers = tick_ - d.tick() <= 2 * std::uint64_t(config_.ticks_per_exchange());
+        point = set_point(*command, j, d, config_.mode, answers);
       }
       if (drives_[j].next_frame(command != nullptr ? &point : nullptr, tick_, frames[count])) {
         ++count;
@@ -177,17 +182,13 @@ void CanRobot::cut_drives() noexcept {
 void CanRobot::shut_down() noexcept { switch_off(); }
 
 void CanRobot::switch_off() noexcept {
-  JointArray<std::uint64_t> before;
-  for (int j = 0; j < kNumJoints; ++j) before[j] = drives_[j].replies();
   for (int i = 0; i < 50; ++i) {
     exchange(nullptr);
     const timespec pause{.tv_sec = 0, .tv_nsec = 2'000'000};
     nanosleep(&pause, nullptr);
     receive(tick_);
     // One answer may still be to an earlier command.
-    bool all = true;
-    for (int j = 0; j < kNumJoints; ++j) all = all && drives_[j].replies() >= before[j] + 2;
-    if (all) return;
+    if (std::ranges::all_of(drives_, [](const Drive& d) { return d.replies_off() >= 2; })) return;
   }
 }
 

@@ -85,6 +85,13 @@ class CanRobot final : public RobotIo {
   static_assert(std::atomic<bool>::is_always_lock_free);
 };
 
+/// What the drive of joint `j` is told: in kGains the joint's command as it is, in kTorque what
+/// that gives at the newest values of `drive`. No torque for a blind joint, but a silent drive in
+/// kGains
+/// (`answers` is false) goes on by its own encoder: it may still hear.
+JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
+                        bool answers) noexcept;
+
 /// What the buses, drives and IMU counted, as lines for a person.
 std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
                             const RobotDescription& description);

@@ -78,6 +78,7 @@ void Drive::command_frame(const JointSetPoint& joint, CanFrame& frame) const noe
 bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
                        CanFrame& frame) noexcept {
   if (set_point == nullptr) {
+    if (phase_ != Phase::kOff) replies_off_ = 0;
     phase_ = Phase::kOff;
     set(DriveTrouble::kNotEnabled, false);
     set(DriveTrouble::kSwitchedOff, false);
@@ -155,6 +156,8 @@ bool Drive::take_moteus(const CanFrame& frame) noexcept {
 void Drive::judge_power(bool known, bool enabled) noexcept {
   if (phase_ == Phase::kEnabling) {
     if (known ? enabled : replies_ >= replies_at_enable_ + kRepliesToEnable) phase_ = Phase::kOn;
+  } else if (phase_ == Phase::kOff) {
+    if (!known || !enabled) ++replies_off_;
   } else if (phase_ == Phase::kOn && known) {
     // Answers come in their order: since one has said "enabled", none of before is on its way.
     if (!enabled) set(DriveTrouble::kSwitchedOff, true);

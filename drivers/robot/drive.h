@@ -66,6 +66,8 @@ class Drive {
 
   std::uint64_t sent() const noexcept { return sent_; }
   std::uint64_t replies() const noexcept { return replies_; }
+  /// Since it was first told to be off: those that do not say that it is on.
+  std::uint64_t replies_off() const noexcept { return replies_off_; }
   std::uint64_t bad() const noexcept { return bad_; }
   bool off() const noexcept { return phase_ == Phase::kOff; }
 
@@ -89,7 +91,7 @@ class Drive {
   double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
   double temperature_degc_, voltage_v_;
   std::uint64_t maker_fault_ = 0, trouble_ = 0, last_fault_ = 0, tick_ = 0;
-  std::uint64_t sent_ = 0, replies_ = 0, bad_ = 0;
+  std::uint64_t sent_ = 0, replies_ = 0, replies_off_ = 0, bad_ = 0;
 };
 
 /// What a joint's drive_fault means, for a person: "rotor over temperature", "switched off".

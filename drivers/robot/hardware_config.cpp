@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "drivers/can/mit_models.h"
@@ -280,6 +281,12 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
   return h;
 }
 
+double told_speed_radps(const HardwareConfig& h) noexcept {
+  double most = std::numeric_limits<double>::infinity();
+  for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
+  return most;
+}
+
 void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
   const auto ticks = static_cast<std::uint64_t>(h.ticks_per_exchange());
   // A value is sent for in one exchange, comes in the ticks up to the next one, and may be lost:
@@ -290,10 +297,7 @@ void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
   gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
-  // A speed that no reply can say would never be a fault.
-  for (const DriveConfig& drive : h.drives) {
-    gate.speed_fault_radps = std::min(gate.speed_fault_radps, 0.98 * reply_speed_radps(drive));
-  }
+  gate.speed_fault_radps = std::min(gate.speed_fault_radps, told_speed_radps(h));
   gate.hanging = h.hanging;
 }
 

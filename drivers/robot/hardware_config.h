@@ -78,7 +78,12 @@ struct HardwareConfig {
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
 
-/// What hardware changes of the gate's thresholds: ages follow the rate of the exchange.
+/// Joint speed that every drive's replies can tell, with some to spare, rad/s: a threshold above it
+/// would never be passed.
+double told_speed_radps(const HardwareConfig& hardware) noexcept;
+
+/// What hardware changes of the gate's thresholds: ages follow the rate of the exchange, the speed
+/// fault is one that can be told.
 void adapt_gate(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 
 }  // namespace sandrunner

@@ -101,7 +101,8 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "1 tick"},
     {Fault::kTime, "time", "time stood still or went back", "clock", kAlways, "1 tick"},
     {Fault::kLoopStalled, "loop_stalled",
-     "the control loop itself did not run for 30 ms: the machine, not a sensor or the policy",
+     "the control loop itself missed 30 ms, in one stall or in many without as long between them: "
+     "the machine, not a sensor or the policy",
      "clock", kCarrying, "the first tick after it"},
     {Fault::kEncoderJump, "encoder_jump",
      "a joint's position changed by more than its speed explains", "drives", kMoving, "1 tick"},

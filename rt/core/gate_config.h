@@ -77,8 +77,9 @@ struct GateConfig {
   /// Fault: age of the input from which the policy output in use was computed; three policy
   /// periods.
   std::uint64_t policy_fault_ticks = 120;
-  /// Fault: ticks that the loop missed in a row while the robot carries itself: as long as a silent
-  /// policy is tolerated.
+  /// Fault: ticks that the loop missed, in a row or one stall after the other, less one for each
+  /// that it ran in between, while the robot carries itself: as long as a silent policy is
+  /// tolerated.
   std::uint64_t stall_fault_ticks = 120;
   // Fault: new samples of a joint are the same to the bit ...
   double frozen_moved_rad = 0.005;   ///< ... while by its own speed it has moved by this: some ten

@@ -60,8 +60,9 @@ struct GateState {
   std::uint64_t tick = 0;          ///< of the latest judgement
   std::uint64_t judged = 0;        ///< judgements since the start
   std::uint64_t stall_end_tick = 0, stall_ticks = 0;  ///< of the latest stall of the loop
-  std::uint64_t tilted_ticks = 0;                     ///< how long tilted past the limit
-  std::uint64_t falling_ticks = 0;                    ///< how long without weight
+  std::uint64_t missed_ticks = 0;   ///< by the loop, less one for each that it ran since
+  std::uint64_t tilted_ticks = 0;   ///< how long tilted past the limit
+  std::uint64_t falling_ticks = 0;  ///< how long without weight
 
   JointArray<std::uint64_t> torque_over_ticks{};  ///< samples in a row above the fault torque
   JointArray<double> heat_n2m2{};                 ///< squared torque, averaged over thermal_time_s
@@ -81,6 +82,6 @@ struct GateState {
   GateCounters counters;
 };
 static_assert(std::is_trivially_copyable_v<GateState>);
-static_assert(sizeof(GateState) == 8 * (16 + 9 * kNumJoints) + sizeof(GateCounters), "no padding");
+static_assert(sizeof(GateState) == 8 * (17 + 9 * kNumJoints) + sizeof(GateCounters), "no padding");
 
 }  // namespace sandrunner

@@ -19,9 +19,9 @@ class SafeCommand {
   const JointCommand& joints() const noexcept { return joints_; }
   /// False: the drives are to be without torque, whatever `joints()` says (it is then zero).
   bool enabled() const noexcept { return enabled_ != 0; }
-  /// Joints whose measured values are not to be trusted, bit j for joint j. A drive damps them by
-  /// its own encoder; who evaluates the law of a torque drive gives them no torque: damping by a
-  /// wrong speed would drive.
+  /// Joints whose measured values are not to be trusted, bit j for joint j. They get no torque, as
+  /// damping by a wrong speed would drive; only a drive that closes the loop itself and has gone
+  /// silent damps by its own encoder, as it may still hear.
   std::uint64_t blind_joints() const noexcept { return blind_joints_; }
 
  private:

@@ -164,12 +164,19 @@ std::uint64_t SafetyGate::judge_time(std::uint64_t tick, Mode mode,
   if (state.judged == 0) return 0;
   if (tick <= before) return bit(Fault::kTime);
   const std::uint64_t skipped = tick - before - 1;
-  if (skipped == 0) return 0;
+  std::uint64_t& missed = state.missed_ticks;
+  if (skipped == 0) {
+    missed -= std::min<std::uint64_t>(missed, 1);
+    return 0;
+  }
   ++state.counters.stalled;
   state.stall_end_tick = tick;
   state.stall_ticks = skipped;
-  const bool too_long = skipped > config_.stall_fault_ticks;
-  return too_long && judged_in(mode, Fault::kLoopStalled) ? bit(Fault::kLoopStalled) : 0;
+  // One more than is a fault is enough: what a loop missed while nobody judged it is soon over.
+  missed = std::min(missed + std::min(skipped, config_.stall_fault_ticks + 1),
+                    config_.stall_fault_ticks + 1);
+  const bool too_many = missed > config_.stall_fault_ticks;
+  return too_many && judged_in(mode, Fault::kLoopStalled) ? bit(Fault::kLoopStalled) : 0;
 }
 
 std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateState& state,
@@ -336,7 +343,7 @@ SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const Joi
   state.sent = 0;
   if (!enabled) return SafeCommand{};
   if (!is_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), 0, state);
-  if (state.faults != 0) return SafeCommand{damping_, true, state.blind_joints};
+  if (state.faults != 0) return SafeCommand{damping(joints), true, state.blind_joints};
 
   JointCommand allowed = wanted;
   const JointArray<double> asked_rad =
@@ -352,6 +359,19 @@ SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const Joi
     }
   }
   return SafeCommand{allowed, true, 0};
+}
+
+JointCommand SafetyGate::damping(const JointState& joints) const noexcept {
+  JointCommand command = damping_;
+  for (int j = 0; j < kNumJoints; ++j) {
+    double& kd = command.kd_nmsprad[j];
+    const double speed_radps = std::fabs(joints.velocity_radps[j]);
+    // Not so for a speed that is no number, whose joint is blind.
+    if (kd * speed_radps > config_.torque_limit_nm[j]) {
+      kd = config_.torque_limit_nm[j] / speed_radps;
+    }
+  }
+  return command;
 }
 
 void SafetyGate::clear(GateState& state) const noexcept {

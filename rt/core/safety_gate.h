@@ -59,6 +59,8 @@ class SafetyGate {
   std::uint64_t judge_body(const ImuSample& imu, std::uint64_t elapsed,
                            GateState& state) const noexcept;
   std::uint64_t judge_policy(const PolicyOutput& policy, GateState& state) const noexcept;
+  /// What passes while a fault is latched: at most each joint's limit of torque.
+  JointCommand damping(const JointState& joints) const noexcept;
 
   GateConfig config_;
   OutputBounds bounds_;

@@ -25,7 +25,7 @@ void Watchdog::look(std::int64_t now_ns) noexcept {
   watching_ = true;
   seen_ = ticks;
   looked_ns_ = now_ns;
-  if (now_ns - alive_ns_ < kWatchdog_ns || has_cut()) return;
+  if (now_ns - alive_ns_ < kWatchdog_ns) return;
   robot_.cut_drives();
   cut_.store(true, std::memory_order_relaxed);
 }

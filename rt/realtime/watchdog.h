@@ -13,8 +13,9 @@ namespace sandrunner {
 /// safety gate tolerates, shorter than the drives' own time-outs are by habit.
 inline constexpr std::int64_t kWatchdog_ns = 100'000'000;
 
-/// The last line but the drives' own: when the control thread hangs, cuts the drives, for good. Has
-/// a thread of its own, above the control thread's priority. A stall of the whole machine, which
+/// The last line but the drives' own: when the control thread hangs, cuts the drives, for good,
+/// and again in each look until it ticks: a frame may be lost. Has a thread of its own, above the
+/// control thread's priority. A stall of the whole machine, which
 /// stops the watchdog as well, is the control thread's to judge.
 class Watchdog {
  public:

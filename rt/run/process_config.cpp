@@ -152,6 +152,12 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
     adapt_gate(*p.hardware, c.gate);
   }
   read_controller(config, c);
+  if (p.hardware && c.gate.speed_fault_radps > told_speed_radps(*p.hardware)) {
+    throw InputError(
+        fmt::format("controller.gate.speed_fault_radps: {} rad/s is more than the drives' replies "
+                    "can tell, {:.1f}; it would never be a fault",
+                    c.gate.speed_fault_radps, told_speed_radps(*p.hardware)));
+  }
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   p.recording.bytes = static_cast<std::uint64_t>(

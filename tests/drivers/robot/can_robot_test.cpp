@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "rt/core/safety_gate.h"
+
 namespace sandrunner {
 namespace {
 
@@ -12,6 +14,41 @@ TEST(CanRobotTest, AStepOfTheWallClockMakesNoFrameOlderThanTheTimeSinceThereWasN
   EXPECT_EQ(frame_age_ns(1'000'000, 1'100'000, kLongest_ns), 100'000);
   EXPECT_EQ(frame_age_ns(1'000'000, 1'100'000 + kHour_ns, kLongest_ns), kLongest_ns);
   EXPECT_EQ(frame_age_ns(1'000'000, 1'100'000 - kHour_ns, kLongest_ns), 0);
+}
+
+/// What the gate sends after joint 4's encoder has jumped.
+SafeCommand after_encoder_jump() {
+  GateConfig config;
+  config.joint_lower_rad.fill(-3.0);
+  config.joint_upper_rad.fill(3.0);
+  config.torque_limit_nm.fill(50.0);
+  config.continuous_torque_nm = 50.0;
+  config.speed_fault_radps = 50.0;
+  const SafetyGate gate(config, 2.0);
+  GateState state;
+  SensorFrame sensors;
+  VelocityCommand command;
+  for (int n = 0; n < 2; ++n) {
+    sensors.joints.tick.fill(sensors.tick);
+    sensors.imu.tick = sensors.tick;
+    gate.judge({.sensors = sensors, .command = command, .policy_input_tick = 0}, Mode::kDamping,
+               state);
+    sensors.joints.position_rad[4] += 1.0;
+    ++sensors.tick;
+  }
+  EXPECT_EQ(state.first_fault, Fault::kEncoderJump);
+  return gate.pass({}, true, sensors.joints, state);
+}
+
+TEST(CanRobotTest, ABlindJointGetsNoTorqueButByItsOwnDriveIfThatIsSilent) {
+  const SafeCommand command = after_encoder_jump();
+  const Drive drive{};
+  const auto kd = [&](int j, bool answers) {
+    return set_point(command, j, drive, DriveMode::kGains, answers).kd_nmsprad;
+  };
+  EXPECT_EQ(kd(3, true), 2.0);
+  EXPECT_EQ(kd(4, true), 0.0);
+  EXPECT_EQ(kd(4, false), 2.0);
 }
 
 }  // namespace

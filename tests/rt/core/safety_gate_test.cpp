@@ -51,6 +51,12 @@ class SafetyGateTest : public testing::Test {
   SafeCommand pass(const JointCommand& to_pass, bool enabled = true) {
     return gate.pass(to_pass, enabled, sensors.joints, state);
   }
+  /// The next tick is this many too late, with fresh samples.
+  void stall(std::uint64_t missed) {
+    sensors.tick = state.tick + 1 + missed;
+    sensors.joints.tick.fill(sensors.tick);
+    sensors.imu.tick = sensors.tick;
+  }
   void tilt(double angle_deg) {
     const double half_rad = angle_deg * std::numbers::pi / 360.0;
     // About an axis in the plane, with a yaw before it: neither may matter.
@@ -101,13 +107,50 @@ TEST_F(SafetyGateTest, AJointInDampingWhoseEncoderFreezesIsAFaultUnlessItRests) 
 
 TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
   judge(Mode::kWalk);
-  sensors.tick += config.stall_fault_ticks + 2;
-  sensors.joints.tick.fill(sensors.tick);
-  sensors.imu.tick = sensors.tick;
+  stall(config.stall_fault_ticks + 1);
   sensors.joints.velocity_radps[2] = 2.0 * config.speed_fault_radps;
   EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kLoopStalled) |
                                     static_cast<std::uint64_t>(Fault::kJointSpeed));
   EXPECT_EQ(state.first_fault, Fault::kLoopStalled);
+}
+
+double torque_of(const SafeCommand& command, const JointState& joints, int j) {
+  const JointCommand& c = command.joints();
+  return joint_torque(joints.position_rad[j], joints.velocity_radps[j], c.position_rad[j],
+                      c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j], c.feedforward_nm[j]);
+}
+
+TEST_F(SafetyGateTest, AStallOfTicksInManyPiecesIsAFaultUnlessTheLoopRanAsLong) {
+  const auto after = [&](std::uint64_t ran, std::uint64_t missed) {
+    for (std::uint64_t n = 0; n < ran; ++n) EXPECT_EQ(judge(Mode::kStand), 0u);
+    stall(missed);
+    return judge(Mode::kStand);
+  };
+  judge(Mode::kStand);
+  for (int n = 0; n < 20; ++n) ASSERT_EQ(after(100, 100), 0u) << n;
+  EXPECT_EQ(after(90, 100), 0u);
+  EXPECT_EQ(after(90, 100), 0u);
+  EXPECT_EQ(after(90, 100), static_cast<std::uint64_t>(Fault::kLoopStalled));
+}
+
+TEST_F(SafetyGateTest, WhatTheLoopMissedInPassiveIsSoonOver) {
+  judge(Mode::kPassive);
+  stall(100'000);
+  EXPECT_EQ(judge(Mode::kPassive), 0u);
+  EXPECT_EQ(judge(Mode::kPassive), 0u);
+  for (int n = 0; n < 10; ++n) EXPECT_EQ(judge(Mode::kStandUp), 0u);
+}
+
+TEST_F(SafetyGateTest, TheDampingOfAFaultGivesAtMostTheJointsLimit) {
+  sensors.emergency_stop = 1;
+  sensors.joints.velocity_radps[3] = -0.9 * config.speed_fault_radps;
+  sensors.joints.velocity_radps[4] = 1.0;
+  config.torque_limit_nm.fill(5.0);
+  gate = SafetyGate(config, 2.0);
+  judge(Mode::kStand);
+  const SafeCommand passed = pass(wanted);
+  EXPECT_NEAR(torque_of(passed, sensors.joints, 3), 5.0, 1e-9);
+  EXPECT_EQ(torque_of(passed, sensors.joints, 4), -2.0);
 }
 
 TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
@@ -121,12 +164,6 @@ TEST_F(SafetyGateTest, PassesACommandWithinLimitsUnchanged) {
   EXPECT_EQ(passed.joints().kd_nmsprad, wanted.kd_nmsprad);
   EXPECT_EQ(passed.joints().feedforward_nm, wanted.feedforward_nm);
   for (const auto& [name, ticks] : kGateCounters) EXPECT_EQ(state.counters.*ticks, 0u) << name;
-}
-
-double torque_of(const SafeCommand& command, const JointState& joints, int j) {
-  const JointCommand& c = command.joints();
-  return joint_torque(joints.position_rad[j], joints.velocity_radps[j], c.position_rad[j],
-                      c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j], c.feedforward_nm[j]);
 }
 
 TEST_F(SafetyGateTest, ClampsAndCountsCommandedPositions) {

@@ -48,11 +48,12 @@ class SpoiltRobot : public RobotIo {
   SensorFrame last_good_;
 };
 
+/// With the robot's own gain, or less for a joint that is said to be very fast.
 bool only_damps(const SafeCommand& command) {
   const JointCommand& c = command.joints();
   for (int j = 0; j < kNumJoints; ++j) {
     if (c.kp_nmprad[j] != 0.0 || c.feedforward_nm[j] != 0.0 || c.velocity_radps[j] != 0.0 ||
-        c.kd_nmsprad[j] != 2.0) {
+        !(c.kd_nmsprad[j] > 0.0 && c.kd_nmsprad[j] <= 2.0)) {
       return false;
     }
   }

@@ -38,14 +38,18 @@ TEST_F(WatchdogTest, AControlThreadThatTicksKeepsItsDrives) {
   EXPECT_EQ(robot.cuts, 0);
 }
 
-TEST_F(WatchdogTest, OneThatHangsForAHundredMillisecondsLosesThemOnce) {
+TEST_F(WatchdogTest, OneThatHangsForAHundredMillisecondsLosesThemAndIsToldSoUntilItTicks) {
   look_until(now_ns + 100 * kMs);
   EXPECT_EQ(robot.cuts, 0);
   look_until(now_ns + 5 * kMs);
   EXPECT_EQ(robot.cuts, 1);
   EXPECT_TRUE(watchdog.has_cut());
-  look_until(now_ns + 1000 * kMs);
-  EXPECT_EQ(robot.cuts, 1);
+  look_until(now_ns + 50 * kMs);
+  EXPECT_EQ(robot.cuts, 11);
+  ++ticks;
+  look_until(now_ns + 95 * kMs);
+  EXPECT_EQ(robot.cuts, 11);
+  EXPECT_TRUE(watchdog.has_cut());
 }
 
 TEST_F(WatchdogTest, AStallOfTheWholeMachineIsNotTheControlThreads) {
@@ -54,7 +58,7 @@ TEST_F(WatchdogTest, AStallOfTheWholeMachineIsNotTheControlThreads) {
   look_until(now_ns + 100 * kMs);
   EXPECT_EQ(robot.cuts, 0);
   look_until(now_ns + 10 * kMs);
-  EXPECT_EQ(robot.cuts, 1);
+  EXPECT_GT(robot.cuts, 0);
 }
 
 }  // namespace

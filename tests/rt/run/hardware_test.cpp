@@ -57,6 +57,8 @@ constexpr Refusal kRefusals[] = {
      "hardware.emergency_stop.line: found none"},
     {"mit.toml", "mode = ", "emergency_stop = {chip = \"/dev/nosuch\", line = 3}\nmode = ",
      "hardware.emergency_stop: /dev/nosuch line 3: the chip cannot be opened"},
+    {"mit.toml", "[hardware]", "[controller.gate]\nspeed_fault_radps = 99\n[hardware]",
+     "speed_fault_radps: 99 rad/s is more than the drives' replies can tell"},
     {"moteus.toml", "kp_nmprev = 1300.0", "", "hardware.drive of LF_HAA: found no kp_nmprev"},
     {"moteus.toml", "max_torque_nm = 65.0", "", "found no max_torque_nm"},
     {"moteus.toml", "max_torque_nm = 65.0", "max_torque_nm = 40.0", "torque up to 63.45 N m"},
