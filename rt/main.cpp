@@ -265,7 +265,7 @@ int run(int argc, char** argv) {
   listeners.recorder = make_recorder(*options, config, policy_text, policy);
   listeners.black_box = make_black_box(*options, config, policy_text, policy);
   TheRobot robot = make_robot(*options, config);
-  signals.cut_in_a_crash(robot.io());
+  const CutInACrash cut_in_a_crash(robot.io());
 
   const RunScene scene = scene_of(config, policy.spec().name);
   if (out) listeners.page.emplace(scene, config.robot.description);

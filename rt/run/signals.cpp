@@ -52,16 +52,13 @@ SignalWatch::SignalWatch() {
 }
 
 SignalWatch::~SignalWatch() {
-  if (robot_of_a_crash.exchange(nullptr) != nullptr) {
-    for (const int number : kCrashes) std::signal(number, SIG_DFL);
-  }
   end_ = true;
   pthread_kill(thread_.native_handle(), kEnd);
   thread_.join();
   pthread_sigmask(SIG_UNBLOCK, &watched_, nullptr);
 }
 
-void SignalWatch::cut_in_a_crash(RobotIo& robot) {
+CutInACrash::CutInACrash(RobotIo& robot) {
   robot_of_a_crash = &robot;
   for (const int number : kCrashes) {
     struct sigaction action {};
@@ -69,6 +66,11 @@ void SignalWatch::cut_in_a_crash(RobotIo& robot) {
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     sigaction(number, &action, nullptr);
   }
+}
+
+CutInACrash::~CutInACrash() {
+  for (const int number : kCrashes) std::signal(number, SIG_DFL);
+  robot_of_a_crash = nullptr;
 }
 
 }  // namespace sandrunner

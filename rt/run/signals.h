@@ -15,9 +15,8 @@ namespace sandrunner {
 /// those that were ignored from the start (nohup), is taken away from all threads that start after
 /// it and waited for in a thread of its own: no code runs in a signal handler, no system call of
 /// another thread is interrupted, and the robot is let down first. Ignored are those that stand for
-/// an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. A crash (SIGSEGV, SIGABRT, ...) cuts
-/// the drives in its handler and then ends the process as it would have. What nobody can catch,
-/// SIGKILL and SIGSTOP, is left to the drives' own time-out.
+/// an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. What nobody can catch, SIGKILL and
+/// SIGSTOP, is left to the drives' own time-out.
 class SignalWatch {
  public:
   SignalWatch();
@@ -28,13 +27,20 @@ class SignalWatch {
   /// True once any of them has come.
   const std::atomic<bool>& interrupted() const noexcept { return interrupted_; }
 
-  /// Cuts the drives of `robot` in a crash from now on, until the watch ends. It must outlive it.
-  void cut_in_a_crash(RobotIo& robot);
-
  private:
   sigset_t watched_;
   std::atomic<bool> interrupted_{false}, end_{false};
   std::thread thread_;
+};
+
+/// As long as it lives, a crash (SIGSEGV, SIGABRT, ...) cuts the drives of `robot` in its handler
+/// and then ends the process as it would have. One at a time.
+class CutInACrash {
+ public:
+  explicit CutInACrash(RobotIo& robot);
+  ~CutInACrash();
+  CutInACrash(const CutInACrash&) = delete;
+  CutInACrash& operator=(const CutInACrash&) = delete;
 };
 
 }  // namespace sandrunner

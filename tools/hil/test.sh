@@ -4,7 +4,7 @@
 # machine (qemu.sh), with the programs in BIN (default build/release/bin); judges, and prints what was measured.
 #
 #   short     what tools/test.sh runs: tests that need CAN in the kernel, both protocols walk 2 s, some fault runs
-#   walk      both protocols walk 10 s at 1 kHz, at the speed of the same program in its own simulator
+#   walk      both protocols in both modes walk 10 s at 1 kHz, at the speed of the same program in its own simulator
 #   faults    the whole list of fault runs
 #   cost      what a control tick costs with twelve drives on four buses in torque mode; its system calls
 #   record    a recording made over CAN, replayed here
@@ -38,8 +38,8 @@ short)
     sandrunner-hil runs --only drive-resets,bus-off,imu-silent $faults"
   ;;
 walk)
-  guest walk 1800 "sandrunner-hil runs --only walks-mit,walks-moteus --walk 10 --speed $(speed 10) \
-    --set hardware.rate_hz=1000 --out /out"
+  walk="sandrunner-hil runs --only walks-mit,walks-moteus --walk 10 --speed $(speed 10) --set hardware.rate_hz=1000"
+  guest walk 1800 "$walk --out /out && $walk --set hardware.mode=torque --out /out/torque"
   ;;
 faults) guest faults 3600 "sandrunner-hil runs $faults" ;;
 cost)

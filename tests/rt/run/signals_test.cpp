@@ -113,14 +113,27 @@ TEST(SignalWatchDeathTest, ACrashCutsTheDrivesAndEndsAsItWouldHave) {
       setrlimit(RLIMIT_CORE, &no_core);
       signal(number, SIG_DFL);  // whatever a sanitizer did
       LoudRobot robot;
-      SignalWatch watch;
-      watch.cut_in_a_crash(robot);
+      const CutInACrash cut(robot);
       raise(number);
       raise(number);  // its action is the default one now
       _exit(0);
     };
     EXPECT_EXIT(child(), testing::KilledBySignal(number), "drives cut") << number;
   }
+}
+
+TEST(SignalWatchDeathTest, ACrashAfterTheRobotIsGoneCallsItNoMore) {
+  const auto child = [] {
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    {
+      LoudRobot robot;
+      const CutInACrash cut(robot);
+    }
+    raise(SIGSEGV);
+    _exit(0);
+  };
+  EXPECT_EXIT(child(), testing::KilledBySignal(SIGSEGV), "^$");
 }
 
 TEST(SignalWatchDeathTest, WhatWasIgnoredFromTheStartStaysIgnored) {
