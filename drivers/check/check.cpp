@@ -188,19 +188,19 @@ class Check {
   }
 
   void measure() {
-    std::unique_ptr<MipImu> imu;
+    std::unique_ptr<Imu> imu;
     try {
-      imu = std::make_unique<MipImu>(config_.imu);
+      imu = std::make_unique<Imu>(config_.imu);
     } catch (const InputError& error) {
       findings_.problems.emplace_back(error.what());
     }
     DriveLook look(config_, sockets_);
     ImuLook imu_look;
-    const MipImu::Counters before = imu ? imu->counters() : MipImu::Counters();
+    const Imu::Counters before = imu ? imu->counters() : Imu::Counters();
     const std::int64_t start_ns = now_ns();
     const auto look_at_imu = [&] {
       while (imu->poll(now_ns())) imu_look.add(imu->sample());
-      const MipImu::Counters now = imu->counters();
+      const Imu::Counters now = imu->counters();
       findings_.imu =
           ImuFindings{.figures = imu_look.figures(now.samples - before.samples,
                                                   1e-9 * static_cast<double>(now_ns() - start_ns)),

@@ -88,7 +88,7 @@ std::vector<std::string> bus_problems(const HardwareConfig& config,
   return problems;
 }
 
-std::vector<std::string> imu_problems(const MipImuConfig& config, const ImuFindings& findings) {
+std::vector<std::string> imu_problems(const ImuConfig& config, const ImuFindings& findings) {
   std::vector<std::string> problems = imu_problems(findings.figures, config.rate_hz);
   if (findings.bad_packets > 0) {
     problems.push_back(
@@ -124,7 +124,7 @@ std::string joint_table(const HardwareConfig& config, const RobotDescription& ro
   return text;
 }
 
-std::string imu_line(const MipImuConfig& config, const ImuFindings& findings) {
+std::string imu_line(const ImuConfig& config, const ImuFindings& findings) {
   const ImuFigures& f = findings.figures;
   const Vector3 &a = f.acceleration_mps2, &w = f.angular_velocity_radps;
   return fmt::format(

@@ -7,7 +7,7 @@
 
 #include "drivers/check/bus_scan.h"
 #include "drivers/check/imu_look.h"
-#include "drivers/imu/mip_imu.h"
+#include "drivers/imu/imu.h"
 #include "drivers/robot/drive_look.h"
 #include "drivers/robot/hardware_config.h"
 
@@ -16,7 +16,7 @@ namespace sandrunner {
 /// What the IMU was seen to do.
 struct ImuFindings {
   ImuFigures figures;
-  std::string state;              ///< to_string(MipImu::State)
+  std::string state;              ///< to_string(Imu::State)
   std::uint64_t bad_packets = 0;  ///< with a bad checksum, repeated, incomplete
 };
 
@@ -40,12 +40,12 @@ std::vector<std::string> bus_problems(const HardwareConfig& config,
                                       const std::vector<FoundBus>& buses);
 
 /// Lines about the IMU.
-std::vector<std::string> imu_problems(const MipImuConfig& config, const ImuFindings& findings);
+std::vector<std::string> imu_problems(const ImuConfig& config, const ImuFindings& findings);
 
 /// One line a joint: who answers how, where it is.
 std::string joint_table(const HardwareConfig& config, const RobotDescription& robot,
                         const GateConfig& gate, const JointArray<FoundDrive>& drives);
-std::string imu_line(const MipImuConfig& config, const ImuFindings& findings);
+std::string imu_line(const ImuConfig& config, const ImuFindings& findings);
 
 /// The report, for a person.
 std::string check_report(const HardwareConfig& config, const RobotDescription& robot,

@@ -27,10 +27,6 @@ Vector3 rotate(const Quaternion& q, const Vector3& v) noexcept {
   return {r[1], r[2], r[3]};
 }
 
-/// FRD to FLU, or NED to north-west-up, and back: half a turn about x.
-Vector3 flip(const Vector3& v) noexcept { return {v[0], -v[1], -v[2]}; }
-Quaternion flip(const Quaternion& q) noexcept { return {q[0], q[1], -q[2], -q[3]}; }
-
 /// Whether it is a rotation, to 1 %; only then is it given the length 1.
 bool normalise(Quaternion& q) noexcept {
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -65,15 +61,13 @@ ImuMounting ImuMounting::from_rpy(const Vector3& rpy_rad) {
   return ImuMounting(product(product(about(2), about(1)), about(0)));
 }
 
-Vector3 ImuMounting::to_body(const std::array<float, 3>& sensor) const noexcept {
-  return rotate(body_from_sensor_, flip(Vector3{sensor[0], sensor[1], sensor[2]}));
+Vector3 ImuMounting::to_body(const Vector3& sensor) const noexcept {
+  return rotate(body_from_sensor_, sensor);
 }
 
-Quaternion ImuMounting::to_orientation(const std::array<float, 4>& sensor_wxyz,
+Quaternion ImuMounting::to_orientation(const Quaternion& sensor_wxyz,
                                        const Quaternion& previous) const noexcept {
-  // The device's q takes vectors from its axes to NED: p_sensor = q^-1 p_ned q.
-  const Quaternion sensor{sensor_wxyz[0], sensor_wxyz[1], sensor_wxyz[2], sensor_wxyz[3]};
-  Quaternion q = product(flip(sensor), conjugate(body_from_sensor_));
+  Quaternion q = product(sensor_wxyz, conjugate(body_from_sensor_));
   normalise(q);
   double dot = 0.0;
   for (std::size_t i = 0; i < q.size(); ++i) dot += q[i] * previous[i];
@@ -83,19 +77,13 @@ Quaternion ImuMounting::to_orientation(const std::array<float, 4>& sensor_wxyz,
   return q;
 }
 
-mip::SensorData ImuMounting::to_sensor(const ImuSample& sample) const noexcept {
-  const auto turned = [this](const Vector3& body, double scale) {
-    const Vector3 v = flip(rotate(conjugate(body_from_sensor_), body));
-    return std::array<float, 3>{static_cast<float>(v[0] * scale), static_cast<float>(v[1] * scale),
-                                static_cast<float>(v[2] * scale)};
-  };
-  const Quaternion q = flip(product(sample.orientation_wxyz, body_from_sensor_));
-  mip::SensorData data;
-  data.accel_g = turned(sample.linear_acceleration_mps2, 1.0 / kStandardGravity_mps2);
-  data.gyro_radps = turned(sample.angular_velocity_radps, 1.0);
-  data.quaternion_wxyz = {static_cast<float>(q[0]), static_cast<float>(q[1]),
-                          static_cast<float>(q[2]), static_cast<float>(q[3])};
-  return data;
+ImuReading ImuMounting::to_sensor(const ImuSample& sample) const noexcept {
+  const Quaternion sensor_from_body = conjugate(body_from_sensor_);
+  ImuReading reading;
+  reading.acceleration_mps2 = rotate(sensor_from_body, sample.linear_acceleration_mps2);
+  reading.angular_velocity_radps = rotate(sensor_from_body, sample.angular_velocity_radps);
+  reading.orientation_wxyz = product(sample.orientation_wxyz, body_from_sensor_);
+  return reading;
 }
 
 }  // namespace sandrunner

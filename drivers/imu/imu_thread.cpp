@@ -13,7 +13,7 @@ constexpr int kWait_ms = 20;  // until it looks whether it is to end
 
 }  // namespace
 
-ImuThread::ImuThread(const MipImuConfig& config) : imu_(config), thread_([this] { run(); }) {}
+ImuThread::ImuThread(const ImuConfig& config) : imu_(config), thread_([this] { run(); }) {}
 
 ImuThread::~ImuThread() {
   end_ = true;
@@ -28,7 +28,7 @@ void ImuThread::run() noexcept {
     const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
     imu_.poll(now_ns);
     buffer_.write({imu_.sample(), imu_.sample_time_ns(), imu_.counters()});
-    if (imu_.state(now_ns) == MipImu::State::kGone) return;
+    if (imu_.state(now_ns) == Imu::State::kGone) return;
     imu_.wait(kWait_ms);
   }
 }

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <thread>
 
-#include "drivers/imu/mip_imu.h"
+#include "drivers/imu/imu.h"
 #include "rt/core/triple_buffer.h"
 
 namespace sandrunner {
@@ -15,8 +15,8 @@ namespace sandrunner {
 /// that cost up to 6 ms.
 class ImuThread {
  public:
-  /// Sets the IMU up, which may take seconds, and reads it from then on. InputError as MipImu.
-  explicit ImuThread(const MipImuConfig& config);
+  /// Sets the IMU up, which may take seconds, and reads it from then on. InputError as Imu.
+  explicit ImuThread(const ImuConfig& config);
   ~ImuThread();
   ImuThread(const ImuThread&) = delete;
   ImuThread& operator=(const ImuThread&) = delete;
@@ -24,9 +24,9 @@ class ImuThread {
   /// Takes the newest sample. True: there is a new one. Wait-free; of one thread.
   bool poll() noexcept;
 
-  const ImuSample& sample() const noexcept { return reading_.sample; }  ///< see MipImu
+  const ImuSample& sample() const noexcept { return reading_.sample; }  ///< see Imu
   std::int64_t sample_time_ns() const noexcept { return reading_.sample_time_ns; }
-  const MipImu::Counters& counters() const noexcept { return reading_.counters; }
+  const Imu::Counters& counters() const noexcept { return reading_.counters; }
 
   /// Above the policy's, below the control thread's: a sample is old by what it waits.
   static constexpr int kPriority = 75;
@@ -35,11 +35,11 @@ class ImuThread {
   struct Reading {
     ImuSample sample;
     std::int64_t sample_time_ns = 0;
-    MipImu::Counters counters;
+    Imu::Counters counters;
   };
   void run() noexcept;
 
-  MipImu imu_;
+  Imu imu_;
   TripleBuffer<Reading> buffer_;
   Reading reading_;
   std::atomic<bool> end_{false};

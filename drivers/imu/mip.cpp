@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 namespace sandrunner::mip {
 
@@ -11,48 +10,12 @@ namespace {
 
 constexpr std::uint8_t kApply = 0x01;  // function selector: use the new setting
 
-template <typename Number>
-Number read(Bytes data, std::size_t offset) noexcept {
-  Number value = 0;
-  for (std::size_t i = 0; i < sizeof(Number); ++i) {
-    value = static_cast<Number>(value << 8 | data[offset + i]);
-  }
-  return value;
-}
-
-/// The data of a field that is being written.
-class Writer {
- public:
-  template <typename Number>
-  Writer& put(Number value) noexcept {
-    for (std::size_t i = sizeof(Number); i-- > 0;) {
-      bytes_[size_++] = static_cast<std::uint8_t>(value >> (8 * i));
-    }
-    return *this;
-  }
-  template <std::size_t kSize>
-  Writer& put(const std::array<float, kSize>& values) noexcept {
-    for (const float value : values) put(std::bit_cast<std::uint32_t>(value));
-    return *this;
-  }
-  Bytes data() const noexcept { return {bytes_.data(), size_}; }
-
- private:
-  std::array<std::uint8_t, kMaxPayload> bytes_{};
-  std::size_t size_ = 0;
-};
+using Writer = BigEndianWriter<kMaxPayload>;
 
 Packet command(std::uint8_t descriptor_set, std::uint8_t descriptor, Bytes data = {}) noexcept {
   Packet packet(descriptor_set);
   packet.add(descriptor, data);
   return packet;
-}
-
-template <std::size_t kSize>
-std::array<float, kSize> read_floats(Bytes data) noexcept {
-  std::array<float, kSize> values;
-  for (std::size_t i = 0; i < kSize; ++i) values[i] = std::bit_cast<float>(read_u32(data, 4 * i));
-  return values;
 }
 
 /// Length of the data of a field of kSensorData; 0: not one that is decoded.
@@ -72,23 +35,6 @@ std::size_t sensor_field_length(std::uint8_t descriptor) noexcept {
 }
 
 }  // namespace
-
-const char* sensor_field_name(std::uint8_t descriptor) noexcept {
-  switch (descriptor) {
-    case kAccel:
-      return "acceleration";
-    case kGyro:
-      return "angular rate";
-    case kQuaternion:
-      return "quaternion";
-    case kGpsTime:
-      return "GPS time";
-    case kReferenceTime:
-      return "reference time";
-    default:
-      return "unknown field";
-  }
-}
 
 const char* ack_text(std::uint8_t code) noexcept {
   switch (code) {
@@ -125,16 +71,6 @@ bool take_field(Bytes& payload, Field& field) noexcept {
   field = {payload[1], payload.subspan(2, length - 2)};
   payload = payload.subspan(length);
   return true;
-}
-
-std::uint16_t read_u16(Bytes data, std::size_t offset) noexcept {
-  return read<std::uint16_t>(data, offset);
-}
-std::uint32_t read_u32(Bytes data, std::size_t offset) noexcept {
-  return read<std::uint32_t>(data, offset);
-}
-std::uint64_t read_u64(Bytes data, std::size_t offset) noexcept {
-  return read<std::uint64_t>(data, offset);
 }
 
 Packet::Packet(std::uint8_t descriptor_set) noexcept {
@@ -217,10 +153,6 @@ std::optional<Reply> find_reply(Bytes payload, std::uint8_t command_field) noexc
 
 SensorData decode_sensor_data(Bytes payload) noexcept {
   SensorData data;
-  const auto wrong_length = [&data](std::uint8_t descriptor) {
-    ++data.wrong_length_fields;
-    data.wrong_length_field = descriptor;
-  };
   Field field;
   while (take_field(payload, field)) {
     const std::size_t length = sensor_field_length(field.descriptor);
@@ -229,7 +161,7 @@ SensorData decode_sensor_data(Bytes payload) noexcept {
       continue;
     }
     if (field.data.size() != length) {
-      wrong_length(field.descriptor);
+      ++data.wrong_length_fields;
       continue;
     }
     switch (field.descriptor) {
@@ -251,7 +183,7 @@ SensorData decode_sensor_data(Bytes payload) noexcept {
         data.reference_time_ns = read_u64(field.data, 0);
     }
   }
-  if (!payload.empty()) wrong_length(payload.size() > 1 ? payload[1] : 0);
+  if (!payload.empty()) ++data.wrong_length_fields;
   return data;
 }
 
@@ -273,33 +205,19 @@ Packet encode_sensor_data(const SensorData& data) noexcept {
   return packet;
 }
 
-std::size_t Parser::find(PacketView& packet) noexcept {
-  while (size_ > 0) {
-    std::size_t length = 0;
-    if (bytes_[0] == kSync1 && (size_ < 2 || bytes_[1] == kSync2)) {
-      if (size_ < kHeaderSize) return 0;
-      length = kHeaderSize + bytes_[3] + kChecksumSize;
-      if (size_ < length) return 0;
-      const std::size_t end = length - kChecksumSize;
-      const auto sum = checksum({bytes_.data(), end});
-      if (sum[0] == bytes_[end] && sum[1] == bytes_[end + 1]) {
-        packet = {bytes_[2], {bytes_.data() + kHeaderSize, bytes_[3]}, times_ns_[0]};
-        return length;
-      }
-      ++bad_checksums_;
-    }
-    const auto* const next = std::find(bytes_.data() + 1, bytes_.data() + size_, kSync1);
-    const auto skipped = static_cast<std::size_t>(next - bytes_.data());
-    skipped_bytes_ += skipped;
-    drop(skipped);
-  }
-  return 0;
+std::size_t Framing::size(Bytes begun) noexcept {
+  if (begun[0] != kSync1 || (begun.size() > 1 && begun[1] != kSync2)) return 0;
+  return begun.size() < kHeaderSize ? kHeaderSize : kHeaderSize + begun[3] + kChecksumSize;
 }
 
-void Parser::drop(std::size_t count) noexcept {
-  size_ -= count;
-  std::memmove(bytes_.data(), bytes_.data() + count, size_);
-  std::memmove(times_ns_.data(), times_ns_.data() + count, size_ * sizeof(times_ns_[0]));
+bool Framing::intact(Bytes packet) noexcept {
+  const Bytes sent = packet.last(kChecksumSize);
+  const auto sum = checksum(packet.first(packet.size() - kChecksumSize));
+  return sum[0] == sent[0] && sum[1] == sent[1];
+}
+
+PacketView Framing::view(Bytes packet, std::int64_t first_byte_ns) noexcept {
+  return {packet[2], packet.subspan(kHeaderSize, packet[3]), first_byte_ns};
 }
 
 }  // namespace sandrunner::mip

@@ -15,9 +15,10 @@
 #include <optional>
 #include <span>
 
-namespace sandrunner::mip {
+#include "drivers/imu/big_endian.h"
+#include "drivers/imu/frame_parser.h"
 
-using Bytes = std::span<const std::uint8_t>;
+namespace sandrunner::mip {
 
 inline constexpr std::uint8_t kSync1 = 0x75, kSync2 = 0x65;
 inline constexpr std::size_t kHeaderSize = 4, kChecksumSize = 2;
@@ -42,8 +43,6 @@ inline constexpr std::uint8_t kAccel = 0x04, kGyro = 0x05, kQuaternion = 0x0A, k
 /// Codes of kAck; others exist.
 inline constexpr std::uint8_t kAckOk = 0, kNackUnknown = 1, kNackParameter = 3;
 
-/// A field's name in plain English; "unknown field" for those that are not named here.
-const char* sensor_field_name(std::uint8_t descriptor) noexcept;
 /// What an acknowledgement's code means.
 const char* ack_text(std::uint8_t code) noexcept;
 
@@ -58,11 +57,6 @@ struct Field {
 /// Takes the first field off the payload. False: none is left, or, where `payload` is then not
 /// empty, its length byte does not fit, so that nothing behind it can be read either.
 bool take_field(Bytes& payload, Field& field) noexcept;
-
-/// Numbers of a field; the caller has checked its length.
-std::uint16_t read_u16(Bytes data, std::size_t offset) noexcept;
-std::uint32_t read_u32(Bytes data, std::size_t offset) noexcept;
-std::uint64_t read_u64(Bytes data, std::size_t offset) noexcept;
 
 /// A packet to be sent. Its bytes are complete after every call.
 class Packet {
@@ -131,7 +125,6 @@ struct SensorData {
   std::optional<std::uint64_t> reference_time_ns;  ///< device's clock when the sample was taken
   std::uint32_t unknown_fields = 0;                ///< skipped
   std::uint32_t wrong_length_fields = 0;           ///< skipped too
-  std::uint8_t wrong_length_field = 0;             ///< descriptor of the last of those
   bool operator==(const SensorData&) const = default;
 };
 SensorData decode_sensor_data(Bytes payload) noexcept;
@@ -145,44 +138,14 @@ struct PacketView {
   std::int64_t first_byte_ns = 0;  ///< the time that came with the packet's first byte
 };
 
-/// Finds packets in a stream of bytes in which replies, data and garbage alternate as they please.
-/// After a bad checksum the search goes on one byte behind the false beginning, so that no packet
-/// inside a false one is lost.
-class Parser {
- public:
-  /// Hands each packet that these bytes complete to `on_packet(const PacketView&)`, which must not
-  /// throw. `time_ns`: when they were read.
-  template <typename OnPacket>
-  void feed(Bytes bytes, std::int64_t time_ns, OnPacket&& on_packet) noexcept {
-    for (const std::uint8_t byte : bytes) {
-      bytes_[size_] = byte;
-      times_ns_[size_] = time_ns;
-      ++size_;
-      PacketView packet;
-      while (const std::size_t length = find(packet)) {
-        on_packet(packet);
-        drop(length);
-      }
-    }
-  }
-
-  /// Forgets a packet that has begun.
-  void reset() noexcept { size_ = 0; }
-
-  std::uint64_t skipped_bytes() const noexcept { return skipped_bytes_; }  ///< in no packet
-  std::uint64_t bad_checksums() const noexcept { return bad_checksums_; }
-
- private:
-  /// The size of the packet that the buffer begins with, 0 while there is none: what can't be the
-  /// beginning of one has then been dropped.
-  std::size_t find(PacketView& packet) noexcept;
-  void drop(std::size_t count) noexcept;
-
-  std::array<std::uint8_t, kMaxPacket> bytes_{};
-  std::array<std::int64_t, kMaxPacket> times_ns_{};
-  std::size_t size_ = 0;
-  std::uint64_t skipped_bytes_ = 0;
-  std::uint64_t bad_checksums_ = 0;
+/// How packets look, for the parser (frame_parser.h).
+struct Framing {
+  static constexpr std::uint8_t kFirstByte = kSync1;
+  static constexpr std::size_t kMaxSize = kMaxPacket;
+  static std::size_t size(Bytes begun) noexcept;
+  static bool intact(Bytes packet) noexcept;
+  static PacketView view(Bytes packet, std::int64_t first_byte_ns) noexcept;
 };
+using Parser = FrameParser<Framing>;
 
 }  // namespace sandrunner::mip

@@ -72,21 +72,22 @@ std::uint8_t Device::set_format(Bytes data) {
   return kAckOk;
 }
 
-std::optional<Packet> Device::tick(const SensorData& data) {
+std::vector<std::uint8_t> Device::tick(const ImuReading& reading) {
   ++ticks_;
-  if (!streaming()) return std::nullopt;
+  if (!streaming()) return {};
   const auto due = [this](std::uint8_t descriptor) {
     return std::any_of(format_.begin(), format_.end(), [&](const DecimatedField& field) {
       return field.descriptor == descriptor && ticks_ % field.decimation == 0;
     });
   };
-  SensorData packet;
-  if (due(kAccel)) packet.accel_g = data.accel_g;
-  if (due(kGyro)) packet.gyro_radps = data.gyro_radps;
-  if (due(kQuaternion)) packet.quaternion_wxyz = data.quaternion_wxyz;
-  if (due(kReferenceTime)) packet.reference_time_ns = data.reference_time_ns;
-  if (packet == SensorData{}) return std::nullopt;
-  return encode_sensor_data(packet);
+  SensorData data = to_mip(reading);
+  if (!due(kAccel)) data.accel_g.reset();
+  if (!due(kGyro)) data.gyro_radps.reset();
+  if (!due(kQuaternion)) data.quaternion_wxyz.reset();
+  if (!due(kReferenceTime)) data.reference_time_ns.reset();
+  if (data == SensorData{}) return {};
+  const Packet packet = encode_sensor_data(data);
+  return {packet.bytes().begin(), packet.bytes().end()};
 }
 
 }  // namespace sandrunner::mip

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/imu/imu_reading.h"
 #include "drivers/imu/mip.h"
 
 namespace sandrunner::mip {
@@ -20,9 +21,9 @@ class Device {
   /// The replies to what the host has sent.
   std::vector<std::uint8_t> receive(Bytes bytes);
 
-  /// One period of the base rate goes by: the packet of those fields of `data` that are due, or
-  /// nothing. Acceleration, angular rate, quaternion and reference time are offered.
-  std::optional<Packet> tick(const SensorData& data);
+  /// One period of the base rate goes by: the packet of what of the reading is due, or nothing.
+  /// Acceleration, angular rate, quaternion and reference time are offered.
+  std::vector<std::uint8_t> tick(const ImuReading& reading);
 
   bool streaming() const { return stream_on_ && !idle_; }
   /// Speed of the line; a new one holds for what is sent after the replies to its command.

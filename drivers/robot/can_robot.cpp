@@ -216,7 +216,7 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
     if (d.last_fault() != 0) lines += "; " + drive_fault_words(config.drives[j], d.last_fault());
     lines += '\n';
   }
-  const MipImu::Counters imu = robot.imu().counters();
+  const Imu::Counters imu = robot.imu().counters();
   lines += fmt::format("{}: {} samples", config.imu.device, imu.samples);
   if (imu.repeated > 0) lines += fmt::format(", {} REPEATED", imu.repeated);
   if (imu.incomplete > 0) lines += fmt::format(", {} incomplete", imu.incomplete);

@@ -208,14 +208,17 @@ void read_drives(ConfigTree& config, const RobotDescription& robot, const GateCo
   require_one_id_each(h, robot);
 }
 
-MipImuConfig read_imu(ConfigTree& config) {
-  MipImuConfig imu;
+ImuConfig read_imu(ConfigTree& config) {
+  ImuConfig imu;
+  const bool mip = config.choice("hardware.imu.protocol", "mip", {"mip", "xsens"}) == "mip";
+  imu.protocol = mip ? ImuProtocol::kMip : ImuProtocol::kXsens;
   imu.device = config.text("hardware.imu.device", "");
   if (imu.device.empty()) {
     throw InputError("hardware.imu.device: found none, expected a serial line (/dev/ttyS0)");
   }
   imu.baud = static_cast<unsigned>(config.integer("hardware.imu.baud", imu.baud, 9600, 4'000'000));
-  imu.rate_hz = static_cast<int>(config.integer("hardware.imu.rate_hz", imu.rate_hz, 100, 1000));
+  imu.rate_hz =
+      static_cast<int>(config.integer("hardware.imu.rate_hz", mip ? 500 : 400, 100, 1000));
   imu.quaternion_rate_hz = static_cast<int>(
       config.integer("hardware.imu.quaternion_rate_hz", std::min(imu.rate_hz, 500), 100, 1000));
   const std::vector<double> rpy_deg =

@@ -9,7 +9,7 @@
 #include "drivers/can/bus_load.h"
 #include "drivers/can/mit.h"
 #include "drivers/can/moteus.h"
-#include "drivers/imu/mip_imu.h"
+#include "drivers/imu/imu_config.h"
 #include "drivers/robot/emergency_stop.h"
 #include "rt/base/config_tree.h"
 #include "rt/core/gate_config.h"
@@ -63,7 +63,7 @@ struct HardwareConfig {
   bool hanging = false;  ///< the robot hangs in a frame: falls and tilts are not judged
   std::vector<BusConfig> buses;
   JointArray<DriveConfig> drives;
-  MipImuConfig imu;
+  ImuConfig imu;
   StopLineConfig emergency_stop;
 
   int ticks_per_exchange() const noexcept { return kControlHz / rate_hz; }

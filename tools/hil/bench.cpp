@@ -17,7 +17,6 @@
 namespace sandrunner::hil {
 namespace {
 
-constexpr int kTicksPerImu = kControlHz / ImuLine::kBaseRate_hz;
 constexpr std::uint64_t kTicksPerQuestion = 40;
 constexpr double kBusOff_s = 0.1;
 
@@ -44,7 +43,7 @@ Bench::Bench(const ProcessConfig& config, const std::string& imu_device,
       walk_s_(walk_s),
       script_(std::move(faults)),
       robot_(config.robot, config.simulator),
-      imu_(imu_device, hardware_.imu.device, hardware_.imu.mounting) {
+      imu_(imu_device, hardware_.imu) {
   constexpr std::array kEverything = {CanFilter{0, 0, false}, CanFilter{0, 0, true}};
   for (const BusConfig& bus : hardware_.buses) {
     buses_.push_back({.interface = bus.interface,
@@ -235,7 +234,7 @@ void Bench::step(double now_s) {
   for (int j = 0; j < kNumJoints; ++j) {
     drives_[j].measure(robot_.state().q[j], robot_.state().qd[j]);
   }
-  if (tick_ % kTicksPerImu == 0) {
+  if (tick_ % static_cast<std::uint64_t>(kControlHz / imu_.base_rate_hz()) == 0) {
     imu_.listen();
     imu_.tick(robot_.imu(), (tick_ + 1) * static_cast<std::uint64_t>(kControlPeriod_ns));
   }

@@ -19,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kMipBaseRate_hz = 1000, kXsensRate_hz = 400;
+constexpr unsigned kMipBaud = 115200;  // after power-up, until it is told another one
+
 /// Opens a pseudo-terminal whose other end is `link`.
 int open_terminal(const std::string& link) {
   const fs::file_status there = fs::symlink_status(link);
@@ -48,13 +51,17 @@ int open_terminal(const std::string& link) {
 
 }  // namespace
 
-ImuLine::ImuLine(const std::string& device, const std::string& link, const ImuMounting& mounting)
-    : mounting_(mounting) {
+ImuLine::ImuLine(const std::string& device, const ImuConfig& config)
+    : mounting_(config.mounting),
+      base_rate_hz_(config.protocol == ImuProtocol::kMip ? kMipBaseRate_hz : kXsensRate_hz),
+      device_(mip::Device(kMipBaseRate_hz, kMipBaud)) {
+  // An MTi keeps its speed: it has been set to the configured one.
+  if (config.protocol == ImuProtocol::kXsens) device_ = xsens::Device(kXsensRate_hz, config.baud);
   if (device.empty()) {
-    terminal_ = open_terminal(link);
-    link_ = link;
+    terminal_ = open_terminal(config.device);
+    link_ = config.device;
   } else {
-    port_.emplace(device, device_.baud());
+    port_.emplace(device, baud());
   }
 }
 
@@ -70,7 +77,11 @@ void ImuLine::unplug() {
   port_.reset();
 }
 
-void ImuLine::write(mip::Bytes bytes) {
+std::uint32_t ImuLine::baud() const {
+  return std::visit([](const auto& device) { return device.baud(); }, device_);
+}
+
+void ImuLine::write(Bytes bytes) {
   if (port_) {
     port_->write(bytes);
   } else if (terminal_ >= 0 && ::write(terminal_, bytes.data(), bytes.size()) < 0) {
@@ -84,35 +95,35 @@ void ImuLine::listen() {
                      : terminal_ >= 0 ? ::read(terminal_, bytes.data(), bytes.size())
                                       : ssize_t{0};
   if (count <= 0 || fault != ImuFault::kNone) return;
-  const std::uint32_t baud = device_.baud();
+  const std::uint32_t before = baud();
+  const Bytes heard(bytes.data(), static_cast<std::size_t>(count));
   const std::vector<std::uint8_t> replies =
-      device_.receive({bytes.data(), static_cast<std::size_t>(count)});
+      std::visit([&](auto& sensor) { return sensor.receive(heard); }, device_);
   if (!replies.empty()) write(replies);
-  if (port_ && device_.baud() != baud) port_->set_baud(device_.baud());
+  if (port_ && baud() != before) port_->set_baud(baud());
 }
 
 void ImuLine::tick(const ImuSample& sample, std::uint64_t now_ns) {
-  mip::SensorData data = mounting_.to_sensor(sample);
-  data.reference_time_ns = now_ns;
-  const std::optional<mip::Packet> packet = device_.tick(data);
-  if (!packet) return;
+  ImuReading reading = mounting_.to_sensor(sample);
+  reading.device_ns = now_ns;
+  std::vector<std::uint8_t> packet =
+      std::visit([&](auto& sensor) { return sensor.tick(reading); }, device_);
+  if (packet.empty()) return;
   switch (fault) {
     case ImuFault::kNone:
       last_ = packet;
-      write(packet->bytes());
+      write(packet);
       ++packets_;
       break;
     case ImuFault::kSilent:
       break;
     case ImuFault::kRepeating:
-      if (last_) write(last_->bytes());
+      if (!last_.empty()) write(last_);
       break;
-    case ImuFault::kGarbage: {
-      std::vector<std::uint8_t> bytes(packet->bytes().begin(), packet->bytes().end());
-      for (std::uint8_t& byte : bytes) byte ^= 0xA5;
-      write(bytes);
+    case ImuFault::kGarbage:
+      for (std::uint8_t& byte : packet) byte ^= 0xA5;
+      write(packet);
       break;
-    }
   }
 }
 

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
-#include "drivers/imu/imu_mounting.h"
+#include "drivers/imu/imu_config.h"
 #include "drivers/imu/mip_device.h"
 #include "drivers/imu/serial_port.h"
+#include "drivers/imu/xsens_device.h"
 
 namespace sandrunner::hil {
 
@@ -18,22 +21,24 @@ enum class ImuFault : std::uint8_t {
   kGarbage,    ///< bytes that are no packets
 };
 
-/// An emulated MicroStrain sensor on a serial line: the far end of a cable, or a pseudo-terminal.
+/// An emulated sensor of the configured protocol on a serial line: the far end of a cable, or a
+/// pseudo-terminal.
 class ImuLine {
  public:
-  /// `device` is opened as this end of the line. Empty: a pseudo-terminal is made, and `link` is a
-  /// symbolic link to the controller's end of it, which must not exist as anything else. Throws
-  /// InputError.
-  ImuLine(const std::string& device, const std::string& link, const ImuMounting& mounting);
+  /// `config`: the controller's. `device` is opened as this end of the line. Empty: a
+  /// pseudo-terminal is made, and the configured device is a symbolic link to the controller's end
+  /// of it, which must not exist as anything else. Throws InputError.
+  ImuLine(const std::string& device, const ImuConfig& config);
   ~ImuLine();
   ImuLine(const ImuLine&) = delete;
   ImuLine& operator=(const ImuLine&) = delete;
 
   /// Answers what the controller asks.
   void listen();
-  /// A period of kBaseRate_hz has passed. `now_ns`: the sensor's own clock.
+  /// A period of `base_rate_hz` has passed. `now_ns`: the sensor's own clock.
   void tick(const ImuSample& sample, std::uint64_t now_ns);
-  static constexpr int kBaseRate_hz = 1000;
+  /// That of a 3DM-CV7, or the greatest of an MTi-600; both divide the control rate.
+  int base_rate_hz() const noexcept { return base_rate_hz_; }
 
   /// The plug is pulled, for good.
   void unplug();
@@ -44,12 +49,14 @@ class ImuLine {
   ImuFault fault = ImuFault::kNone;
 
  private:
-  void write(mip::Bytes bytes);
+  void write(Bytes bytes);
+  std::uint32_t baud() const;
 
   ImuMounting mounting_;
-  mip::Device device_{kBaseRate_hz, 115200};
+  int base_rate_hz_;
+  std::variant<mip::Device, xsens::Device> device_;
   std::optional<SerialPort> port_;
-  std::optional<mip::Packet> last_;
+  std::vector<std::uint8_t> last_;
   int terminal_ = -1;
   std::string link_;
   std::uint64_t packets_ = 0, not_taken_ = 0;

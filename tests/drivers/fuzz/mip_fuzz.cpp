@@ -19,7 +19,7 @@ void must(bool holds) {
   if (!holds) std::abort();
 }
 
-std::vector<std::uint8_t> sealed(sandrunner::mip::Bytes bare) {
+std::vector<std::uint8_t> sealed(sandrunner::Bytes bare) {
   namespace mip = sandrunner::mip;
   std::vector<std::uint8_t> stream;
   while (bare.size() >= 2) {
@@ -60,11 +60,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
       must(mip::ack_text(reply->code) != nullptr);
     }
     const mip::SensorData data = mip::decode_sensor_data(packet.payload);
-    must(mip::sensor_field_name(data.wrong_length_field) != nullptr);
-    if (data.quaternion_wxyz) {
-      orientation = mounting.to_orientation(*data.quaternion_wxyz, orientation);
+    const ImuReading reading = to_reading(data);
+    if (reading.orientation_wxyz) {
+      orientation = mounting.to_orientation(*reading.orientation_wxyz, orientation);
     }
-    if (data.accel_g) mounting.to_body(*data.accel_g);
+    if (reading.acceleration_mps2) mounting.to_body(*reading.acceleration_mps2);
     if (data.reference_time_ns) {
       const std::int64_t taken_ns = clock.update(*data.reference_time_ns, packet.first_byte_ns);
       must(taken_ns >= sample_ns && taken_ns <= packet.first_byte_ns);
@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   };
   for (std::size_t at = 0; at < stream.size(); at += chunk) {
     now_ns += 250'000;
-    parser.feed(mip::Bytes(stream).subspan(at, std::min(chunk, stream.size() - at)), now_ns, take);
+    parser.feed(Bytes(stream).subspan(at, std::min(chunk, stream.size() - at)), now_ns, take);
   }
   // Every byte is in a packet, was skipped, or waits for the rest of its packet.
   must(packet_bytes + parser.skipped_bytes() <= stream.size());

@@ -24,6 +24,8 @@ SensorData full_data(std::uint64_t time_ns) {
   return data;
 }
 
+ImuReading full_reading() { return to_reading(full_data(1)); }
+
 /// What a parser finds in a stream that is given to it in chunks of one size.
 struct Found {
   explicit Found(const ByteVector& stream, std::size_t chunk = SIZE_MAX) {
@@ -134,7 +136,7 @@ TEST(MipDataTest, UnknownFieldsAreSkipped) {
   EXPECT_EQ(data.wrong_length_fields, 0U);
 }
 
-TEST(MipDataTest, FieldOfWrongLengthIsCountedAndNamed) {
+TEST(MipDataTest, FieldOfWrongLengthIsCounted) {
   Packet packet(kSensorData);
   packet.add(kAccel, ByteVector(12));
   packet.add(kGyro, ByteVector(11));
@@ -142,7 +144,6 @@ TEST(MipDataTest, FieldOfWrongLengthIsCountedAndNamed) {
   EXPECT_TRUE(data.accel_g);
   EXPECT_FALSE(data.gyro_radps);
   EXPECT_EQ(data.wrong_length_fields, 1U);
-  EXPECT_STREQ(sensor_field_name(data.wrong_length_field), "angular rate");
 }
 
 TEST(MipDataTest, FieldThatDoesNotFitItsPayloadIsCountedAndEndsIt) {
@@ -153,7 +154,6 @@ TEST(MipDataTest, FieldThatDoesNotFitItsPayloadIsCountedAndEndsIt) {
     const SensorData data = decode_sensor_data(payload);
     EXPECT_FALSE(data.accel_g);
     EXPECT_EQ(data.wrong_length_fields, 1U);
-    EXPECT_EQ(data.wrong_length_field, kAccel);
   }
 }
 
@@ -257,7 +257,7 @@ TEST(MipDeviceTest, StreamsWhatItIsToldToAtTheDecimatedRates) {
     EXPECT_EQ(reply->code, kAckOk);
   };
   const std::array<DecimatedField, 3> fields{{{kAccel, 2}, {kReferenceTime, 2}, {kQuaternion, 4}}};
-  EXPECT_FALSE(device.tick(full_data(0)));
+  EXPECT_TRUE(device.tick(full_reading()).empty());
   tell(set_idle());
   tell(message_format(kSensorData, fields));
   tell(stream_control(kSensorData, true));
@@ -265,10 +265,11 @@ TEST(MipDeviceTest, StreamsWhatItIsToldToAtTheDecimatedRates) {
   tell(resume());
   EXPECT_TRUE(device.streaming());
   int packets = 0, quaternions = 0;
-  for (std::uint64_t i = 0; i < 40; ++i) {
-    if (const auto packet = device.tick(full_data(i))) {
+  for (int i = 0; i < 40; ++i) {
+    const Found sent(device.tick(full_reading()));
+    for (const ByteVector& payload : sent.payloads) {
       ++packets;
-      quaternions += decode_sensor_data(packet->payload()).quaternion_wxyz ? 1 : 0;
+      quaternions += decode_sensor_data(payload).quaternion_wxyz ? 1 : 0;
     }
   }
   EXPECT_EQ(packets, 20);

@@ -53,6 +53,22 @@ TEST(HardwareConfigTest, ExamplesNameEveryJointOnce) {
   EXPECT_EQ(example_hardware("mit").ticks_per_exchange(), 5);
 }
 
+TEST(HardwareConfigTest, XsensImuHasItsOwnUsualRate) {
+  EXPECT_EQ(example_hardware("mit").imu.protocol, ImuProtocol::kMip);
+  ConfigTree tree;
+  std::string text = text_of("mit");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("\"mip\"", "\"xsens\"");
+  replace("rate_hz = 500", "");
+  tree.add_text(text, "test.toml");
+  const ImuConfig imu = read_hardware_config(tree, example_robot(), example_gate()).imu;
+  EXPECT_EQ(imu.protocol, ImuProtocol::kXsens);
+  EXPECT_EQ(imu.rate_hz, 400);
+  EXPECT_EQ(imu.quaternion_rate_hz, 400);
+}
+
 TEST(HardwareConfigTest, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal("mit", "\"LF_HFE\"", "\"LF_HAA\""), HasSubstr("LF_HAA stands twice"));
   EXPECT_THAT(refusal("mit", "\"LF_HFE\"", "\"LF_TOE\""), HasSubstr("'LF_TOE', expected one of"));
@@ -70,6 +86,9 @@ TEST(HardwareConfigTest, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate_hz = 900"), HasSubstr("whole part of 4000"));
   EXPECT_THAT(refusal("mit", "baud = 921600", "baud = 115200"), HasSubstr("115200"));
   EXPECT_THAT(refusal("mit", "device = \"/dev/ttyS1\"", ""), HasSubstr("hardware.imu.device"));
+  EXPECT_THAT(
+      refusal("mit", "\"mip\"", "\"vectornav\""),
+      HasSubstr("hardware.imu.protocol: found \"vectornav\", expected one of \"mip\", \"xsens\""));
   EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate = 800"), HasSubstr("rate"));
   EXPECT_THAT(refusal("moteus", "kp_nmprev = 1300.0", ""), HasSubstr("found no kp_nmprev"));
   EXPECT_THAT(refusal("moteus", "kp_nmprev = 1300.0", "kp_nmprev = 600.0"),
