@@ -32,8 +32,8 @@ PacketSize packet_size(ImuProtocol protocol) noexcept {
 
 double bits_per_s(ImuProtocol protocol, int rate_hz, int quaternion_rate_hz) noexcept {
   const PacketSize size = packet_size(protocol);
-  return kBitsPerByte * ((size.all - size.quaternion) * rate_hz +
-                         size.quaternion * quaternion_rate_hz);
+  return kBitsPerByte *
+         ((size.all - size.quaternion) * rate_hz + size.quaternion * quaternion_rate_hz);
 }
 
 }  // namespace
