@@ -43,23 +43,29 @@ CommandRange Task::command_range() const {
 void Task::new_command(int env, Env& e) const {
   const CommandSettings& c = config_.command;
   const CommandRange r = command_range();
-  const double vx = uniform(env, e) < c.forward_share
-                        ? uniform(env, e, 0.0, r.forward_mps)
-                        : uniform(env, e, -r.backward_mps, r.backward_mps);
+  const bool forward = uniform(env, e) < c.forward_share;
+  const double vx = forward ? uniform(env, e, 0.0, r.forward_mps)
+                            : uniform(env, e, -r.backward_mps, r.backward_mps);
   double vy = uniform(env, e, -r.lateral_mps, r.lateral_mps);
   if (uniform(env, e) >= c.lateral_share) vy = 0.0;
   double wz = uniform(env, e, -r.yaw_radps, r.yaw_radps);
   if (uniform(env, e) >= c.yaw_share) wz = 0.0;
-  e.command = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
-  e.command[2] = shape_yaw_rate(e.command[2], e.command[0], e.command[1],
-                                static_cast<float>(c.centripetal_mps2));
+  e.target = {static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(wz)};
+  e.target[2] =
+      shape_yaw_rate(e.target[2], e.target[0], e.target[1], static_cast<float>(c.centripetal_mps2));
   const double rest = uniform(env, e);
   if (rest < c.zero_share) {
-    e.command = {};
+    e.target = {};
   } else if (rest < c.zero_share + c.in_place_share) {
-    e.command = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -r.yaw_radps, r.yaw_radps))};
+    e.target = {0.0f, 0.0f, static_cast<float>(uniform(env, e, -r.yaw_radps, r.yaw_radps))};
+    const double aside = uniform(env, e);
+    if (aside < c.in_place_aside_share) {
+      e.target[1] = static_cast<float>(uniform(env, e, -r.lateral_mps, r.lateral_mps));
+    }
+    if (aside < 0.5 * c.in_place_aside_share) e.target[2] = 0.0f;
   }
-  e.target = e.command;
+  const bool ramp = uniform(env, e) < (forward ? c.forward_ramp_share : c.ramp_share);
+  if (!ramp) e.command = e.target;
   e.stand_steps_left = 0;
   e.command_steps_left =
       static_cast<std::int32_t>(kPolicyHz * c.change_s * uniform(env, e, 0.5, 1.5));
@@ -191,6 +197,7 @@ void Task::hard_reset(int env, Env& e) {
   // Some start exactly as a robot that has stood up, and is then told to go: their first step has
   // to break the symmetry.
   const double off = uniform(env, e) < s.reset_nominal_share ? 0.0 : 1.0;
+  e.command = e.target;
   if (off == 0.0) {
     e.command = {};
     e.stand_steps_left =

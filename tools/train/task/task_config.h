@@ -40,20 +40,23 @@ struct EpisodeSettings {
 
 /// The commands that are drawn, and the curriculum of their speed.
 struct CommandSettings {
-  double speed_start_mps = 0;    ///< top speed of the commands at the start of the training
-  double speed_max_mps = 0;      ///< and at its end
-  double speed_step_mps = 0;     ///< rise of the top speed in a window that passes the gate
-  double forward_share = 0;      ///< of the commands with vx between 0 and the top speed
-  double backward_mps = 0;       ///< largest |vx| of the others, which go either way
-  double lateral_mps = 0;        ///< largest |vy|
-  double lateral_share = 0;      ///< of the commands with vy
-  double yaw_radps = 0;          ///< largest |yaw rate|
-  double yaw_share = 0;          ///< of the commands with a yaw rate
-  double zero_share = 0;         ///< of the commands to stand
-  double in_place_share = 0;     ///< of the commands to turn in place
-  double change_s = 0;           ///< mean time between commands
+  double speed_start_mps = 0;       ///< top speed of the commands at the start of the training
+  double speed_max_mps = 0;         ///< and at its end
+  double speed_step_mps = 0;        ///< rise of the top speed in a window that passes the gate
+  double forward_share = 0;         ///< of the commands with vx between 0 and the top speed
+  double backward_mps = 0;          ///< largest |vx| of the others, which go either way
+  double lateral_mps = 0;           ///< largest |vy|
+  double lateral_share = 0;         ///< of the commands with vy
+  double yaw_radps = 0;             ///< largest |yaw rate|
+  double yaw_share = 0;             ///< of the commands with a yaw rate
+  double zero_share = 0;            ///< of the commands to stand
+  double in_place_share = 0;        ///< of the commands without vx: to turn, ...
+  double in_place_aside_share = 0;  ///< ... of these with vy too, half of them with vy alone
+  double change_s = 0;              ///< mean time between commands
+  double ramp_share = 0;  ///< of the changes that come as ramps, after a draw not forward ...
+  double forward_ramp_share = 0;  ///< ... and forward; the others come at once
   double start_stand_s = 0;      ///< longest time that a start in the nominal pose is told to stand
-  double acceleration_mps2 = 0;  ///< of the command after that, of vx and of vy
+  double acceleration_mps2 = 0;  ///< of a ramp, and of the command after a start, of vx and of vy
   double yaw_acceleration_radps2 = 0;  ///< likewise
   double centripetal_mps2 = 0;         ///< limit of speed times yaw rate
   double gate_kernel = 0;  ///< least velocity kernel, 0 to 1, at which the top speed rises
