@@ -126,7 +126,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   CLI::App* const check = add_check(app, o);
   app.footer(
       "Examples:\n"
-      "  sandrunner --command 3,0,0 --out results\n"
+      "  sandrunner --command 2,0,0 --out results\n"
       "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
       "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
       "  sandrunner --clock realtime --command dds\n"

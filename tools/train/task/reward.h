@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reward of a policy step: scale * (max(sum of what is paid - ramp * sum of what is charged, 0)
-// - ramp * fall). What is below zero is cut, so that no sum of prices makes lying down the better
-// choice; a fall alone is not, or where everything is cut, as on soft soil at speed, falling would
-// cost nothing.
+// The reward of a policy step: scale * (max(sum of what is paid - ramp * sum of what is charged,
+// -late * debt) - late * fall). What is below is cut, so that no sum of prices makes lying down the
+// better choice: early at zero, late, when a fall costs more than a second of debts, lower. Where
+// everything is cut, as it else is on soft soil at speed, no price is felt, and falling costs
+// nothing.
 //
 // A new term is a function here, its row in kPaid or kCharged, which also makes it a column of the
 // learning curve, and its settings in RewardSettings and kRewardSettings, with values in
@@ -81,6 +82,7 @@ struct RewardSettings {
   double height_m = 0;         ///< of the base above the deformed ground
   double clearance = 0;        ///< per m^2 below clearance_m, times the root of the foot's speed
   double clearance_m = 0;      ///< of a foot in the air above the surface
+  double debt = 0;             ///< most that a step can cost but for a fall, at the end
   double fall = 0;             ///< of a fall, at the end; besides what is not earned after it
 };
 
@@ -142,6 +144,7 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"height_m", &RewardSettings::height_m, 0.0, kNoLimit},
     {"clearance", &RewardSettings::clearance, 0.0, kNoLimit},
     {"clearance_m", &RewardSettings::clearance_m, 0.0, kNoLimit},
+    {"debt", &RewardSettings::debt, 0.0, kNoLimit},
     {"fall", &RewardSettings::fall, 0.0, kNoLimit},
 };
 
@@ -405,7 +408,8 @@ inline Reward reward(const StepOutcome& s, const RewardSettings& r, const CostRa
   for (std::size_t i = 0; i < std::size(kCharged); ++i) charged_terms[i] *= -price;
   const double fall = s.fell ? r.fall * ramp.late : 0.0;
   out.terms.back() = -fall;
-  out.value = static_cast<float>(r.scale * (std::max(paid - price * charged, 0.0) - fall));
+  const double lowest = -ramp.late * r.debt;
+  out.value = static_cast<float>(r.scale * (std::max(paid - price * charged, lowest) - fall));
   return out;
 }
 

@@ -76,7 +76,7 @@ TEST(RewardTest, DriftCostsMuchMoreThanTheSwingOfTheGait) {
   EXPECT_LT(paid(drifting, r), paid(swinging, r) - 0.3);
 }
 
-TEST(RewardTest, CostsGrowWithTheirRampAndPricesNeverMakeARewardNegative) {
+TEST(RewardTest, CostsGrowWithTheirRampAndPricesMakeARewardNegativeOnlyLateAndByLessThanAFall) {
   const RewardSettings r = shipped_settings();
   StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
   s.power = 200.0f;
@@ -87,6 +87,8 @@ TEST(RewardTest, CostsGrowWithTheirRampAndPricesNeverMakeARewardNegative) {
   EXPECT_GT(all, dear);
   s.power = 1e6f;
   EXPECT_EQ(reward(s, r, {}).value, 0.0f);
+  EXPECT_FLOAT_EQ(reward(s, r, {.late = 1.0}).value, static_cast<float>(-r.scale * r.debt));
+  EXPECT_LT(kPolicyHz * r.debt, r.fall);
 }
 
 TEST(RewardTest, LateAFallCostsEvenWherePricesLeaveNothing) {
@@ -94,7 +96,8 @@ TEST(RewardTest, LateAFallCostsEvenWherePricesLeaveNothing) {
   StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
   s.power = 1e6f;
   s.fell = true;
-  EXPECT_FLOAT_EQ(reward(s, r, {.late = 1.0}).value, static_cast<float>(-r.scale * r.fall));
+  EXPECT_FLOAT_EQ(reward(s, r, {.late = 1.0}).value,
+                  static_cast<float>(-r.scale * (r.debt + r.fall)));
   EXPECT_EQ(reward(s, r, {.late = 0.0}).value, 0.0f);  // early it would quicken the strides
 }
 
