@@ -17,9 +17,8 @@ namespace sandrunner {
 ///
 /// What `Framing` tells of the protocol:
 ///   kFirstByte, kMaxSize   of every frame
-///   size(begun)            how many bytes the frame takes that these begin, as far as they tell:
-///   no
-///                          more than `begun` has only if it is complete; 0: no frame begins so
+///   size(begun)            how many bytes the frame takes that these begin, as far as they tell;
+///                          no more than `begun` has only if complete; 0: no frame begins so
 ///   intact(frame)          whether its checksum is right
 ///   view(frame, time_ns)   what the parser hands on
 template <typename Framing>

@@ -40,12 +40,11 @@ JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, D
                         bool answers) noexcept {
   const JointCommand& c = command.joints();
   const bool blind = (command.blind_joints() >> j & 1) != 0;
+  if (blind && (answers || mode == DriveMode::kTorque)) return {};
   if (mode == DriveMode::kGains) {
-    if (blind && answers) return {};
     return {c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j],
             c.feedforward_nm[j]};
   }
-  if (blind) return {};
   return {.torque_nm = joint_torque(drive.position_rad(), drive.velocity_radps(), c.position_rad[j],
                                     c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j],
                                     c.feedforward_nm[j])};

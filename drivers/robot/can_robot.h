@@ -86,9 +86,8 @@ class CanRobot final : public RobotIo {
 };
 
 /// What the drive of joint `j` is told: in kGains the joint's command as it is, in kTorque what
-/// that gives at the newest values of `drive`. No torque for a blind joint, but a silent drive in
-/// kGains
-/// (`answers` is false) goes on by its own encoder: it may still hear.
+/// that gives at the newest values of `drive`. No torque for a blind joint, but a drive in kGains
+/// that is silent (`answers` is false) goes on by its own encoder: it may still hear.
 JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
                         bool answers) noexcept;
 
