@@ -5,19 +5,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <vector>
 
 #include "drivers/imu/device_clock.h"
 #include "drivers/imu/imu_mounting.h"
 #include "drivers/imu/mip.h"
 #include "drivers/imu/mip_device.h"
+#include "tests/drivers/fuzz/fuzz_stream.h"
 
 namespace {
-
-void must(bool holds) {
-  if (!holds) std::abort();
-}
 
 std::vector<std::uint8_t> sealed(sandrunner::Bytes bare) {
   namespace mip = sandrunner::mip;
@@ -75,10 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     must(again.bytes().size() ==
          mip::encode_sensor_data(mip::decode_sensor_data(again.payload())).bytes().size());
   };
-  for (std::size_t at = 0; at < stream.size(); at += chunk) {
-    now_ns += 250'000;
-    parser.feed(Bytes(stream).subspan(at, std::min(chunk, stream.size() - at)), now_ns, take);
-  }
+  feed_in_chunks(parser, stream, chunk, now_ns, take);
   // Every byte is in a packet, was skipped, or waits for the rest of its packet.
   must(packet_bytes + parser.skipped_bytes() <= stream.size());
   must(packet_bytes + parser.skipped_bytes() + mip::kMaxPacket > stream.size());

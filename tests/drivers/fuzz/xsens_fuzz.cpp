@@ -4,20 +4,16 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <vector>
 
 #include "drivers/imu/imu_reading.h"
 #include "drivers/imu/xsens.h"
 #include "drivers/imu/xsens_device.h"
+#include "tests/drivers/fuzz/fuzz_stream.h"
 
 namespace {
 
 using sandrunner::Bytes;
-
-void must(bool holds) {
-  if (!holds) std::abort();
-}
 
 /// The bytes as messages, identifier, two bytes of length and data each.
 std::vector<std::uint8_t> sealed(Bytes bare) {
@@ -70,10 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     must(reading.orientation_wxyz.has_value() == data.quaternion_wxyz.has_value());
     to_xsens(reading);
   };
-  for (std::size_t at = 0; at < stream.size(); at += chunk) {
-    now_ns += 250'000;
-    parser.feed(Bytes(stream).subspan(at, std::min(chunk, stream.size() - at)), now_ns, take);
-  }
+  feed_in_chunks(parser, stream, chunk, now_ns, take);
   // Every byte is in a message, was skipped, or waits for the rest of its message.
   must(message_bytes + parser.skipped_bytes() <= stream.size());
   must(message_bytes + parser.skipped_bytes() + xsens::kMaxMessage > stream.size());
