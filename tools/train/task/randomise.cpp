@@ -176,13 +176,13 @@ void Task::new_robot(int env, Env& e) {
   const sim::TorqueSpeedLine& line = robot_.torque_speed_line;
   drive.stall_torque_nm = r.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
   drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
-  drive.switch_tick =
-      static_cast<float>(r.latency_ticks[static_cast<std::size_t>(3.0 * uniform(env, e))]);
+  const double latency_s = r.latency_s[static_cast<std::size_t>(3.0 * uniform(env, e))];
+  drive.switch_tick = static_cast<float>(std::round(latency_s * kSimulationHz));
   const double offset = config_.noise.joint_offset_rad;
   for (float& o : e.joint_offset) o = static_cast<float>(uniform(env, e, -offset, offset));
   e.noise_level = static_cast<float>(uniform(env, e, 0.0, config_.noise.level_high));
   e.robot_features = {static_cast<float>(5.0 * (base_factor - 1.0)),
-                      drive.switch_tick / 20.0f - 1.0f};
+                      drive.switch_tick / kStepsPerAction - 1.0f};
 }
 
 void Task::hard_reset(int env, Env& e) {

@@ -35,6 +35,7 @@ struct RewardSettings {
   double energy_end = 0;                  ///< factor of the energy besides, at the end
   double base_vertical_end = 0;           ///< factor of base_vertical besides, at the end
   double speed_excess_end = 0;            ///< factor of speed_excess besides, at the end
+  double precise_drift_end = 0;           ///< factor of precise_drift_weight at the end
   double height_end_m = 0;                ///< height_m at the end
   double prior_start_transitions = 0;     ///< transitions from which the prior fades ...
   double prior_end_transitions = 0;       ///< ... and at which it is gone
@@ -98,6 +99,7 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"energy_end", &RewardSettings::energy_end, 0.0, kNoLimit},
     {"base_vertical_end", &RewardSettings::base_vertical_end, 0.0, kNoLimit},
     {"speed_excess_end", &RewardSettings::speed_excess_end, 0.0, kNoLimit},
+    {"precise_drift_end", &RewardSettings::precise_drift_end, 0.0, kNoLimit},
     {"height_end_m", &RewardSettings::height_end_m, 0.0, kNoLimit},
     {"prior_start_transitions", &RewardSettings::prior_start_transitions, 0.0, 1e12},
     {"prior_end_transitions", &RewardSettings::prior_end_transitions, 0.0, 1e12},
@@ -150,10 +152,9 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
 
 /// Factors that change during the training. As they stand here: the reward that remains.
 struct CostRamp {
-  double all = 1.0;     ///< of every cost
-  double energy = 1.0;  ///< of that of energy, besides
-  double late = 0.0;    ///< 0 to 1: how much of what comes late in the training is on
-  double prior = 0.0;   ///< 1 to exactly 0: of the prior
+  double all = 1.0;    ///< of every cost
+  double late = 0.0;   ///< 0 to 1: how much of what comes late in the training is on
+  double prior = 0.0;  ///< 1 to exactly 0: of the prior
 
   /// 1, and in the end `end`.
   double grown(double end) const { return 1.0 + (end - 1.0) * late; }
@@ -168,7 +169,6 @@ inline CostRamp cost_ramp_at(const RewardSettings& r, double transitions) {
   const double late = passed(r.cost_end_start_transitions, r.cost_end_transitions);
   return {
       .all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late,
-      .energy = 1.0 + (r.energy_end - 1.0) * late,
       .late = late,
       .prior = 1.0 - passed(r.prior_start_transitions, r.prior_end_transitions),
   };
@@ -209,13 +209,13 @@ inline double yaw_progress_paid(const StepOutcome& s, const RewardSettings& r, c
 
 /// Pointed kernels of the velocities without the gait's own swing: every bit of drift costs.
 /// Nothing for standing still when told to go.
-inline double precise_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
+inline double precise_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   const double ex = std::fabs(s.command[0] - s.drift[0]), ey = std::fabs(s.command[1] - s.drift[1]),
                ew = std::fabs(s.command[2] - s.drift[2]);
   const double width =
       r.precise_forward_width + r.precise_forward_width_per_speed * std::fabs(double(s.command[0]));
   return progress(s) * (r.precise_forward_weight * std::exp(-ex / width) +
-                        r.precise_drift_weight *
+                        r.precise_drift_weight * ramp.grown(r.precise_drift_end) *
                             std::exp(-ey / r.precise_lateral_width - ew / r.precise_yaw_width));
 }
 
@@ -255,7 +255,7 @@ inline double energy_charged(const StepOutcome& s, const RewardSettings& r, cons
   const double ahead = s.command[0] > 0.0f ? s.command[0] : -2.0 * s.command[0];
   const double distance = std::hypot(ahead, 2.0 * s.command[1]) + 0.5 * std::fabs(s.command[2]);
   const double energy = r.torque * s.torque_squared + r.power * std::max(s.power, 0.0f);
-  return energy * ramp.energy * r.energy_speed_mps / (r.energy_offset_mps + distance);
+  return energy * ramp.grown(r.energy_end) * r.energy_speed_mps / (r.energy_offset_mps + distance);
 }
 
 inline double joint_speed_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {

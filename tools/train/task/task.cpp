@@ -20,6 +20,7 @@ constexpr float kLoaded_n = 3.0f;
 
 sim::StepSettings batch_settings() {
   sim::StepSettings s;
+  s.dt_s = 1.0 / kSimulationHz;
   // A tumbling robot's contact problem need not be solved to the end: its episode is over.
   s.max_sweeps = 40;
   return s;
@@ -55,7 +56,7 @@ void Task::step(int block, int t, learner::Rollout& rollout) {
   for (int env = first; env < end; ++env) set_targets(env, rollout.action(t).col(env).data());
   const int width = batch_.width();
   for (int pack = first / width; pack < end / width; ++pack) {
-    batch_.advance(pack, kTicksPerPolicyStep);
+    batch_.advance(pack, kStepsPerAction);
   }
   for (int env = first; env < end; ++env) {
     end_step(env, t, rollout, sums_[static_cast<std::size_t>(block)]);
@@ -82,7 +83,7 @@ void Task::set_targets(int env, const float* modes) {
 StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
                          const sim::BatchReport<float>& report,
                          const sim::BatchSums<float>& sums) const {
-  constexpr float kPerTick = 1.0f / kTicksPerPolicyStep;
+  constexpr float kPerTick = 1.0f / kStepsPerAction;
   const sim::RigidState<float>& x = state.rigid;
   const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
   StepOutcome s;

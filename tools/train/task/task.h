@@ -15,6 +15,11 @@
 
 namespace sandrunner::train {
 
+/// Steps of the simulation a second: half of those of a run. A policy does much the same at both
+/// rates (../NOTES.md), and a training takes a fifth less time.
+inline constexpr int kSimulationHz = 2000;
+inline constexpr int kStepsPerAction = kSimulationHz / kPolicyHz;
+
 /// What grows as the policy gets better. Speed: top speed of the commands; ground: how soft and
 /// uneven it may be, 0 to 1.
 struct Curriculum {

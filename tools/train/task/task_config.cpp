@@ -139,7 +139,7 @@ RobotSettings read_robot_settings(ConfigTree& config) {
   RobotSettings r;
   read_numbers(config, "robot", kRobot, r);
   read_array(config, "robot.base_com_m", 0.0, 1.0, r.base_com_m);
-  read_array(config, "robot.latency_ticks", 0.0, kTicksPerPolicyStep, r.latency_ticks);
+  read_array(config, "robot.latency_s", 0.0, 1.0 / kPolicyHz, r.latency_s);
   require_key(config, "robot.torque_speed_line");
   r.torque_speed_line = config.flag("robot.torque_speed_line", true);
   return r;

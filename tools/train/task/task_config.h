@@ -103,8 +103,8 @@ struct RobotSettings {
   double kd_spread = 0;                ///< relative
   double torque_spread = 0;            ///< of delivered over commanded torque, relative
   std::array<double, 3> base_com_m{};  ///< largest deviation of the base's centre of mass, x, y, z
-  std::array<double, 3> latency_ticks{};  ///< delays of the action, control ticks of 0.25 ms
-  bool torque_speed_line = false;         ///< whether drives lose torque towards their top speed
+  std::array<double, 3> latency_s{};   ///< delays of the action, rounded to steps of the simulation
+  bool torque_speed_line = false;      ///< whether drives lose torque towards their top speed
 };
 
 /// Standard deviations of the observation noise, but for level and offset.

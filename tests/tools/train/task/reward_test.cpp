@@ -82,7 +82,7 @@ TEST(RewardTest, CostsGrowWithTheirRampAndPricesMakeARewardNegativeOnlyLateAndBy
   s.power = 200.0f;
   const float early = reward(s, r, {.all = 0.1}).value;
   const float all = reward(s, r, {.all = 1.0}).value;
-  const float dear = reward(s, r, {.all = 1.0, .energy = 2.0}).value;
+  const float dear = reward(s, r, {.all = 1.0, .late = 1.0}).value;
   EXPECT_GT(early, all);
   EXPECT_GT(all, dear);
   s.power = 1e6f;
@@ -144,7 +144,7 @@ TEST(RewardTest, TermsAddUpToTheRewardBeforeItsScale) {
   s.foot_speed[2] = 1.0f;
   s.action[3] = 0.4f;
   s.fell = true;
-  const Reward earned = reward(s, r, {.all = 0.7, .energy = 1.5, .late = 0.5});
+  const Reward earned = reward(s, r, {.all = 0.7, .late = 0.5});
   double sum = 0.0;
   for (const double term : earned.terms) sum += term;
   EXPECT_NEAR(earned.value, r.scale * sum, 1e-6);
