@@ -8,13 +8,6 @@
 
 namespace sandrunner {
 
-/// The same value for every joint.
-inline JointArray<double> all_joints(double value) noexcept {
-  JointArray<double> all;
-  all.fill(value);
-  return all;
-}
-
 /// Thresholds. A value that equals its threshold passes. The robot's figures come from its file and
 /// are 0 without one: every movement is then a fault, every torque is bounded to nothing.
 struct GateConfig {
@@ -89,36 +82,53 @@ struct GateConfig {
   std::uint64_t policy_frozen_steps = 20;  ///< fault: steps of the policy with the same targets
 };
 
-/// What no setting can go beyond: compiled in. Thresholds above are lowered to these; those of the
-/// robot (limits of joints, power) are its file's business.
-inline constexpr GateConfig kGateCeilings{.joint_fault_rad = 0.5,
-                                          .target_margin_rad = 2.0,
-                                          .target_step_rad = 4.0,
-                                          .speed_fault_radps = 100.0,
-                                          .encoder_jump_rad = 0.5,
-                                          .torque_fault_ratio = 2.0,
-                                          .torque_fault_s = 0.1,
-                                          .kp_limit_nmprad = 1000.0,
-                                          .kd_limit_nmsprad = 50.0,
-                                          .power_limit_w = 1e5,
-                                          .continuous_torque_nm = 1e3,
-                                          .thermal_time_s = 600.0,
-                                          .tilt_limit_deg = 60.0,
-                                          .tilt_fault_s = 2.0,
-                                          .tilt_fault_deg = 80.0,
-                                          .free_fall_s = 1.0,
-                                          .joints_limit_ticks = 40,
-                                          .joints_fault_ticks = 40,
-                                          .imu_limit_ticks = 200,
-                                          .imu_fault_ticks = 200,
-                                          .policy_fault_ticks = 400,
-                                          .stall_fault_ticks = 400,
-                                          .frozen_moved_rad = 0.1,
-                                          .frozen_told_rad = 1.0,
-                                          .frozen_ticks = 4000,
-                                          .policy_frozen_steps = 100};
+/// A threshold that is one number, and what no setting can put it beyond: compiled in.
+template <typename T>
+struct GateThreshold {
+  const char* key;  ///< setting controller.gate.<key>; null: the robot's map alone has it
+  T GateConfig::*value;
+  T least, ceiling;
+};
 
-/// `config` with no threshold beyond kGateCeilings.
+inline constexpr GateThreshold<double> kGateThresholds[] = {
+    {"joint_fault_rad", &GateConfig::joint_fault_rad, 0.0, 0.5},
+    {"target_margin_rad", &GateConfig::target_margin_rad, 0.0, 2.0},
+    {"target_step_rad", &GateConfig::target_step_rad, 0.0, 4.0},
+    {"speed_fault_radps", &GateConfig::speed_fault_radps, 0.0, 100.0},
+    {"encoder_jump_rad", &GateConfig::encoder_jump_rad, 0.0, 0.5},
+    {"torque_fault_ratio", &GateConfig::torque_fault_ratio, 0.0, 2.0},
+    {"torque_fault_s", &GateConfig::torque_fault_s, 0.0, 0.1},
+    {nullptr, &GateConfig::kp_limit_nmprad, 0.0, 1000.0},
+    {nullptr, &GateConfig::kd_limit_nmsprad, 0.0, 50.0},
+    {"power_limit_w", &GateConfig::power_limit_w, 0.0, 1e5},
+    {nullptr, &GateConfig::continuous_torque_nm, 0.0, 1e3},
+    {nullptr, &GateConfig::thermal_time_s, 1e-3, 600.0},
+    {"tilt_limit_deg", &GateConfig::tilt_limit_deg, 0.0, 60.0},
+    {"tilt_fault_s", &GateConfig::tilt_fault_s, 0.0, 2.0},
+    {"tilt_fault_deg", &GateConfig::tilt_fault_deg, 0.0, 80.0},
+    {"free_fall_s", &GateConfig::free_fall_s, 0.0, 1.0},
+};
+
+inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
+    {"joints_limit_ticks", &GateConfig::joints_limit_ticks, 0, 40},
+    {"joints_fault_ticks", &GateConfig::joints_fault_ticks, 0, 40},
+    {"imu_limit_ticks", &GateConfig::imu_limit_ticks, 0, 200},
+    {"imu_fault_ticks", &GateConfig::imu_fault_ticks, 0, 200},
+    {"policy_fault_ticks", &GateConfig::policy_fault_ticks, kTicksPerPolicyStep, 400},
+    {"stall_fault_ticks", &GateConfig::stall_fault_ticks, 0, 400},
+    {"frozen_ticks", &GateConfig::frozen_ticks, 2, 4000},
+    {"policy_frozen_steps", &GateConfig::policy_frozen_steps, 2, 100},
+};
+
+/// The row of a threshold. Does not compile for one that has none.
+consteval GateThreshold<double> gate_threshold(double GateConfig::*value) {
+  for (const GateThreshold<double>& threshold : kGateThresholds) {
+    if (threshold.value == value) return threshold;
+  }
+  throw "no such threshold";
+}
+
+/// `config` with no threshold above its ceiling.
 GateConfig below_ceilings(const GateConfig& config) noexcept;
 
 }  // namespace sandrunner

@@ -57,10 +57,6 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   ticks("shaping.operator_hold_ticks", c.shaping.operator_hold_ticks, 0);
   number("shaping.operator_stand_s", c.shaping.operator_stand_s, 0.0, 3600.0);
   number("shaping.operator_down_s", c.shaping.operator_down_s, 0.0, 3600.0);
-  const GateConfig& most = kGateCeilings;
-  number("gate.joint_fault_rad", g.joint_fault_rad, 0.0, most.joint_fault_rad);
-  number("gate.target_margin_rad", g.target_margin_rad, 0.0, most.target_margin_rad);
-  number("gate.target_step_rad", g.target_step_rad, 0.0, most.target_step_rad);
   // 0: those of the robot's joints; else one for all of them, and never above the joint's own.
   const auto lowered = [&](const char* key, JointArray<double>& limits) {
     double limit = 0.0;
@@ -69,25 +65,14 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
     for (double& joint : limits) joint = std::min(joint, limit);
   };
   lowered("gate.speed_limit_radps", g.speed_limit_radps);
-  number("gate.speed_fault_radps", g.speed_fault_radps, 0.0, most.speed_fault_radps);
-  number("gate.encoder_jump_rad", g.encoder_jump_rad, 0.0, most.encoder_jump_rad);
   lowered("gate.torque_limit_nm", g.torque_limit_nm);
-  number("gate.torque_fault_ratio", g.torque_fault_ratio, 0.0, most.torque_fault_ratio);
-  number("gate.torque_fault_s", g.torque_fault_s, 0.0, most.torque_fault_s);
-  number("gate.power_limit_w", g.power_limit_w, 0.0, most.power_limit_w);
-  number("gate.tilt_limit_deg", g.tilt_limit_deg, 0.0, most.tilt_limit_deg);
-  number("gate.tilt_fault_s", g.tilt_fault_s, 0.0, most.tilt_fault_s);
-  number("gate.tilt_fault_deg", g.tilt_fault_deg, 0.0, most.tilt_fault_deg);
-  number("gate.free_fall_s", g.free_fall_s, 0.0, most.free_fall_s);
-  ticks("gate.joints_limit_ticks", g.joints_limit_ticks, 0, most.joints_limit_ticks);
-  ticks("gate.joints_fault_ticks", g.joints_fault_ticks, 0, most.joints_fault_ticks);
-  ticks("gate.imu_limit_ticks", g.imu_limit_ticks, 0, most.imu_limit_ticks);
-  ticks("gate.imu_fault_ticks", g.imu_fault_ticks, 0, most.imu_fault_ticks);
-  ticks("gate.policy_fault_ticks", g.policy_fault_ticks, kTicksPerPolicyStep,
-        most.policy_fault_ticks);
-  ticks("gate.stall_fault_ticks", g.stall_fault_ticks, 0, most.stall_fault_ticks);
-  ticks("gate.frozen_ticks", g.frozen_ticks, 2, most.frozen_ticks);
-  ticks("gate.policy_frozen_steps", g.policy_frozen_steps, 2, most.policy_frozen_steps);
+  for (const auto& t : kGateThresholds) {
+    if (t.key) number(fmt::format("gate.{}", t.key).c_str(), g.*t.value, t.least, t.ceiling);
+  }
+  for (const auto& t : kGateTickThresholds) {
+    ticks(fmt::format("gate.{}", t.key).c_str(), g.*t.value, static_cast<std::int64_t>(t.least),
+          t.ceiling);
+  }
 }
 
 /// Throws InputError for a policy whose gains the robot's drives are not to be given.

@@ -100,15 +100,19 @@ void read_figures(Map& map, Robot& robot) {
   robot.stand_kp_nmprad = map.number("gains.stand_kp_nmprad", 0.0, 1e4);
   robot.stand_kd_nmsprad = map.number("gains.stand_kd_nmsprad", 0.0, 1e3);
   robot.damping_kd_nmsprad = map.number("gains.damping_kd_nmsprad", 0.0, 1e3);
-  robot.kp_limit_nmprad = map.number("gains.kp_limit_nmprad", 0.0, kGateCeilings.kp_limit_nmprad);
+  const auto limit = [&](const char* key, const GateThreshold<double>& threshold) {
+    return map.number(key, threshold.least, threshold.ceiling);
+  };
+  robot.kp_limit_nmprad =
+      limit("gains.kp_limit_nmprad", gate_threshold(&GateConfig::kp_limit_nmprad));
   robot.kd_limit_nmsprad =
-      map.number("gains.kd_limit_nmsprad", 0.0, kGateCeilings.kd_limit_nmsprad);
+      limit("gains.kd_limit_nmsprad", gate_threshold(&GateConfig::kd_limit_nmsprad));
   robot.speed_fault_radps =
-      map.number("limits.speed_fault_radps", 0.0, kGateCeilings.speed_fault_radps);
-  robot.power_limit_w = map.number("limits.power_w", 0.0, kGateCeilings.power_limit_w);
+      limit("limits.speed_fault_radps", gate_threshold(&GateConfig::speed_fault_radps));
+  robot.power_limit_w = limit("limits.power_w", gate_threshold(&GateConfig::power_limit_w));
   robot.continuous_torque_nm =
-      map.number("motor.continuous_torque_nm", 0.0, kGateCeilings.continuous_torque_nm);
-  robot.thermal_time_s = map.number("motor.thermal_time_s", 1e-3, kGateCeilings.thermal_time_s);
+      limit("motor.continuous_torque_nm", gate_threshold(&GateConfig::continuous_torque_nm));
+  robot.thermal_time_s = limit("motor.thermal_time_s", gate_threshold(&GateConfig::thermal_time_s));
   TorqueSpeedLine& line = robot.torque_speed_line;
   line.stall_torque_nm = map.number("motor.stall_torque_nm", 1e-3, 1e4);
   line.no_load_speed_radps = map.number("motor.no_load_speed_radps", 1e-3, 1e4);

@@ -13,6 +13,7 @@
 #include "sim/lanes/random.h"
 #include "sim/robot/robot_model.h"
 #include "sim/step/robot_step.h"
+#include "tests/support/all_joints.h"
 
 namespace sandrunner::sim {
 

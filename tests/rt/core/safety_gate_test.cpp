@@ -259,6 +259,19 @@ TEST_F(SafetyGateTest, NoSettingPutsAThresholdBeyondItsCeiling) {
   EXPECT_EQ(loose.pass(wanted, true, sensors.joints, state).joints().kp_nmprad[0], 1000.0);
 }
 
+TEST(GateConfigTest, EveryThresholdIsBoundedByItsCeilingAndItsDefaultIsWithin) {
+  const auto check = [](const auto& threshold) {
+    GateConfig config;
+    EXPECT_LE(config.*threshold.value, threshold.ceiling) << threshold.ceiling;
+    config.*threshold.value = threshold.ceiling * 2;
+    EXPECT_EQ(below_ceilings(config).*threshold.value, threshold.ceiling);
+    config.*threshold.value = threshold.least;
+    EXPECT_EQ(below_ceilings(config).*threshold.value, threshold.least);
+  };
+  for (const auto& threshold : kGateThresholds) check(threshold);
+  for (const auto& threshold : kGateTickThresholds) check(threshold);
+}
+
 TEST_F(SafetyGateTest, CommandThatIsNotFiniteBecomesDampingAndLatches) {
   for (auto part :
        {&JointCommand::position_rad, &JointCommand::velocity_radps, &JointCommand::kp_nmprad,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rt/core/controller.h"
+#include "tests/support/all_joints.h"
 
 namespace sandrunner {
 

@@ -7,6 +7,7 @@
 
 #include "sim/robot/embedded.h"
 #include "tests/rt/support.h"
+#include "tests/support/all_joints.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {

@@ -6,6 +6,7 @@
 #include "rt/core/robot_description.h"
 #include "rt/core/safety_gate.h"
 #include "rt/loop/tick_record.h"
+#include "tests/support/all_joints.h"
 
 namespace sandrunner {
 
