@@ -8,7 +8,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::uint64_t kProgress_ticks = kControlHz / 2;
+constexpr std::size_t kMostSamples = 1 << 16;  // 11 minutes at the policy's rate; 60 MB
 
 }  // namespace
 
@@ -84,11 +84,18 @@ void RunObserver::add(const TickRecord& tick) {
     released_truth_ = tick.before.state;
   }
   const std::uint64_t number = tick.input.sensors.tick;
-  const bool show = number % kProgress_ticks == 0 && progress_;
-  if (number % kTicksPerPolicyStep != 0 || !(keep_record_ || show)) return;
-  const RunSample sample = make_sample(tick);
-  if (show) progress_(sample);
-  if (keep_record_) record_.samples.push_back(sample);
+  if (progress_rate_.due(number) && progress_) progress_(make_sample(tick));
+  if (sample_rate_.due(number) && keep_record_) keep(make_sample(tick));
+}
+
+// Every period of the policy, or where that would be too many every second, fourth, ...
+void RunObserver::keep(const RunSample& sample) {
+  if (periods_ % periods_a_sample_ == 0) record_.samples.push_back(sample);
+  ++periods_;
+  if (record_.samples.size() < kMostSamples) return;
+  for (std::size_t i = 0; i < kMostSamples / 2; ++i) record_.samples[i] = record_.samples[2 * i];
+  record_.samples.resize(kMostSamples / 2);
+  periods_a_sample_ *= 2;
 }
 
 RunFigures RunObserver::figures() const {
@@ -96,7 +103,8 @@ RunFigures RunObserver::figures() const {
 }
 
 RunRecord RunObserver::take_record() {
-  record_.footprints = statistics_.footprints();
+  const std::deque<Footprint>& footprints = statistics_.footprints();
+  record_.footprints.assign(footprints.begin(), footprints.end());
   return std::move(record_);
 }
 

@@ -51,7 +51,7 @@ struct Walk {
 };
 
 Walk walk_of(const RunRecord& record) {
-  const std::vector<RunSample>& samples = record.samples;
+  const std::deque<RunSample>& samples = record.samples;
   const auto walks = [](const RunSample& sample) { return sample.mode == Mode::kWalk; };
   const auto first = std::find_if(samples.begin(), samples.end(), walks);
   if (first == samples.end()) return {0, samples.empty() ? 0 : samples.size() - 1};
@@ -79,7 +79,7 @@ bool same(const VelocityCommand& a, const VelocityCommand& b) {
 /// not end in Stand, or none was held. Nothing for a shorter walk.
 std::optional<Detail> detail_of(const RunRecord& record) {
   constexpr double kDetail_s = 1.0;
-  const std::vector<RunSample>& samples = record.samples;
+  const std::deque<RunSample>& samples = record.samples;
   if (samples.empty()) return std::nullopt;
   const Walk walk = walk_of(record);
   const RunSample& last = samples[walk.last];
@@ -210,7 +210,7 @@ std::vector<plot::Panel> panels(const RunRecord& record) {
 /// The stretches of modes other than Walk, shaded.
 std::vector<plot::Span> mode_spans(const RunRecord& record) {
   std::vector<plot::Span> spans;
-  const std::vector<RunSample>& samples = record.samples;
+  const std::deque<RunSample>& samples = record.samples;
   for (std::size_t i = 0; i < samples.size();) {
     std::size_t next = i;
     while (next < samples.size() && samples[next].mode == samples[i].mode) ++next;
@@ -253,7 +253,7 @@ void draw_run_strip(const RunRecord& record, const std::string& png_path) {
   canvas.text(kGap_px + kViewsPerRow * (kSideViewWidth_px + kGap_px) - kGap_px, 30.0,
               "from the right, a little from behind; left legs light; below: metres walked", 14.0,
               1.0, plot::kFaintInk);
-  const std::vector<RunSample>& samples = record.samples;
+  const std::deque<RunSample>& samples = record.samples;
   const Walk walk = walk_of(record);
   std::vector<double> distance_m(samples.size(), 0.0);
   for (std::size_t i = 1; i < samples.size(); ++i) {

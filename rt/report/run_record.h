@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <functional>
 #include <string>
 #include <vector>
@@ -74,7 +75,8 @@ struct Footprint {
 
 struct RunRecord {
   RunScene scene;
-  std::vector<RunSample> samples;
+  /// At the policy's rate; of a run of more than 11 minutes every second, fourth, ...
+  std::deque<RunSample> samples;
   std::vector<Footprint> footprints;
 
   /// Whether positions, speeds and the ground are known: else there is nothing to be seen from the

@@ -6,12 +6,13 @@
 
 #include "rt/base/quantile.h"
 #include "rt/report/body_motion.h"
+#include "rt/report/joint_power.h"
 
 namespace sandrunner {
 namespace {
 
-constexpr int kShortestStance_ticks = kControlHz / 100;  // 10 ms
-constexpr double kLift_m = 0.001;
+constexpr std::size_t kMostPeriods = 1 << 16;     // 11 minutes; 10 MB
+constexpr std::size_t kMostFootprints = 1 << 16;  // 2 MB
 
 double square(double v) { return v * v; }
 
@@ -21,8 +22,7 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
   const GateCounters before = counters_;
   counters_ = tick.counters;
   if (tick.counts == 0) return;
-  if (periods_.empty() || periods_.back().ticks == kTicksPerPolicyStep) periods_.emplace_back();
-  Period& p = periods_.back();
+  Period& p = present_;
   ++p.ticks;
   p.has_truth = tick.has_truth != 0;
   const RobotTruth& robot = tick.truth;
@@ -33,17 +33,12 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
     p.vy += motion.vy_mps;
     p.yaw_rate += motion.yaw_rate_radps;
   }
-  const JointState& sensed = tick.input.sensors.joints;
-  const JointArray<double>& torque_nm = p.has_truth ? robot.joint_torque_nm : sensed.torque_nm;
-  const JointArray<double>& velocity_radps =
-      p.has_truth ? tick.before.joint_velocity_radps : sensed.velocity_radps;
-  for (int j = 0; j < kNumJoints; ++j) {
-    p.power += torque_nm[j] * velocity_radps[j];
-    p.torque_squared += square(torque_nm[j]);
-  }
+  const JointPower power = joint_power(tick);
+  p.power += power.mechanical_w;
+  p.torque_squared += power.torque_squared_nm2;
   p.command = tick.output.policy_input.command;
-  p.past_stop += static_cast<int>(counters_.joint_past_stop - before.joint_past_stop);
-  p.too_fast += static_cast<int>(counters_.joint_too_fast - before.joint_too_fast);
+  p.past_stop += static_cast<std::int64_t>(counters_.joint_past_stop - before.joint_past_stop);
+  p.too_fast += static_cast<std::int64_t>(counters_.joint_too_fast - before.joint_too_fast);
   if (truth) {
     const StateEstimate& estimate = tick.input.policy.estimate;
     ++p.estimates;
@@ -55,78 +50,90 @@ void RunStatistics::add(const TickRecord& tick, const StateEstimate* truth) {
       p.foot_error2 += square(estimate.foot_height_m[l] - truth->foot_height_m[l]) / kNumLegs;
     }
   }
-  if (p.has_truth && p.ticks == kTicksPerPolicyStep) {
-    for (int l = 0; l < kNumLegs; ++l) {
-      p.foot_height[l] = robot.state.foot_height_m[l] - robot.position_m[2];
-    }
+  if (p.has_truth) {
+    stances_.add(tick, [&](std::size_t, double time_s, const Stance& stance) {
+      const auto [x_m, y_m, depth_m] = stance.deepest_m;
+      ++p.stances;
+      p.sinkage += depth_m;
+      p.sinkage_max = std::max(p.sinkage_max, depth_m);
+      if (footprints_.size() == kMostFootprints) footprints_.pop_front();
+      footprints_.push_back({time_s, x_m, y_m, depth_m});
+    });
   }
-  if (p.has_truth) follow_stances(tick);
+  if (p.ticks < kTicksPerPolicyStep) return;
+  for (int l = 0; l < kNumLegs; ++l) {
+    p.foot_height[l] = robot.state.foot_height_m[l] - robot.position_m[2];
+  }
+  end_period();
 }
 
-void RunStatistics::follow_stances(const TickRecord& tick) {
-  for (int l = 0; l < kNumLegs; ++l) {
-    Stance& stance = stances_[l];
-    const double depth = tick.truth.foot_penetration_m[l];
-    if (!stance.open && depth >= 0.0) stance = {.open = true};
-    if (!stance.open) continue;
-    ++stance.ticks;
-    if (depth > stance.depth) {
-      stance.depth = depth;
-      stance.x = tick.truth.foot_centre_m[l][0];
-      stance.y = tick.truth.foot_centre_m[l][1];
-    }
-    if (depth > -kLift_m) continue;
-    stance.open = false;
-    if (stance.ticks < kShortestStance_ticks) continue;
-    ended_.push_back({periods_.size() - 1, stance.depth});
-    footprints_.push_back({static_cast<double>(tick.input.sensors.tick + 1) * kControlPeriod_s,
-                           stance.x, stance.y, stance.depth});
+void RunStatistics::Period::add(const Period& next) noexcept {
+  periods += next.periods;
+  ticks += next.ticks;
+  estimates += next.estimates;
+  has_truth = next.has_truth;
+  vx += next.vx;
+  vy += next.vy;
+  yaw_rate += next.yaw_rate;
+  power += next.power;
+  torque_squared += next.torque_squared;
+  command.vx_mps += next.command.vx_mps;
+  command.vy_mps += next.command.vy_mps;
+  command.wz_radps += next.command.wz_radps;
+  velocity_error2 += next.velocity_error2;
+  height_error2 += next.height_error2;
+  foot_error2 += next.foot_error2;
+  past_stop += next.past_stop;
+  too_fast += next.too_fast;
+  stances += next.stances;
+  sinkage += next.sinkage;
+  sinkage_max = std::max(sinkage_max, next.sinkage_max);
+  foot_height = next.foot_height;
+}
+
+void RunStatistics::end_period() {
+  if (!periods_.empty() && periods_.back().periods < periods_each_) {
+    periods_.back().add(present_);
+  } else {
+    periods_.push_back(present_);
   }
+  present_ = {};
+  if (periods_.size() < kMostPeriods || periods_.back().periods < periods_each_) return;
+  for (std::size_t i = 0; i < kMostPeriods / 2; ++i) {
+    periods_[i] = periods_[2 * i];
+    periods_[i].add(periods_[2 * i + 1]);
+  }
+  periods_.resize(kMostPeriods / 2);
+  periods_each_ *= 2;
 }
 
 double RunStatistics::time_s() const noexcept {
-  std::int64_t ticks = 0;
+  std::int64_t ticks = present_.ticks;
   for (const Period& p : periods_) ticks += p.ticks;
   return static_cast<double>(ticks) * kControlPeriod_s;
 }
 
 RunFigures RunStatistics::figures(double mass_kg, double motor_constant) const {
   RunFigures f;
-  const std::size_t begin = periods_.size() / 2;
+  const bool begun = present_.ticks > 0;
+  const std::size_t begin = (periods_.size() + (begun ? 1 : 0)) / 2;
   Period sum;
-  double command_ticks = 0.0;
-  for (std::size_t i = begin; i < periods_.size(); ++i) {
-    const Period& p = periods_[i];
-    sum.has_truth = p.has_truth;
-    sum.ticks += p.ticks;
-    sum.estimates += p.estimates;
-    sum.vx += p.vx;
-    sum.vy += p.vy;
-    sum.yaw_rate += p.yaw_rate;
-    sum.power += p.power;
-    sum.torque_squared += p.torque_squared;
-    sum.velocity_error2 += p.velocity_error2;
-    sum.height_error2 += p.height_error2;
-    sum.foot_error2 += p.foot_error2;
-    sum.past_stop += p.past_stop;
-    sum.too_fast += p.too_fast;
-    f.mean_command_mps[0] += p.command.vx_mps;
-    f.mean_command_mps[1] += p.command.vy_mps;
-    f.mean_yaw_command_radps += p.command.wz_radps;
-    command_ticks += 1.0;
-  }
+  sum.periods = 0;
+  for (std::size_t i = begin; i < periods_.size(); ++i) sum.add(periods_[i]);
+  if (begun) sum.add(present_);
   if (sum.ticks == 0) return f;
-  const double n = sum.ticks;
-  for (double& v : f.mean_command_mps) v /= command_ticks;
-  f.mean_yaw_command_radps /= command_ticks;
+  const auto n = static_cast<double>(sum.ticks), periods = static_cast<double>(sum.periods);
+  f.mean_command_mps = {sum.command.vx_mps / periods, sum.command.vy_mps / periods};
+  f.mean_yaw_command_radps = sum.command.wz_radps / periods;
   f.mechanical_power_w = sum.power / n;
   f.torque_squared_nm2 = sum.torque_squared / n;
   f.joint_limit_steps = sum.past_stop;
   f.speed_limit_steps = sum.too_fast;
   if (sum.estimates > 0) {
-    f.estimate = {.velocity_rmse_mps = std::sqrt(sum.velocity_error2 / sum.estimates),
-                  .body_height_rmse_m = std::sqrt(sum.height_error2 / sum.estimates),
-                  .foot_height_rmse_m = std::sqrt(sum.foot_error2 / sum.estimates)};
+    const auto estimates = static_cast<double>(sum.estimates);
+    f.estimate = {.velocity_rmse_mps = std::sqrt(sum.velocity_error2 / estimates),
+                  .body_height_rmse_m = std::sqrt(sum.height_error2 / estimates),
+                  .foot_height_rmse_m = std::sqrt(sum.foot_error2 / estimates)};
   }
   if (!sum.has_truth) return f;
   MotionFigures& m = f.motion.emplace();
@@ -138,13 +145,9 @@ RunFigures RunStatistics::figures(double mass_kg, double motor_constant) const {
                           (mass_kg * kGravity_mps2 * speed);
   }
   m.foot_clearance_iqr_m = foot_clearance_iqr_m(begin);
-  for (const EndedStance& stance : ended_) {
-    if (stance.period < begin) continue;
-    ++m.stances;
-    m.sinkage_mean_m += stance.depth;
-    m.sinkage_max_m = std::max(m.sinkage_max_m, stance.depth);
-  }
-  if (m.stances > 0) m.sinkage_mean_m /= m.stances;
+  m.stances = sum.stances;
+  m.sinkage_max_m = sum.sinkage_max;
+  if (sum.stances > 0) m.sinkage_mean_m = sum.sinkage / sum.stances;
   return f;
 }
 
@@ -153,7 +156,7 @@ double RunStatistics::foot_clearance_iqr_m(std::size_t begin) const {
   for (int l = 0; l < kNumLegs; ++l) {
     std::vector<double> heights;
     for (std::size_t i = begin; i < periods_.size(); ++i) {
-      if (periods_[i].ticks == kTicksPerPolicyStep) heights.push_back(periods_[i].foot_height[l]);
+      heights.push_back(periods_[i].foot_height[l]);
     }
     if (heights.empty()) continue;
     std::sort(heights.begin(), heights.end());

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "rt/base/errors.h"
-#include "rt/core/safety_gate.h"
+#include "rt/core/messages.h"
 #include "rt/telemetry/dds/security_files.h"
 
 namespace sandrunner {

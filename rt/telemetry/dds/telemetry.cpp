@@ -11,8 +11,6 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::uint64_t kBatchHz = kControlHz / kTicksPerBatch;
-
 void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
                 std::uint64_t failed_writes) {
   const auto add = [&](const char* key, std::uint64_t count) {
@@ -31,12 +29,14 @@ void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
 
 Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
                      const RobotDescription& robot, const OperatorDesk* desk, bool lockstep)
-    : ros_hz_(static_cast<std::uint64_t>(config.ros_hz)),
+    : ros_rate_(config.ros_hz),
       desk_(desk),
       ros_(participant, robot),
       neighbours_(participant, config.stamped_cmd_vel),
       diagnostics_(robot),
       odometry_(robot) {
+  // Nothing at tick 0: no reader has been found yet.
+  for (SlowerRate* rate : {&ros_rate_, &batch_rate_, &diagnostics_rate_}) rate->due(0);
   if (lockstep) clock_.emplace(participant);
   if (config.ticks) batches_.emplace(participant);
 }
@@ -54,28 +54,23 @@ void Telemetry::add(const TickRecord& record) {
   const std::uint64_t tick = record.input.sensors.tick;
   const std::chrono::nanoseconds time(static_cast<std::int64_t>(tick) * kControlPeriod_ns);
   const std::int64_t stamp_ns = start_ns_ + time.count();
-  // Due when the tick enters a new slot of the slower rate, even if the slot's first tick is
-  // missing.
-  const auto due = [&](std::uint64_t hz) {
-    return tick * hz / kControlHz != last_tick_ * hz / kControlHz;
-  };
-  if (clock_ && (due(ros_hz_) || due(kBatchHz))) {
+  const bool ros_due = ros_rate_.due(tick), batch_due = batch_rate_.due(tick);
+  if (clock_ && (ros_due || batch_due)) {
     std::this_thread::sleep_until(start_ + time);
     if (!clock_->publish(stamp_ns)) ++failed_writes_;
   }
   odometry_.add(record);
   diagnostics_.add(record);
   if (batches_ && !batches_->add(record, stamp_ns)) ++failed_writes_;
-  if (due(ros_hz_)) {
+  if (ros_due) {
     failed_writes_ += static_cast<std::uint64_t>(ros_.publish(record, odometry_, stamp_ns));
   }
-  if (due(1)) {
+  if (diagnostics_rate_.due(tick)) {
     DiagnosticsMessage message = diagnostics_.message(stamp_ns);
     if (desk_) add_neighbours(message);
     add_counts(message, desk_ ? desk_->counts() : CommandCounts{}, failed_writes_);
     if (!ros_.publish(message)) ++failed_writes_;
   }
-  last_tick_ = tick;
 }
 
 // What an operator would wonder about: it is in the diagnostics, and once on standard error.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "rt/core/robot_description.h"
+#include "rt/core/slower_rate.h"
 #include "rt/loop/tick_record.h"
 #include "rt/operator/operator_desk.h"
 #include "rt/telemetry/dds/neighbours.h"
@@ -45,7 +46,8 @@ class Telemetry {
  private:
   void add_neighbours(DiagnosticsMessage& message);
 
-  const std::uint64_t ros_hz_;
+  SlowerRate ros_rate_;
+  SlowerRate batch_rate_{kControlHz / kTicksPerBatch}, diagnostics_rate_{1};
   const OperatorDesk* desk_;
   RosPublisher ros_;
   std::optional<ClockPublisher> clock_;  // in lockstep
@@ -55,7 +57,7 @@ class Telemetry {
   Odometry odometry_;
   std::int64_t start_ns_ = 0;
   std::chrono::steady_clock::time_point start_;
-  std::uint64_t last_tick_ = 0, failed_writes_ = 0;
+  std::uint64_t failed_writes_ = 0;
   bool alone_ = true;  // no other robot has been seen
 };
 

@@ -140,7 +140,7 @@ void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
     diagnostics_.add(tick);
     write_events(tick);
     const std::uint64_t number = tick.input.sensors.tick;
-    if (number % kTicksPerPolicyStep != 0) continue;
+    if (!policy_rate_.due(number)) continue;
     const auto now = static_cast<std::int64_t>(time_ns(number));
     const std::uint64_t sequence = number / kTicksPerPolicyStep;
     message(channels_.joint_states, sequence, number, cdr(joint_state_message(tick, robot_, now)));
@@ -148,7 +148,7 @@ void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
     message(channels_.odometry, sequence, number, cdr(odometry_message(odometry_, robot_, now)));
     message(channels_.transforms, sequence, number,
             cdr(moving_transforms(tick, odometry_, robot_, now)));
-    if (number % kControlHz != 0) continue;
+    if (!diagnostics_rate_.due(number)) continue;
     message(channels_.diagnostics, number / kControlHz, number, cdr(diagnostics_.message(now)));
   }
   if (first - last_flush_tick_ >= kControlHz / 2) {

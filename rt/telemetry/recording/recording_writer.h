@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rt/core/robot_description.h"
+#include "rt/core/slower_rate.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/diagnostics.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
@@ -35,7 +36,8 @@ inline Mode start_mode_of(const RecordingInfo& info) {
 }
 
 /// Turns ticks into an MCAP file: our own records bit for bit, events and, for the usual tools,
-/// ROS 2 topics at the rate of the policy. Compresses and writes in the thread that calls it.
+/// ROS 2 topics at the rate of the policy, diagnostics once a second. Compresses and writes in the
+/// thread that calls it.
 class RecordingWriter {
  public:
   /// Throws InputError if the file cannot be written.
@@ -68,6 +70,7 @@ class RecordingWriter {
   } channels_;
   Odometry odometry_;
   Diagnostics diagnostics_;
+  SlowerRate policy_rate_{kPolicyHz}, diagnostics_rate_{1};
   std::uint64_t batches_ = 0, states_ = 0, events_ = 0, last_flush_tick_ = 0;
   bool in_the_middle_, has_last_ = false;
   std::uint64_t last_mode_ = 0, last_faults_ = 0, last_request_ = 0;

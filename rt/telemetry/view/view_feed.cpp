@@ -52,7 +52,12 @@ void ViewFeed::add_frame(const ViewFrame& frame) {
   // Heights first: a page that has a frame has the ground under it.
   const std::vector<ViewTile> tiles = new_view_tiles(scene_, frame, tiles_seen_);
   const std::lock_guard lock(mutex_);
-  for (const ViewTile& tile : tiles) tiles_.add(tile, limits_.tiles);
+  for (const ViewTile& tile : tiles) {
+    if (tiles_.rows.size() == limits_.tiles) {  // sent anew if the robot comes back to it
+      tiles_seen_.erase({tiles_.rows.front().tile_x, tiles_.rows.front().tile_y});
+    }
+    tiles_.add(tile, limits_.tiles);
+  }
   frames_.add(frame, limits_.frames);
 }
 

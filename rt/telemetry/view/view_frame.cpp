@@ -9,14 +9,12 @@
 #include <utility>
 
 #include "rt/report/body_motion.h"
+#include "rt/report/joint_power.h"
 
 namespace sandrunner {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-// A stance as the figures of a run have it (rt/report/run_statistics.h).
-constexpr int kShortestStance_ticks = kControlHz / 100;
-constexpr double kLift_m = 0.001;
 constexpr double kShallowest_m = 0.002;  // hard ground takes no footprint
 
 template <typename T>
@@ -95,37 +93,26 @@ std::span<const ViewField> view_frame_fields() { return kFrameFields; }
 std::span<const ViewField> view_footprint_fields() { return kFootprintFields; }
 
 void ViewFrameMaker::follow_stances(const TickRecord& tick) {
-  for (std::size_t l = 0; l < kNumLegs; ++l) {
-    Stance& stance = stances_[l];
-    const double depth_m = tick.truth.foot_penetration_m[l];
-    if (stance.ticks == 0 && !(depth_m >= 0.0)) continue;
-    ++stance.ticks;
-    if (depth_m > stance.deepest_m[2]) {
-      const Vector3& centre = tick.truth.foot_centre_m[l];
-      stance.deepest_m = {centre[0], centre[1], depth_m};
-    }
-    if (!(depth_m <= -kLift_m)) continue;
-    const Stance ended = std::exchange(stance, {});
-    if (ended.ticks < kShortestStance_ticks || ended.deepest_m[2] < kShallowest_m) continue;
-    footprints_.push_back(
-        {.t_s = static_cast<double>(tick.input.sensors.tick + 1) * kControlPeriod_s,
-         .x_m = ended.deepest_m[0],
-         .y_m = ended.deepest_m[1],
-         .depth_m = static_cast<float>(ended.deepest_m[2]),
-         .leg = static_cast<std::uint32_t>(l)});
-  }
+  stances_.add(tick, [&](std::size_t leg, double time_s, const Stance& stance) {
+    if (stance.deepest_m[2] < kShallowest_m) return;
+    footprints_.push_back({.t_s = time_s,
+                           .x_m = stance.deepest_m[0],
+                           .y_m = stance.deepest_m[1],
+                           .depth_m = static_cast<float>(stance.deepest_m[2]),
+                           .leg = static_cast<std::uint32_t>(leg)});
+  });
 }
 
 void ViewFrameMaker::follow_extremes(const TickRecord& tick) {
   const bool truth = tick.has_truth != 0;
   const JointState& joints = tick.input.sensors.joints;
   const JointArray<double>& torque = truth ? tick.truth.joint_torque_nm : joints.torque_nm;
-  const JointArray<double>& speed = truth ? tick.truth.joint_velocity_radps : joints.velocity_radps;
+  const JointPower power = joint_power(tick);
+  power_w_ += power.mechanical_w;
+  torque_squared_nm2_ += power.torque_squared_nm2;
   ++ticks_;
   for (std::size_t j = 0; j < kNumJoints; ++j) {
     if (std::abs(torque[j]) > std::abs(peak_torque_nm_[j])) peak_torque_nm_[j] = torque[j];
-    power_w_ += torque[j] * speed[j];
-    torque_squared_nm2_ += torque[j] * torque[j];
   }
   const TickTiming& t = tick.timing;
   worst_.late_ns = std::max(worst_.late_ns, t.late_ns);
@@ -182,7 +169,7 @@ ViewFrame ViewFrameMaker::make_frame(const TickRecord& tick) const {
   f.penetration_m = floats(now.foot_penetration_m);
   for (std::size_t l = 0; l < kNumLegs; ++l) {
     f.foot_force_n[l] = floats(now.foot_force_n[l]);
-    f.stance_m[l] = floats(stances_[l].deepest_m);
+    f.stance_m[l] = floats(stances_.stances()[l].deepest_m);
   }
   f.motion = floats(std::array{motion.vx_mps, motion.vy_mps, motion.yaw_rate_radps});
   f.truth = floats(tick.before.state);
@@ -201,7 +188,7 @@ std::optional<ViewFrame> ViewFrameMaker::add(const TickRecord& tick) {
     complete = std::exchange(waiting_, std::nullopt);
   }
   policy_sequence_ = policy.sequence;
-  if (tick.input.sensors.tick % kTicksPerPolicyStep != 0) return complete;
+  if (!rate_.due(tick.input.sensors.tick)) return complete;
   if (waiting_) complete = waiting_;
   waiting_ = make_frame(tick);
   waiting_tick_ = tick.input.sensors.tick;

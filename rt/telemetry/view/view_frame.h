@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "rt/core/robot_description.h"
+#include "rt/core/slower_rate.h"
 #include "rt/loop/tick_record.h"
 #include "rt/report/run_record.h"
+#include "rt/report/stances.h"
 #include "rt/telemetry/odometry.h"
 
 namespace sandrunner {
@@ -30,9 +32,9 @@ struct ViewField {
 /// Bits of ViewFrame::flags.
 inline constexpr std::uint32_t kViewHasTruth = 1, kViewHasEstimate = 2;
 
-/// One moment, at every 40th tick. World frame, legs and joints as in messages.h. Without truth
-/// (hardware) the pose is that of the odometry, joints are as measured, and what only a simulator
-/// knows is NaN.
+/// One moment, at the first tick of each of the policy's periods. World frame, legs and joints as
+/// in messages.h. Without truth (hardware) the pose is that of the odometry, joints are as
+/// measured, and what only a simulator knows is NaN.
 struct ViewFrame {
   double t_s = 0.0;
   Vector3 position_m{};            ///< of the base origin
@@ -80,17 +82,13 @@ class ViewFrameMaker {
   std::vector<ViewFootprint> take_footprints();
 
  private:
-  struct Stance {
-    int ticks = 0;        // 0: in the air
-    Vector3 deepest_m{};  // x, y, depth
-  };
-
   void follow_stances(const TickRecord& tick);
   void follow_extremes(const TickRecord& tick);
   ViewFrame make_frame(const TickRecord& tick) const;
 
+  SlowerRate rate_{kPolicyHz};
   Odometry odometry_;
-  std::array<Stance, kNumLegs> stances_;
+  StanceWatch stances_;
   std::vector<ViewFootprint> footprints_;
   std::optional<ViewFrame> waiting_;
   std::uint64_t waiting_tick_ = 0, policy_sequence_ = 0;

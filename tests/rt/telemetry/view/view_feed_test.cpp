@@ -80,5 +80,31 @@ TEST(ViewFeedTest, RoughGroundComesBeforeTheFramesOnIt) {
   EXPECT_EQ(message.size(), sizeof head + head[1] * sizeof(ViewTile));
 }
 
+TEST(ViewFeedTest, GroundThatWasForgottenIsThereAgainForARobotThatComesBack) {
+  RunScene scene;
+  scene.ground_height_m = [](double x_m, double) { return 0.01 * x_m; };
+  ViewFeed feed(scene, example_robot(), {.frames = 10, .footprints = 10, .tiles = 200});
+  std::uint64_t period = 0;
+  for (const double x_m : {0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 0.0}) {
+    TickRecord tick = example_tick(kTicksPerPolicyStep * period++);
+    tick.has_truth = 1;
+    tick.truth.position_m = {x_m, 0.0, 0.5};
+    feed.add(tick);
+  }
+  feed.end();
+  ViewFeed::Place place = feed.join();
+  bool there = false;
+  for (std::string message; !(message = feed.next(place)).empty();) {
+    std::uint32_t head[2];
+    std::memcpy(head, message.data(), sizeof head);
+    for (std::uint32_t i = 0; head[0] == 2 && i < head[1]; ++i) {
+      ViewTile tile;
+      std::memcpy(&tile, message.data() + sizeof head + i * sizeof tile, sizeof tile);
+      there = there || (tile.tile_x == 0 && tile.tile_y == 0);
+    }
+  }
+  EXPECT_TRUE(there);
+}
+
 }  // namespace
 }  // namespace sandrunner

@@ -23,7 +23,8 @@ TickRecord true_tick(std::uint64_t number) {
   tick.truth.position_m = {1.0 + 1e-4 * static_cast<double>(number), 2.0, 0.5};
   tick.truth.velocity_mps = {0.8, 0.1, 0.0};
   tick.truth.joint_torque_nm = all_joints(3.0);
-  tick.truth.joint_velocity_radps = all_joints(2.0);
+  tick.before.joint_velocity_radps = all_joints(2.0);
+  tick.truth.joint_velocity_radps = all_joints(5.0);
   tick.before.state.body_height_m = 0.45;
   return tick;
 }
@@ -107,7 +108,7 @@ TEST(ViewFrameTest, PeaksAndMeansAreOfTheTicksSinceTheFrameBefore) {
 
 TEST(ViewFrameTest, AFootprintIsWhereTheFootWasDeepestInAStance) {
   ViewFrameMaker maker(example_robot());
-  const auto frames = frames_of(maker, 1, 200, [](TickRecord& tick) {
+  const auto frames = frames_of(maker, 0, 200, [](TickRecord& tick) {
     const double t = static_cast<double>(tick.input.sensors.tick);
     tick.truth.foot_penetration_m.fill(-0.1);
     // Leg 2 is in the ground from tick 50 to 150, deepest at 100. Leg 3 only touches it.
@@ -115,9 +116,9 @@ TEST(ViewFrameTest, AFootprintIsWhereTheFootWasDeepestInAStance) {
     if (t >= 50 && t <= 60) tick.truth.foot_penetration_m[3] = 0.04;
     tick.truth.foot_centre_m[2] = {1e-3 * t, -2e-3 * t, 0.0};
   });
-  EXPECT_EQ(frames[0].stance_m[2][2], 0.0f);  // tick 40
-  EXPECT_FLOAT_EQ(frames[1].stance_m[2][2], 0.03f);
-  EXPECT_FLOAT_EQ(frames[2].stance_m[2][0], 0.1f);  // tick 120: deepest at 100
+  EXPECT_EQ(frames[1].stance_m[2][2], 0.0f);  // tick 40
+  EXPECT_FLOAT_EQ(frames[2].stance_m[2][2], 0.03f);
+  EXPECT_FLOAT_EQ(frames[3].stance_m[2][0], 0.1f);  // tick 120: deepest at 100
   const auto prints = maker.take_footprints();
   ASSERT_EQ(prints.size(), 1u);
   EXPECT_EQ(prints[0].leg, 2u);
