@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -66,6 +67,12 @@ std::string recording_line(const RecordingResult& r, const std::string& dir) {
 std::string write_results(const RunResult& result, const RunInfo& info,
                           const std::string& effective, ViewPage& page, const std::string& folder) {
   const std::string dir = folder + "/";
+  // If not all can be written, those there are of one run, and not of an earlier one too.
+  for (const char* name :
+       {"summary.json", "config.toml", "run.csv", "run.html", "run.png", "strip.png"}) {
+    std::error_code none_there;
+    std::filesystem::remove(dir + name, none_there);
+  }
   write_file(dir + "summary.json", summary_json(result, info));
   write_file(dir + "config.toml", effective);
   write_csv(result.record, dir + "run.csv");

@@ -15,7 +15,7 @@
 
 namespace sandrunner {
 
-/// Settings of one run, from the layers terrain preset or file < --config < --set.
+/// Settings of one run, from the layers terrain preset or file < --hardware < --config < --set.
 struct ProcessConfig {
   sim::Robot robot;
   sim::SimulatorConfig simulator;

@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--seed", options.seed, "seed of the weights and environments")
+      ->check(CLI::NonNegativeNumber)
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--resume", resume, "continue from the checkpoint in --out");

@@ -58,6 +58,29 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 
+/// Throws InputError unless weights of `policy` mean in a file with the scales of `ours` what they
+/// mean in their own. Nominal positions may differ: angles are shown as what they are off them.
+void require_scales(const PolicyFile& policy, const PolicyFile& ours) {
+  const auto check = [&](const std::string& what, double is, double expected) {
+    if (std::fabs(is - expected) <= 1e-4 * std::fabs(expected)) return;
+    throw InputError(
+        fmt::format("policy '{}': its {} is {:.6g}, expected {:.6g}, with which this trainer shows "
+                    "and takes it",
+                    policy.spec.name, what, is, expected));
+  };
+  const NetworkParameters &a = policy.parameters, &b = ours.parameters;
+  constexpr std::size_t kAngles = 9;
+  for (std::size_t i = 0; i < kObservationSize; ++i) {
+    check(fmt::format("variance of observation {}", i), a.observation_variance[i],
+          b.observation_variance[i]);
+    if (i >= kAngles && i < kAngles + kNumJoints) continue;
+    check(fmt::format("mean of observation {}", i), a.observation_mean[i], b.observation_mean[i]);
+  }
+  check("clip of observations", a.observation_clip, b.observation_clip);
+  check("action scale", policy.spec.action_scale_rad, ours.spec.action_scale_rad);
+  check("action clip", policy.spec.action_clip, ours.spec.action_clip);
+}
+
 }  // namespace
 
 Training::Training(const TrainConfig& config, const sim::Robot& robot,
@@ -81,6 +104,7 @@ void Training::start() {
 }
 
 void Training::go_on_from(PolicyFile policy) {
+  require_scales(policy, policy_file());
   for (std::vector<float>* rows :
        {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
     const std::vector<float> joints = *rows;

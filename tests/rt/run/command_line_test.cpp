@@ -279,7 +279,10 @@ TEST_F(InterruptTest, ClosedStandardOutputLosesNoResults) {
   EXPECT_EQ(files_in("results").size(), 6u);
 }
 
-TEST_F(InterruptTest, FullDiskLeavesNoHalfFile) {
+TEST_F(InterruptTest, FullDiskLeavesNoHalfFileAndNoneOfAnEarlierRun) {
+  const std::string old_table = folder_.path("results/run.csv");
+  std::filesystem::create_directory(folder_.path("results"));
+  write_file(old_table, "of an earlier run");
   // As if the disk had room for 2 kB (4 blocks) a file.
   const Ended ended = interrupt("--policy " + calm_policy() + " --clock realtime", SIGINT,
                                 "trap '' XFSZ && ulimit -f 4 && ");

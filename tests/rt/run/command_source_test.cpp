@@ -26,8 +26,9 @@ TEST(CommandSourceTest, ConstantMayHaveBlanks) {
 }
 
 TEST(CommandSourceTest, MalformedConstantIsRefused) {
-  for (const char* text : {"1,2", "1,2,3,4", "", "nan,0,0", "0,inf,0", "0,0,-infinity", "1;2;3",
-                           "1,,3", "1,2,", "1,2,3 4", "0x10,0,0", "1e999,0,0", "1,2,++3", "."}) {
+  for (const char* text :
+       {"1,2", "1,2,3,4", "", "nan,0,0", "0,inf,0", "0,0,-infinity", "1;2;3", "1,,3", "1,2,",
+        "1,2,3 4", "0x10,0,0", "1e999,0,0", "1,2,++3", "+-1,0,0", "."}) {
     expect_refused([&] { CommandSource{text}; }, {"--command: '" + std::string(text) + "'"});
   }
   expect_refused([] { CommandSource("20.1,0,0"); }, {"--command: 20.1, expected at most 20"});

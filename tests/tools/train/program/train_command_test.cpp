@@ -155,6 +155,21 @@ TEST_F(TrainCommandTest, GoesOnFromThePolicyOfAFileAndSaysSo) {
   expect_refused("third", {"--from", first, "--resume"}, "--from");
 }
 
+TEST_F(TrainCommandTest, APolicyWhoseInputsAreScaledOtherwiseIsNotGoneOnFrom) {
+  ASSERT_EQ(run("first", {}), 0);
+  PolicyFile other = policy("first");
+  other.parameters.observation_variance[9] *= 25.0f;
+  other.golden = make_golden_example(other.parameters);
+  const std::string path = folder_.path("other.safetensors");
+  write_policy_file(path, other);
+  expect_refused("second", {"--from", path}, "variance of observation 9");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("second")));
+}
+
+TEST_F(TrainCommandTest, ASeedBelowZeroIsRefused) {
+  expect_refused("first", {"--seed", "-1"}, "--seed");
+}
+
 TEST_F(TrainCommandTest, LinesOfProgressAreShortAndExplained) {
   const Ended ended = run_process(training("a", {}));
   EXPECT_EQ(ended.code, 0);
