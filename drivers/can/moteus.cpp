@@ -249,15 +249,6 @@ MoteusStatus encode_moteus_query(const MoteusDrive& drive, std::span<const Moteu
   return encode(drive, reads, frame, [](MoteusWriter&) {});
 }
 
-MoteusStatus encode_moteus_write(const MoteusDrive& drive, MoteusRegister reg, double value,
-                                 CanFrame& frame) noexcept {
-  if (!std::isfinite(value)) return MoteusStatus::kNotFinite;
-  const double values[] = {value};
-  return encode(drive, {}, frame, [&](MoteusWriter& writer) {
-    writer.values(MoteusOperation::kWrite, MoteusFormat::kFloat, reg, values);
-  });
-}
-
 MoteusStatus decode_moteus_reply(const MoteusDrive& drive, const CanFrame& frame,
                                  MoteusReply& reply) noexcept {
   MoteusReply read;
@@ -304,21 +295,6 @@ MoteusStatus decode_moteus_reply(const MoteusDrive& drive, const CanFrame& frame
   if (!(code >= 0.0 && code <= 255.0) || std::floor(code) != code) return MoteusStatus::kBadNumber;
   read.code = static_cast<std::uint8_t>(code);
   reply = read;
-  return MoteusStatus::kOk;
-}
-
-MoteusStatus decode_moteus_register(const MoteusDrive& drive, const CanFrame& frame,
-                                    MoteusRegister reg, double& value) noexcept {
-  bool found = false;
-  double read = kUnset;
-  const MoteusStatus status = each_register(drive, frame, [&](const MoteusItem& item) {
-    if (item.reg != reg) return;
-    found = true;
-    read = item.value;
-  });
-  if (status != MoteusStatus::kOk) return status;
-  if (!found) return MoteusStatus::kIncomplete;
-  value = read;
   return MoteusStatus::kOk;
 }
 

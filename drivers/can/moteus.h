@@ -52,9 +52,6 @@ enum class MoteusMode : std::uint8_t {
 inline constexpr int kNumMoteusModes = 16;
 const char* words(MoteusMode mode) noexcept;
 
-/// Codes of register 0x00F that say what limits the drive at present: not faults.
-constexpr bool is_moteus_limit(std::uint8_t code) noexcept { return code >= 96 && code <= 103; }
-
 /// What a code of register 0x00F means, "" for 0.
 const char* moteus_fault_words(std::uint8_t code) noexcept;
 
@@ -116,18 +113,10 @@ MoteusStatus encode_moteus_stop(const MoteusDrive& drive, std::span<const Moteus
 MoteusStatus encode_moteus_query(const MoteusDrive& drive, std::span<const MoteusRead> reads,
                                  CanFrame& frame) noexcept;
 
-/// Writes one register, in its own unit (moteus_frame.h) as a float.
-MoteusStatus encode_moteus_write(const MoteusDrive& drive, MoteusRegister reg, double value,
-                                 CanFrame& frame) noexcept;
-
 /// Reads a frame as this drive's reply. Mode, position, velocity and torque must be there and set.
 /// `reply` is whole with kOk, else left as it is.
 MoteusStatus decode_moteus_reply(const MoteusDrive& drive, const CanFrame& frame,
                                  MoteusReply& reply) noexcept;
-
-/// One register out of this drive's reply, in its own unit; NaN if it is unset.
-MoteusStatus decode_moteus_register(const MoteusDrive& drive, const CanFrame& frame,
-                                    MoteusRegister reg, double& value) noexcept;
 
 // --- the drive's side ---
 

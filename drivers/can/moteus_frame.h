@@ -37,8 +37,7 @@ inline constexpr MoteusRegister kMode = 0x000, kPosition = 0x001, kVelocity = 0x
                                 kCommandVelocity = 0x021, kCommandTorque = 0x022,
                                 kCommandKpScale = 0x023, kCommandKdScale = 0x024,
                                 kCommandMaxTorque = 0x025, kCommandWatchdog = 0x027,
-                                kMapVersion = 0x102, kSetOutputNearest = 0x130,
-                                kSetOutputExact = 0x131;
+                                kMapVersion = 0x102;
 }  // namespace moteus_register
 
 /// The map that this is written for; what kMapVersion answers.

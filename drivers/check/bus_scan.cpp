@@ -104,7 +104,7 @@ std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
         std::vector<ScannedDrive>& drives = answered[b];
         const bool known = !drives.empty() && drives.back().id == id;
         if (known || !is_scan_reply(config.buses[b], damiao, id, frame)) return;
-        drives.push_back({.id = id, .reply_id = frame.id, .reply_bytes = frame.length});
+        drives.push_back({.id = id, .reply_id = frame.id});
       });
     }
   }

@@ -15,7 +15,6 @@ namespace sandrunner {
 struct ScannedDrive {
   int id = 0;
   std::uint32_t reply_id = 0;  ///< identifier of its reply
-  int reply_bytes = 0;
 };
 
 /// Sockets that hear everything. Where one cannot be opened it is null, and why is added to

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
 #include "rt/core/mode_machine.h"
 
@@ -17,10 +18,6 @@ constexpr auto kAnswerTime = std::chrono::milliseconds(20);
 constexpr auto kLookEvery = std::chrono::microseconds(250);
 constexpr const char* kNoAnswer = "the controller does not answer";
 
-std::int64_t steady_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace
 
 OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk)
@@ -29,7 +26,7 @@ OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk)
 CommandVerdict OperatorDesk::drive(const Twist& twist, std::uint64_t publisher,
                                    const OperatorId& who) {
   const std::lock_guard lock(mutex_);
-  const CommandVerdict verdict = gate_.judge(twist, publisher, steady_ns());
+  const CommandVerdict verdict = gate_.judge(twist, publisher, clock_ns(CLOCK_MONOTONIC));
   switch (verdict) {
     case CommandVerdict::kAccepted:
       holder_ = who;
@@ -82,7 +79,7 @@ std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
   if (waiting && name != "damp") return kNoAnswer;
   const RequestDecision decision = decide(name, operator_.mode(), can_walk_);
   if (decision.refusal) return decision.refusal;
-  if (!decision.calms && gate_.held(steady_ns()) && who != holder_) {
+  if (!decision.calms && gate_.held(clock_ns(CLOCK_MONOTONIC)) && who != holder_) {
     return "another operator drives the robot";
   }
   if (!decision.calms && objection) {

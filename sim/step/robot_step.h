@@ -56,7 +56,6 @@ class RobotStepper {
             const StepSettings& settings, const std::array<S, kNumJoints>& torque_nm,
             RobotState<S>& x, StepReport<S>& report) noexcept;
 
-  const Dynamics<S>& dynamics() const noexcept { return dynamics_; }
   /// The contact problem of the last step as solved, for tests.
   const std::array<PointContact<S>, kNumPoints>& points() const noexcept { return points_; }
   int num_points() const noexcept { return num_points_; }

@@ -200,11 +200,11 @@ std::string command_table(const PartResults& results, const std::vector<std::str
 std::string tables(const PartResults& results, const std::vector<std::string>& policies) {
   if (results.part.name == "straight") {
     std::string text = "Straight run: 1 m, then a track of 5 m\n";
-    text += group_table(
-        results, policies,
-        {"track_success", "track_strict_success", "track_speed_mps", "track_end_speed_mps",
-         "vx_mps", "track_cot", "cot", "clearance_iqr_m", "drift_vy_mps", "drift_yaw_radps"},
-        false);
+    text += group_table(results, policies,
+                        {"track_success", "track_strict_success", "survival", "track_speed_mps",
+                         "track_end_speed_mps", "vx_mps", "track_cot", "cot", "clearance_iqr_m",
+                         "drift_vy_mps", "drift_yaw_radps"},
+                        false);
     text += "\nStraight run: gait, limits, estimate\n";
     text += group_table(
         results, policies,

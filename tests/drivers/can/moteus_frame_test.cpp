@@ -114,7 +114,7 @@ TEST(MoteusFrameTest, TheMakersOwnFramesAreMadeAlike) {
   EXPECT_EQ(hex(frame), "01000a0e200000000000000000505050");
 
   MoteusWriter write(frame);
-  write.values(MoteusOperation::kWrite, MoteusFormat::kFloat, reg::kSetOutputNearest,
+  write.values(MoteusOperation::kWrite, MoteusFormat::kFloat, MoteusRegister{0x130},
                std::array{2.0});
   EXPECT_TRUE(write.finish());
   EXPECT_EQ(hex(frame), "0db00200000040") << "a register number of two bytes";

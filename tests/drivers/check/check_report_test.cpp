@@ -21,7 +21,7 @@ CheckFindings good_findings() {
   CheckFindings f;
   f.scanned.resize(4);
   for (auto& bus : f.scanned) {
-    for (int id = 1; id <= 3; ++id) bus.push_back({.id = id, .reply_id = 0, .reply_bytes = 8});
+    for (int id = 1; id <= 3; ++id) bus.push_back({.id = id, .reply_id = 0});
   }
   for (FoundDrive& drive : f.drives) {
     drive = {.requests = 200,

@@ -24,8 +24,6 @@ void check(const MoteusDrive& drive, const CanFrame& frame) {
     (void)words(reply.mode);
     (void)moteus_fault_words(reply.code);
   }
-  double value = 0.0;
-  (void)decode_moteus_register(drive, frame, moteus_register::kMapVersion, value);
 
   MoteusRequest request;
   if (decode_moteus_request(drive, frame, request) == MoteusStatus::kOk) {

@@ -23,13 +23,15 @@ std::string text_of(const std::string& name) {
 }
 
 /// What reading says of an example in which the first `from` became `to`.
-std::string refusal(const std::string& name, const std::string& from, const std::string& to) {
+std::string refusal(const std::string& name, const std::string& from, const std::string& to,
+                    const std::string& assignment = "") {
   std::string text = text_of(name);
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
   ConfigTree tree;
   tree.add_text(text, "test.toml");
+  if (!assignment.empty()) tree.set(assignment);
   try {
     read_hardware_config(tree, example_robot(), example_gate());
     tree.reject_unknown();
@@ -160,7 +162,10 @@ TEST(HardwareConfigTest, TheSlowestRatesStayBelowTheGatesCeilings) {
 }
 
 TEST(HardwareConfigTest, EveryTorqueCommandOfAScaledRobotFitsASmallerDrive) {
-  EXPECT_EQ(example_hardware("mit", {"hardware.torque_scale=0.2"}).torque_scale, 0.2);
+  const char* const own = "max_torque_nm = 65.0";
+  const char* const smaller = "max_torque_nm = 13.0";
+  EXPECT_THAT(refusal("moteus", own, smaller), HasSubstr("torque up to 63.45 N m needed, 13"));
+  EXPECT_EQ(refusal("moteus", own, smaller, "hardware.torque_scale=0.2"), "taken");
 }
 
 }  // namespace
