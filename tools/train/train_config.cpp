@@ -17,6 +17,7 @@ constexpr NumberSetting<R> kRun[] = {
     {"transitions", &R::transitions, 1.0, 1e13},
     {"checkpoint_interval_s", &R::checkpoint_interval_s, 0.0, 1e6},
     {"settle_share", &R::settle_share, 0.0, 1.0},
+    {"asymmetric_share", &R::asymmetric_share, 0.0, 1.0},
     {"settle_kl_share", &R::settle_kl_share, 1e-3, 1.0},
     {"settle_action_std", &R::settle_action_std, 1e-3, 10.0},
 };
