@@ -16,7 +16,8 @@ TickRecord walk_tick(std::uint64_t tick) {
   TickRecord record;
   record.input.sensors.tick = tick;
   record.counts = record.has_truth = 1;
-  record.truth.velocity_mps = {1e-3 * static_cast<double>(tick / kTicksPerPolicyStep), 0.0, 0.0};
+  const std::uint64_t period = tick / kTicksPerPolicyStep;
+  record.truth.velocity_mps = {1e-3 * static_cast<double>(period), 0.0, 0.0};
   record.truth.joint_torque_nm[3] = 2.0;
   record.before.joint_velocity_radps[3] = 5.0;
   record.truth.joint_velocity_radps[3] = 7.0;
