@@ -80,8 +80,9 @@ TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
   EXPECT_GE(r.control.ticks + r.control.skipped, 8000u);
   EXPECT_LE(r.control.ticks + r.control.skipped, 8000u + r.control.longest_miss);
   EXPECT_EQ(r.control.late.count(), r.control.ticks);
-  EXPECT_NEAR(static_cast<double>(r.control.releases), 200.0,
-              static_cast<double>(r.control.longest_miss) / kTicksPerPolicyStep + 1.0);
+  // A period of the policy has its release unless all of its slots were missed.
+  EXPECT_GE(r.control.releases + r.control.skipped / kTicksPerPolicyStep + 1, 200u);
+  EXPECT_LE(r.control.releases, 201 + r.control.longest_miss / kTicksPerPolicyStep);
   EXPECT_EQ(r.policy.steps + r.policy.missed, r.control.releases);
   EXPECT_EQ(r.policy.step.count(), r.policy.steps);
   EXPECT_EQ(r.records_dropped, 0u);
