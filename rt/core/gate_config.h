@@ -85,7 +85,7 @@ struct GateConfig {
 /// A threshold that is one number, and what no setting can put it beyond: compiled in.
 template <typename T>
 struct GateThreshold {
-  const char* key;  ///< setting controller.gate.<key>; null: the robot's map alone has it
+  const char* key;  ///< setting controller.gate.<key>; null: no setting has it
   T GateConfig::*value;
   T least, ceiling;
 };
@@ -107,6 +107,8 @@ inline constexpr GateThreshold<double> kGateThresholds[] = {
     {"tilt_fault_s", &GateConfig::tilt_fault_s, 0.0, 2.0},
     {"tilt_fault_deg", &GateConfig::tilt_fault_deg, 0.0, 80.0},
     {"free_fall_s", &GateConfig::free_fall_s, 0.0, 1.0},
+    {nullptr, &GateConfig::frozen_moved_rad, 0.0, 0.1},
+    {nullptr, &GateConfig::frozen_told_rad, 0.0, 1.0},
 };
 
 inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
