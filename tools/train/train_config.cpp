@@ -17,7 +17,6 @@ constexpr NumberSetting<R> kRun[] = {
     {"transitions", &R::transitions, 1.0, 1e13},
     {"checkpoint_interval_s", &R::checkpoint_interval_s, 0.0, 1e6},
     {"settle_share", &R::settle_share, 0.0, 1.0},
-    {"asymmetric_share", &R::asymmetric_share, 0.0, 1.0},
     {"settle_kl_share", &R::settle_kl_share, 1e-3, 1.0},
     {"settle_action_std", &R::settle_action_std, 1e-3, 10.0},
 };
@@ -57,6 +56,7 @@ learner::LearnerConfig read_learner_config(ConfigTree& config) {
   l.block_envs = read_integer(config, "learner.block_envs", 1, 1 << 16);
   l.minibatches = read_integer(config, "learner.minibatches", 1, 1024);
   l.epochs = read_integer(config, "learner.epochs", 1, 100);
+  l.symmetry_steps = read_integer(config, "learner.symmetry_steps", 1, 10000);
   l.average_updates = read_integer(config, "learner.average_updates", 1, 1 << 20);
   read_numbers(config, "learner", kLearner, l);
   l.network.critic = read_widths(config, "learner.critic");

@@ -15,7 +15,6 @@ struct RunSettings {
   double transitions = 0;            ///< of all environments together, when the training ends
   double checkpoint_interval_s = 0;  ///< least time between checkpoints
   double settle_share = 0;           ///< last share, 0 to 1, in which updates become smaller
-  double asymmetric_share = 0;       ///< last share, 0 to 1, in which nothing pulls to symmetry
   double settle_kl_share = 0;        ///< KL target at the end, over that before; 0 to 1
   double settle_action_std = 0;      ///< most noise of the actions at the end
 };

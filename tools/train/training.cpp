@@ -198,9 +198,9 @@ void Training::run(const std::atomic<bool>& interrupted) {
   const double before = transitions(), all = config_.run.transitions;
   while (transitions() < all && !interrupted) {
     const double t0_s = wall_seconds();
+    settle();
     step_window();
     const double t1_s = wall_seconds();
-    settle();
     const learner::UpdateStats update = learner_.update();
     const double t2_s = wall_seconds();
     if (!update.finite) {
@@ -221,17 +221,13 @@ void Training::run(const std::atomic<bool>& interrupted) {
   if (transitions() > before) save();
 }
 
-// In the last part smaller and smaller updates, and less and less noise: the policy settles. In the
-// end without the pull towards symmetry.
+// In the last part smaller and smaller updates, and less and less noise: the policy settles.
 void Training::settle() {
   const RunSettings& run = config_.run;
   const learner::LearnerConfig& learner = config_.learner;
   const double to_go = run.transitions - static_cast<double>(learner_.transitions());
   const double left = to_go / std::max(run.transitions * run.settle_share, 1.0);
-  // At the end it would take from a trot its first step.
-  learner_.set_symmetry_weight(to_go < run.transitions * run.asymmetric_share
-                                   ? 0.0
-                                   : learner.loss.symmetry_weight * task_.late());
+  learner_.set_symmetry_weight(learner.loss.symmetry_weight * task_.late());
   learner_.set_kl_target(std::clamp(left, run.settle_kl_share, 1.0) * learner.kl_target);
   learner_.set_action_std_most(
       run.settle_action_std *

@@ -69,7 +69,7 @@ struct BasicRollout {
         final_privileged(shape.privileged, shape.envs, shape.steps),
         action(kNumJoints, shape.envs, shape.steps),
         mean(kNumJoints, shape.envs, shape.steps),
-        mirror_mean(kNumJoints, shape.envs, shape.steps),
+        symmetric_mean(kNumJoints, shape.envs, shape.steps),
         log_prob(shape.envs, shape.steps),
         value(shape.envs, shape.steps + 1),
         timeout_value(shape.envs, shape.steps),
@@ -99,9 +99,9 @@ struct BasicRollout {
   // Written when the policy acts.
   VectorField<Scalar, kNumJoints> action;  ///< sampled, in network units
   VectorField<Scalar, kNumJoints> mean;
-  /// Mirror image of the policy's answer to the mirror image of the observations: `mean`, if the
-  /// policy is symmetric. Zero without a symmetry.
-  VectorField<Scalar, kNumJoints> mirror_mean;
+  /// `mean` without what has long been different in the mirror (LearnerConfig::symmetry_steps):
+  /// `mean` itself, if the policy is symmetric. Zero without a symmetry.
+  VectorField<Scalar, kNumJoints> symmetric_mean;
   ValueField<Scalar> log_prob;
   ValueField<Scalar> value;
   /// Only for End::kTimeout: the critic's value of `final_privileged`. Written before the update.

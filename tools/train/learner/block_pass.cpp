@@ -202,7 +202,7 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
     const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * inverse_samples;
     for (int k = 0; k < kActionSize; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      const Scalar lopsided = (mean(k) - rollout.mirror_mean(step)(k, env)) * inverse_old_std[i];
+      const Scalar lopsided = (mean(k) - rollout.symmetric_mean(step)(k, env)) * inverse_old_std[i];
       asymmetry += lopsided * lopsided;
       mean_gradient(k, column) = log_prob_gradient * z[i] * inverse_std[i] +
                                  symmetry_factor * lopsided * inverse_old_std[i];

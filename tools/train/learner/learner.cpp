@@ -39,6 +39,7 @@ const LearnerConfig& checked(const LearnerConfig& config, const RolloutShape& sh
   check_widths("actor", config.network.actor);
   check_widths("critic", config.network.critic);
   require(config.block_envs >= 1, "block_envs", config.block_envs, "at least 1");
+  require(config.symmetry_steps >= 1, "symmetry_steps", config.symmetry_steps, "at least 1");
   require(config.minibatches >= 1, "minibatches", config.minibatches, "at least 1");
   require(config.epochs >= 1, "epochs", config.epochs, "at least 1");
   require(shape.envs >= 1 && shape.envs % config.block_envs == 0, "envs", shape.envs,
@@ -105,7 +106,8 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
       c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
       mirror_h_(h_),
-      mirror_c_(c_) {
+      mirror_c_(c_),
+      asymmetry_(Matrix<float>::Zero(kActionSize, shape.envs)) {
   if (!symmetry_) config_.loss.symmetry_weight = 0.0;
   counters_.seed = seed;
   counters_.learning_rate = config.learning_rate_start;
@@ -160,10 +162,16 @@ void Learner::act_in_mirror(int block, int t, int worker) {
                                                    mirror_h_.middleCols(first, config_.block_envs),
                                                    mirror_c_.middleCols(first, config_.block_envs),
                                                    mean);
+  const float share = 1.0f / static_cast<float>(config_.symmetry_steps);
   for (int i = 0; i < config_.block_envs; ++i) {
     symmetry_->action.apply(mean.col(i), scratch.data());
+    auto asymmetry = asymmetry_.col(first + i);
+    if (rollout_.reset(t, first + i) != 0) asymmetry.setZero();
+    asymmetry += share * (rollout_.mean(t).col(first + i) - mean.col(i) - asymmetry);
   }
-  rollout_.mirror_mean(t).middleCols(first, config_.block_envs) = mean;
+  rollout_.symmetric_mean(t).middleCols(first, config_.block_envs) =
+      rollout_.mean(t).middleCols(first, config_.block_envs) -
+      asymmetry_.middleCols(first, config_.block_envs);
 }
 
 void Learner::value_timeouts(int first_env, int worker) {
@@ -378,6 +386,8 @@ void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.put("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
   checkpoint.put("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
   checkpoint.put("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
+  checkpoint.put("learner.asymmetry", asymmetry_.data(),
+                 static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.put("learner.reset", &rollout_.reset(0, 0),
                  static_cast<std::size_t>(rollout_.shape.envs));
   const auto put_first_step = [&](const std::string& name, const auto& field) {
@@ -404,6 +414,8 @@ void Learner::load(const Checkpoint& checkpoint) {
   checkpoint.get("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
   checkpoint.get("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
   checkpoint.get("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
+  checkpoint.get("learner.asymmetry", asymmetry_.data(),
+                   static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.get("learner.reset", &rollout_.reset(0, 0),
                  static_cast<std::size_t>(rollout_.shape.envs));
   const auto get_first_step = [&](const std::string& name, auto& field) {

@@ -41,6 +41,9 @@ struct LearnerConfig {
   double learning_rate_max = 2e-3;
   double action_std_start = 0.6;
   double action_std_min = 0.2;
+  /// Over about so many steps the answers are compared with those of the mirror: what they differ
+  /// by for a shorter time, such as a first step, is not pulled together.
+  int symmetry_steps = 1;
 };
 
 /// Learning rate after a minibatch with divergence `kl`: x 1.2 below half of the target, / 1.3
@@ -56,7 +59,7 @@ struct UpdateStats {
   double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
   double learning_rate = 0.0;       ///< after the update
   double action_std = 0.0;          ///< geometric mean, after the update
-  double asymmetry = 0.0;  ///< rms of mean less mirror mean, in standard deviations of the action
+  double asymmetry = 0.0;  ///< rms of mean less symmetric mean, in deviations of the action
 };
 
 /// Recurrent PPO with a supervised estimator. A window of training:
@@ -166,6 +169,7 @@ class Learner {
   Matrix<float> c_;
   Matrix<float> mirror_h_;  // of the policy that sees the mirror
   Matrix<float> mirror_c_;
+  Matrix<float> asymmetry_;  // of each environment's answers, lately
   AdvantageScale advantage_scale_;
   std::vector<BlockPass<float>> acting_;       // one a worker, one step
   std::vector<BlockPass<float>> learning_;     // one a worker, a window

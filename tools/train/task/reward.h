@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reward of a policy step: scale * (max(sum of what is paid - ramp * sum of what is charged,
-// -late * debt) - late * fall). What is below is cut, so that no sum of prices makes lying down the
-// better choice: early at zero, late, when a fall costs more than a second of debts, lower. Where
+// The reward of a policy step: scale * (bounded(sum of what is paid - ramp * sum of what is
+// charged)
+// - what is always charged). The bound is for that no sum of prices makes lying down the better
+// choice: early it cuts at zero, later sums below -debt count ever less, but they count. Where
 // everything is cut, as it else is on soft soil at speed, no price is felt, and falling costs
 // nothing.
 //
-// A new term is a function here, its row in kPaid or kCharged, which also makes it a column of the
-// learning curve, and its settings in RewardSettings and kRewardSettings, with values in
-// training.toml.
+// A new term is a function here, its row in kPaid, kCharged or kAlwaysCharged, which also makes it
+// a column of the learning curve, and its settings in RewardSettings and kRewardSettings, with
+// values in training.toml.
 #pragma once
 
 #include <algorithm>
@@ -83,7 +84,8 @@ struct RewardSettings {
   double height_m = 0;         ///< of the base above the deformed ground
   double clearance = 0;        ///< per m^2 below clearance_m, times the root of the foot's speed
   double clearance_m = 0;      ///< of a foot in the air above the surface
-  double debt = 0;             ///< most that a step can cost but for a fall, at the end
+  double debt = 0;             ///< sums of a step below -debt count ever less, at the end
+  double joint_stop = 0;       ///< of a step with a joint past its stop, at the end
   double fall = 0;             ///< of a fall, at the end; besides what is not earned after it
 };
 
@@ -147,6 +149,7 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"clearance", &RewardSettings::clearance, 0.0, kNoLimit},
     {"clearance_m", &RewardSettings::clearance_m, 0.0, kNoLimit},
     {"debt", &RewardSettings::debt, 0.0, kNoLimit},
+    {"joint_stop", &RewardSettings::joint_stop, 0.0, kNoLimit},
     {"fall", &RewardSettings::fall, 0.0, kNoLimit},
 };
 
@@ -368,12 +371,30 @@ inline constexpr RewardTerm kCharged[] = {
     {"clearance_rh", clearance_charged<3>, 7},
 };
 
-inline constexpr std::size_t kRewardTerms = std::size(kPaid) + std::size(kCharged) + 1;
+// What is charged late, beside any bound.
 
-/// Name of term i, of those paid, then those charged, then the fall.
+inline double joint_stop_charged(const StepOutcome& s, const RewardSettings& r,
+                                 const CostRamp& ramp) {
+  return r.joint_stop * ramp.late * s.past_stop;
+}
+
+inline double fall_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
+  return s.fell ? r.fall * ramp.late : 0.0;
+}
+
+inline constexpr RewardTerm kAlwaysCharged[] = {
+    {"joint_stop", joint_stop_charged, 0},
+    {"fall", fall_charged, 0},
+};
+
+inline constexpr std::size_t kBoundedTerms = std::size(kPaid) + std::size(kCharged);
+inline constexpr std::size_t kRewardTerms = kBoundedTerms + std::size(kAlwaysCharged);
+
+/// Name of term i, of those paid, then those charged, then those always charged.
 constexpr const char* reward_term_name(std::size_t i) {
   if (i < std::size(kPaid)) return kPaid[i].name;
-  return i + 1 < kRewardTerms ? kCharged[i - std::size(kPaid)].name : "fall";
+  return i < kBoundedTerms ? kCharged[i - std::size(kPaid)].name
+                           : kAlwaysCharged[i - kBoundedTerms].name;
 }
 
 /// Sum of the terms; writes each of them to `values`.
@@ -393,11 +414,17 @@ double sum_of(const RewardTerm (&terms)[kCount], const StepOutcome& s, const Rew
 }
 
 /// Reward of a step, and what each term puts in: paid above zero, charged below; before the scale
-/// and before what is below zero is cut.
+/// and the bound.
 struct Reward {
   float value = 0;
   std::array<double, kRewardTerms> terms{};
 };
+
+/// `sum` down to -debt; from there it falls ever more slowly, at once as fast as `sum`.
+inline double bounded(double sum, double debt) {
+  if (sum >= -debt) return sum;
+  return debt > 0.0 ? -debt - debt * std::log1p((-debt - sum) / debt) : 0.0;
+}
 
 inline Reward reward(const StepOutcome& s, const RewardSettings& r, const CostRamp& ramp) {
   Reward out;
@@ -406,10 +433,11 @@ inline Reward reward(const StepOutcome& s, const RewardSettings& r, const CostRa
   const double charged = sum_of(kCharged, s, r, ramp, charged_terms);
   const double price = r.cost_weight * ramp.all;
   for (std::size_t i = 0; i < std::size(kCharged); ++i) charged_terms[i] *= -price;
-  const double fall = s.fell ? r.fall * ramp.late : 0.0;
-  out.terms.back() = -fall;
-  const double lowest = -ramp.late * r.debt;
-  out.value = static_cast<float>(r.scale * (std::max(paid - price * charged, lowest) - fall));
+  double* const always_terms = out.terms.data() + kBoundedTerms;
+  const double always = sum_of(kAlwaysCharged, s, r, ramp, always_terms);
+  for (std::size_t i = 0; i < std::size(kAlwaysCharged); ++i) always_terms[i] *= -1.0;
+  const double sum = bounded(paid - price * charged, ramp.late * r.debt);
+  out.value = static_cast<float>(r.scale * (sum - always));
   return out;
 }
 

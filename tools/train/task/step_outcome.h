@@ -27,6 +27,7 @@ struct StepOutcome {
   float power = 0;           ///< mechanical, signed, W
   float speed_squared = 0;   ///< sum over joints, rad^2/s^2
   float speed_excess = 0;  ///< squares of the joint speeds above a share of their limit, rad^2/s^2
+  float past_stop = 0;     ///< share of the ticks in which a joint was past its stop
   float slip = 0;          ///< sum over feet in contact of v_xy^2, m^2/s^2
   std::array<float, kNumLegs> air_s{}, stance_s{};  ///< since when each foot is in the air, loaded
   std::array<bool, kNumLegs> contact{};             ///< the foot is loaded

@@ -111,6 +111,7 @@ StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
   s.power = sums.power * kPerTick;
   s.speed_squared = sums.speed_squared * kPerTick;
   s.speed_excess = sums.speed_excess * kPerTick;
+  s.past_stop = sums.ticks_past_stop * kPerTick;
   s.slip = sums.slip * kPerTick;
   for (int l = 0; l < kNumLegs; ++l) {
     const bool was_loaded = e.unloaded_steps[l] < kUnloadedSteps;
@@ -141,8 +142,10 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
       sums.base_contact > 0.0f || sums.thigh_contact > 0.0f || s.up_z < tilt_end_cos_ || absurd;
   s.fell = fell;
   const int kind = is_rigid(env) ? 0 : 1;
-  rollout.reward(t, env) = 0.0f;
-  if (!absurd) {
+  if (absurd) {  // a fall, and nothing else that figures could tell
+    const double fall = fall_charged(s, config_.reward, cost_ramp_);
+    rollout.reward(t, env) = static_cast<float>(-config_.reward.scale * fall);
+  } else {
     const Reward earned = reward(s, config_.reward, cost_ramp_);
     rollout.reward(t, env) = earned.value;
     window.add_step(s, earned, kind, curriculum_.speed_mps, config_.reward);

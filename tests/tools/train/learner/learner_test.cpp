@@ -125,6 +125,32 @@ TEST(LearnerTest, SymmetryWeightPullsTheAnswersToBothImagesTogether) {
   EXPECT_LT(asymmetry(1.0), 0.5 * asymmetry(0.0));
 }
 
+TEST(LearnerTest, AnswersArePulledByWhatHasLongDifferedInTheMirror) {
+  LearnerConfig config = small_config();
+  Training now(1, 4, config);
+  config.symmetry_steps = 10;
+  Training lately(1, 4, config);
+  for (Training* training : {&now, &lately}) training->task.run_window();
+  const Rollout& rollout = lately.learner.rollout();
+  Matrix<float> expected = Matrix<float>::Zero(kActionSize, kSmallShape.envs);
+  int resets = 0;
+  for (int t = 0; t < kSmallShape.steps; ++t) {
+    const Matrix<float> differs =
+        now.learner.rollout().mean(t) - now.learner.rollout().symmetric_mean(t);
+    for (int env = 0; env < kSmallShape.envs; ++env) {
+      if (rollout.reset(t, env) != 0) {
+        expected.col(env).setZero();
+        resets += t > 0 ? 1 : 0;
+      }
+      expected.col(env) += 0.1f * (differs.col(env) - expected.col(env));
+    }
+    const Matrix<float> pulled_by = rollout.mean(t) - rollout.symmetric_mean(t);
+    EXPECT_LT((pulled_by - expected).cwiseAbs().maxCoeff(), 1e-6f);
+    EXPECT_GT(differs.cwiseAbs().maxCoeff(), 1e-3f);
+  }
+  EXPECT_GT(resets, 0);
+}
+
 TEST(LearnerTest, AveragedWeightsAreTheRunningMeanOfTheUpdates) {
   LearnerConfig config = small_config();
   config.average_updates = 3;

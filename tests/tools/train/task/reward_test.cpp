@@ -76,7 +76,7 @@ TEST(RewardTest, DriftCostsMuchMoreThanTheSwingOfTheGait) {
   EXPECT_LT(paid(drifting, r), paid(swinging, r) - 0.3);
 }
 
-TEST(RewardTest, CostsGrowWithTheirRampAndPricesMakeARewardNegativeOnlyLateAndByLessThanAFall) {
+TEST(RewardTest, CostsGrowWithTheirRampAndPricesMakeARewardNegativeOnlyLate) {
   const RewardSettings r = shipped_settings();
   StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
   s.power = 200.0f;
@@ -87,18 +87,41 @@ TEST(RewardTest, CostsGrowWithTheirRampAndPricesMakeARewardNegativeOnlyLateAndBy
   EXPECT_GT(all, dear);
   s.power = 1e6f;
   EXPECT_EQ(reward(s, r, {}).value, 0.0f);
-  EXPECT_FLOAT_EQ(reward(s, r, {.late = 1.0}).value, static_cast<float>(-r.scale * r.debt));
-  EXPECT_LT(kPolicyHz * r.debt, r.fall);
+  const float bottomless = reward(s, r, {.late = 1.0}).value;
+  EXPECT_LT(bottomless, static_cast<float>(-r.scale * r.debt));
+  EXPECT_LT(-bottomless, r.scale * r.fall / 10.0);
+}
+
+TEST(RewardTest, BelowTheDebtASumCountsEverLessButCounts) {
+  EXPECT_EQ(bounded(0.7, 0.6), 0.7);
+  EXPECT_EQ(bounded(-0.6, 0.6), -0.6);
+  EXPECT_NEAR(bounded(-0.6 - 1e-6, 0.6), -0.6 - 1e-6, 1e-11);  // no kink
+  EXPECT_NEAR(bounded(-1.2, 0.6), -0.6 * (1.0 + std::log(2.0)), 1e-15);
+  EXPECT_LT(bounded(-101.0, 0.6), bounded(-100.0, 0.6) - 1e-3);
+  EXPECT_EQ(bounded(-100.0, 0.0), 0.0);
+}
+
+TEST(RewardTest, LateAStruckStopCostsByTheShareOfTheStep) {
+  const RewardSettings r = shipped_settings();
+  const StepOutcome free = obedient(1.0f, 0.0f, 0.0f);
+  StepOutcome struck = free;
+  struck.past_stop = 0.25f;
+  const auto lost = [&](const CostRamp& ramp) {
+    return reward(free, r, ramp).value - reward(struck, r, ramp).value;
+  };
+  EXPECT_EQ(lost({.late = 0.0}), 0.0f);
+  EXPECT_NEAR(lost({.late = 1.0}), r.scale * 0.25 * r.joint_stop, 1e-6);
 }
 
 TEST(RewardTest, LateAFallCostsEvenWherePricesLeaveNothing) {
   const RewardSettings r = shipped_settings();
-  StepOutcome s = obedient(1.0f, 0.0f, 0.0f);
-  s.power = 1e6f;
-  s.fell = true;
-  EXPECT_FLOAT_EQ(reward(s, r, {.late = 1.0}).value,
-                  static_cast<float>(-r.scale * (r.debt + r.fall)));
-  EXPECT_EQ(reward(s, r, {.late = 0.0}).value, 0.0f);  // early it would quicken the strides
+  StepOutcome stands = obedient(1.0f, 0.0f, 0.0f);
+  stands.power = 1e6f;
+  StepOutcome fell = stands;
+  fell.fell = true;
+  const CostRamp late{.late = 1.0};
+  EXPECT_NEAR(reward(stands, r, late).value - reward(fell, r, late).value, r.scale * r.fall, 1e-5);
+  EXPECT_EQ(reward(fell, r, {.late = 0.0}).value, 0.0f);  // early it would quicken the strides
 }
 
 TEST(RewardTest, PriorFadesToExactlyNothing) {
