@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::uint64_t kTicksPerQuestion = 40;
 constexpr double kBusOff_s = 0.1;
+constexpr double kHand_radps = 1.0;
 
 const char* name_of(EmulatedDrive::State state) noexcept {
   switch (state) {
@@ -56,8 +57,9 @@ Bench::Bench(const ProcessConfig& config, const std::string& imu_device,
     drives_.emplace_back(hardware_.drives[j], hardware_.drive_timeout_s);
     drives_[j].measure(robot_.state().q[j], robot_.state().qd[j]);
   }
-  std::stable_sort(script_.begin(), script_.end(),
-                   [](const TimedFault& a, const TimedFault& b) { return a.at_s < b.at_s; });
+  std::stable_sort(script_.begin(), script_.end(), [](const TimedFault& a, const TimedFault& b) {
+    return std::pair(!a.from_start, a.at_s) < std::pair(!b.from_start, b.at_s);
+  });
   for (const TimedFault& fault : script_) {
     if (fault.kind == BenchFault::kQueueFull) set_queue(buses_[fault.first].interface, 16);
   }
@@ -144,13 +146,13 @@ void Bench::make_faults(double now_s) {
   }
   while (made_ < script_.size()) {
     const TimedFault& fault = script_[made_];
-    if (fault.at_s >= 0.0 && (enabled_at_s_ < 0.0 || now_s < enabled_at_s_ + fault.at_s)) return;
+    if (!fault.from_start && enabled_at_s_ < 0.0) return;
+    if (now_s < (fault.from_start ? 0.0 : enabled_at_s_) + fault.at_s) return;
     make(fault, now_s);
     ++made_;
     made_at_s_.push_back(now_s);
     report_.faults.emplace_back();
     report_.faults.back().text = fault.text;
-    report_.faults.back().at_s = fault.at_s;
   }
 }
 
@@ -177,6 +179,10 @@ void Bench::make(const TimedFault& fault, double now_s) {
       break;
     case BenchFault::kJumps:
       faults.offset_rad += fault.value;
+      break;
+    case BenchFault::kTurns:
+      on_stand_ = true;
+      hand_target_rad_[fault.first] += fault.value;
       break;
     case BenchFault::kCode:
       faults.code = static_cast<std::uint8_t>(fault.value);
@@ -230,9 +236,13 @@ void Bench::step(double now_s) {
       figures.largest_torque_nm = std::max(figures.largest_torque_nm, std::fabs(t));
     }
   }
-  robot_.step(torque_nm);
+  if (!on_stand_) robot_.step(torque_nm);
   for (int j = 0; j < kNumJoints; ++j) {
-    drives_[j].measure(robot_.state().q[j], robot_.state().qd[j]);
+    const double most = kHand_radps * kControlPeriod_s;
+    const double turned = std::clamp(hand_target_rad_[j] - hand_rad_[j], -most, most);
+    hand_rad_[j] += turned;
+    drives_[j].measure(robot_.state().q[j] + hand_rad_[j],
+                       robot_.state().qd[j] + turned / kControlPeriod_s);
   }
   if (tick_ % static_cast<std::uint64_t>(kControlHz / imu_.base_rate_hz()) == 0) {
     imu_.listen();

@@ -60,6 +60,8 @@ class Bench {
   std::vector<pollfd> polled_;  // for ppoll, of buses_
   std::vector<EmulatedDrive> drives_;
   JointArray<double> reboot_end_s_{};
+  JointArray<double> hand_rad_{}, hand_target_rad_{};  // by how much hands have turned the joints
+  bool on_stand_ = false;                              // hands work there; nothing else moves
   EmulatedRobot robot_;
   ImuLine imu_;
 

@@ -14,7 +14,6 @@ namespace sandrunner::hil {
 /// What the drives did after a fault was made.
 struct FaultFigures {
   std::string text;
-  double at_s = 0.0;  ///< since all drives were first enabled together; negative: from the start
   /// Until no drive that still hears its host had a stiffness or a torque of its own ...
   std::optional<double> damped_after_s;
   std::optional<double> passive_after_s;  ///< ... until no drive at all had

@@ -24,7 +24,7 @@ struct Kind {
   const char* help;
 };
 
-constexpr std::array<Kind, 17> kKinds = {{
+constexpr std::array<Kind, 18> kKinds = {{
     {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive hears and says nothing"},
     {BenchFault::kReboot, "reboot", Takes::kJointAndNumber, "JOINT S: off, and back after S s"},
     {BenchFault::kLoses, "loses", Takes::kJointAndNumber, "JOINT N: one of N replies is lost"},
@@ -32,6 +32,7 @@ constexpr std::array<Kind, 17> kKinds = {{
     {BenchFault::kScaled, "scaled", Takes::kJointAndNumber,
      "JOINT X: its numbers span X times what is configured (MIT layout)"},
     {BenchFault::kJumps, "jumps", Takes::kJointAndNumber, "JOINT RAD: its encoder jumps"},
+    {BenchFault::kTurns, "turns", Takes::kJointAndNumber, "JOINT RAD: a hand turns it, on a stand"},
     {BenchFault::kCode, "code", Takes::kJointAndNumber, "JOINT N: a fault of its own"},
     {BenchFault::kHot, "hot", Takes::kJointAndNumber, "JOINT DEGC: its temperature"},
     {BenchFault::kBusOff, "bus-off", Takes::kBus, "INTERFACE: off for 0.1 s"},
@@ -59,8 +60,8 @@ class Reader {
     if (!(words_ >> word)) fail("no more", expected);
     return word;
   }
-  double number(const char* what) {
-    const std::string text = word(what);
+  double number(const char* what) { return number(word(what), what); }
+  double number(const std::string& text, const char* what) {
     std::istringstream in(text);
     double value = 0.0;
     if (!(in >> value) || !in.eof()) fail("'" + text + "'", what);
@@ -102,14 +103,13 @@ TimedFault read_fault(const std::string& text, const HardwareConfig& hardware,
   Reader reader(text, hardware, robot);
   TimedFault fault;
   fault.text = text;
-  const bool from_start = text.starts_with("start ");
-  if (from_start) {
-    reader.word("");
-    fault.at_s = -1.0;
-  } else {
-    fault.at_s = reader.number("a time in s, or start");
-    if (!(fault.at_s >= 0.0)) reader.fail("a negative time", "s, or start");
+  const char* const times = "a time in s, start, or start+S";
+  const std::string time = reader.word(times), after = "start+";
+  fault.from_start = time == "start" || time.starts_with(after);
+  if (time != "start") {
+    fault.at_s = reader.number(fault.from_start ? time.substr(after.size()) : time, times);
   }
+  if (!(fault.at_s >= 0.0)) reader.fail("a negative time", times);
   const std::string name = reader.word("a kind of fault");
   const auto kind =
       std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& k) { return name == k.name; });

@@ -17,6 +17,7 @@ enum class BenchFault : std::uint8_t {
   kSwapped,    ///< two drives have each other's identifier
   kScaled,     ///< a drive's numbers span so many times what is configured
   kJumps,      ///< a drive's encoder jumps by so much, rad
+  kTurns,      ///< on a stand, where nothing else moves: a hand turns a joint by so much, rad
   kCode,       ///< a drive reports this fault of its own
   kHot,        ///< a drive has this temperature, degrees C
   kBusOff,     ///< a bus goes off, and is on again after 0.1 s
@@ -33,14 +34,16 @@ enum class BenchFault : std::uint8_t {
 /// One line of a script.
 struct TimedFault {
   std::string text;  ///< as it was written
-  /// s since all drives were first enabled together; negative: from the start.
+  /// s since all drives were first enabled together, or since the bench began.
   double at_s = 0.0;
+  bool from_start = false;
   BenchFault kind = BenchFault::kDead;
   int first = 0, second = 0;  ///< joint or bus; the other joint
   double value = 0.0;
 };
 
-/// Reads "T KIND [JOINT|INTERFACE] [JOINT|NUMBER]", T a number or "start". Throws InputError.
+/// Reads "T KIND [JOINT|INTERFACE] [JOINT|NUMBER]", T a number, "start" or "start+NUMBER". Throws
+/// InputError.
 TimedFault read_fault(const std::string& text, const HardwareConfig& hardware,
                       const RobotDescription& robot);
 

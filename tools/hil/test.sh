@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/hil/test.sh short|walk|faults|cost|record|parallel|full [BIN]: the controller against the bench in the emulated
+# tools/hil/test.sh short|walk|faults|cost|check|record|parallel|full [BIN]: the controller against the bench in the emulated
 # machine (qemu.sh), with the programs in BIN (default build/release/bin); judges, and prints what was measured.
 #
 #   short     what tools/test.sh runs: tests that need CAN in the kernel, both protocols walk 2 s, some fault runs
 #   walk      both protocols in both modes walk 10 s at 1 kHz, at the speed of the same program in its own simulator
 #   faults    the whole list of fault runs
 #   cost      what a control tick costs with twelve drives on four buses in torque mode; its system calls
+#   check     `sandrunner check --move`, each joint turned by a hand: one has the wrong sign, two are swapped
 #   record    a recording made over CAN, replayed here
 #   parallel  two processors in the host's time: functional, nothing of time is judged
 #   full      all of these
@@ -62,6 +63,28 @@ cost)
     awk '/^  (sensors|control step|drives or)/ { p += \$(NF - 1); most += \$NF }
       END { printf \"a tick at 4 kHz, 12 frames in, 12 out: p99.9 %.0f us, at most %.0f us of 250\\n\", p, most }' /tmp/log"
   ;;
+check)
+  # The file of the check has the wrong sign for RF_HAA; at the robot two drives have each other's id. A joint has 1.4 s: Enter,
+  # after 0.3 s the hand, which takes 0.5 s, after 1.2 s Enter.
+  guest check 900 'joints=$(sed -n "s/^joint = \"\(.*\)\"/\1/p" moteus.toml)
+    sed "s|^device = \"[^\"]*\"|device = \"/tmp/imu\"|" moteus.toml >robot.toml
+    awk "/RF_HAA/ { wrong = 1 } /^sign/ && wrong { sub(1, -1); wrong = 0 } { print }" robot.toml >/tmp/check.toml
+    set -- --fault "start swapped LH_HFE LH_KFE"
+    t=43
+    for joint in $joints; do
+      set -- "$@" --fault "start+$((t / 10)).$((t % 10)) turns $joint 0.5"
+      t=$((t + 14))
+    done
+    sandrunner-hil --hardware robot.toml "$@" &
+    { sleep 4; for joint in $joints; do echo; sleep 1.2; echo; sleep 0.2; done; } |
+      sandrunner check /tmp/check.toml --move >/out/check.txt 2>/out/asked.txt
+    echo "exit code $?"
+    cat /out/check.txt' | tee "$out/check.log"
+  report=$out/check/check.txt
+  grep -q 'exit code 1' "$out/check.log" && grep -q 'RF_HAA .* the other way: set sign = 1' "$report" &&
+    grep -q 'LH_HFE .*: the drive of LH_KFE .* swap them' "$report" &&
+    grep -q 'LH_KFE .*: the drive of LH_HFE .* swap them' "$report" && (($(grep -c 'as it should' "$report") == 9))
+  ;;
 record)
   guest record 900 "sandrunner-hil --hardware moteus.toml --set hardware.imu.device=/tmp/imu & sleep 1;
     sandrunner --hardware moteus.toml --arm --command 1,0,0 --duration 2 --set hardware.imu.device=/tmp/imu \
@@ -75,13 +98,13 @@ parallel)
     { sandrunner-hil runs --only walks-moteus --walk 2 --out /out || echo 'not judged: this machine is too slow'; }"
   ;;
 full)
-  for each in short walk faults cost record parallel; do
+  for each in short walk faults cost check record parallel; do
     echo "== $each"
     bash "${BASH_SOURCE[0]}" "$each" "$bin"
   done
   ;;
 *)
-  echo "test.sh: found '$lane', expected short, walk, faults, cost, record, parallel or full" >&2
+  echo "test.sh: found '$lane', expected short, walk, faults, cost, check, record, parallel or full" >&2
   exit 2
   ;;
 esac

@@ -30,13 +30,18 @@ TEST(FaultScriptTest, SaysWhenWhatAndWhere) {
   EXPECT_EQ(jump.value, -0.25);
   EXPECT_EQ(fault("0 bus-off can2").first, 2);
   const TimedFault swapped = fault("start swapped LF_HFE LF_KFE");
-  EXPECT_LT(swapped.at_s, 0.0);
+  EXPECT_TRUE(swapped.from_start);
+  EXPECT_EQ(swapped.at_s, 0.0);
   EXPECT_EQ(swapped.second, 2);
+  const TimedFault turned = fault("start+2.5 turns LF_HFE -0.5");
+  EXPECT_TRUE(turned.from_start);
+  EXPECT_EQ(turned.at_s, 2.5);
+  EXPECT_EQ(turned.value, -0.5);
 }
 
 TEST(FaultScriptTest, WhatItDoesNotUnderstandIsNamed) {
   EXPECT_EQ(refusal("soon silent LF_KFE"),
-            "--fault 'soon silent LF_KFE': found 'soon', expected a time in s, or start");
+            "--fault 'soon silent LF_KFE': found 'soon', expected a time in s, start, or start+S");
   EXPECT_EQ(refusal("1 bus-off can9"),
             "--fault '1 bus-off can9': found 'can9', expected one of can0, can1, can2, can3");
   EXPECT_EQ(refusal("1 jumps LF_KFE"),
@@ -44,6 +49,9 @@ TEST(FaultScriptTest, WhatItDoesNotUnderstandIsNamed) {
   EXPECT_EQ(refusal("1 dead now"), "--fault '1 dead now': found 'now', expected no more");
   EXPECT_NE(refusal("1 broken"), "");
   EXPECT_NE(refusal("-1 dead"), "");
+  EXPECT_NE(refusal("start+ dead"), "");
+  EXPECT_NE(refusal("start5 dead"), "");
+  EXPECT_NE(refusal("starting dead"), "");
   EXPECT_NE(refusal("1 silent LF_XYZ"), "");
 }
 
