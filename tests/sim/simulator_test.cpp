@@ -43,11 +43,6 @@ void run(Simulator& simulator, const Robot& robot, int ticks) {
     simulator.write(walking(robot, simulator.state().tick));
   }
 }
-std::uint64_t hash_of(const Simulator& simulator) {
-  StateHash hash;
-  simulator.add_to(hash);
-  return hash.value();
-}
 
 TEST(SimulatorTest, StandsAtRestInTheNominalPoseWithSeedZero) {
   const Robot robot = load_raibo();

@@ -8,12 +8,6 @@
 namespace sandrunner::sim {
 namespace {
 
-std::uint64_t hash_of(const Simulator& simulator) {
-  StateHash hash;
-  simulator.add_to(hash);
-  return hash.value();
-}
-
 /// Stands on joints that sink a little from tick to tick: no two commands are the same.
 SafeCommand command_at(const Robot& robot, std::uint64_t tick) {
   JointArray<double> target = robot.nominal_rad;
@@ -21,7 +15,7 @@ SafeCommand command_at(const Robot& robot, std::uint64_t tick) {
   return pass_gate(pd_command(target, 80.0, 1.0));
 }
 
-void run(Simulator& simulator, const Robot& robot, int ticks) {
+void sink(Simulator& simulator, const Robot& robot, int ticks) {
   SensorFrame frame;
   for (int i = 0; i < ticks; ++i) {
     simulator.read(simulator.state().tick, frame);
@@ -47,8 +41,8 @@ TEST(SimulatorSkipTest, SkippedTicksAreTicksUnderTheHeldCommand) {
     config.sensor_delay_ticks = sensor;
     config.actuator_delay_ticks = actuator;
     Simulator stalled(robot, config), punctual(robot, config);
-    run(stalled, robot, 80);
-    run(punctual, robot, 80);
+    sink(stalled, robot, 80);
+    sink(punctual, robot, 80);
     const SafeCommand held = command_at(robot, 79);
     stalled.skip(skipped, held);
     SensorFrame frame, late;
@@ -64,8 +58,8 @@ TEST(SimulatorSkipTest, SkippedTicksAreTicksUnderTheHeldCommand) {
       punctual.read(punctual.state().tick, frame);
       ASSERT_EQ(late.tick, frame.tick);
       ASSERT_EQ(late.joints.position_rad, frame.joints.position_rad) << i;
-      run(stalled, robot, 1);
-      run(punctual, robot, 1);
+      sink(stalled, robot, 1);
+      sink(punctual, robot, 1);
     }
     EXPECT_EQ(hash_of(stalled), hash_of(punctual));
   }
@@ -78,7 +72,7 @@ TEST(SimulatorSkipTest, NothingSkippedIsNothingDone) {
   SimulatorConfig config = read_simulator_config(tree, robot);
   config.sensor_delay_ticks = config.actuator_delay_ticks = 5;
   Simulator simulator(robot, config);
-  run(simulator, robot, 10);
+  sink(simulator, robot, 10);
   const std::uint64_t before = hash_of(simulator);
   simulator.skip(0, command_at(robot, 10));
   EXPECT_EQ(hash_of(simulator), before);

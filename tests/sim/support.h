@@ -12,6 +12,7 @@
 #include "sim/ground/terrain_description.h"
 #include "sim/lanes/random.h"
 #include "sim/robot/robot_model.h"
+#include "sim/simulator.h"
 #include "sim/step/robot_step.h"
 #include "tests/support/all_joints.h"
 
@@ -182,5 +183,11 @@ struct Bench {
   StepReport<double> report;
   RobotStepper<double> stepper;
 };
+
+inline std::uint64_t hash_of(const Simulator& simulator) {
+  StateHash hash;
+  simulator.add_to(hash);
+  return hash.value();
+}
 
 }  // namespace sandrunner::sim

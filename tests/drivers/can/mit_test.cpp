@@ -5,18 +5,15 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "drivers/can/mit_models.h"
 #include "tests/drivers/can/frame_bytes.h"
 #include "tests/drivers/can/random_frame.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 MitDrive drive_of(const char* model, int motor_id = 1, int reply_id = 0) {
   const MitModel* const found = find_mit_model(model);
@@ -254,7 +251,7 @@ TEST(MitTest, ValuesBeyondTheLimitsAreClamped) {
 
 TEST(MitTest, NothingIsMadeOfValuesThatAreNotFinite) {
   const MitDrive drive = drive_of(MitVariant::kDamiao);
-  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
+  for (const double bad : {kNan, kInf, -kInf}) {
     for (int field = 0; field < 5; ++field) {
       std::array<double, 5> v{};
       v[field] = bad;
@@ -389,8 +386,8 @@ TEST(MitTest, ImpossibleDrivesAreRefused) {
   EXPECT_EQ(status([](MitDrive& d) { d.motor_id = 16; }), MitStatus::kBadDrive);
   EXPECT_EQ(status([](MitDrive& d) { d.reply_id = 0x800; }), MitStatus::kBadDrive);
   EXPECT_EQ(status([](MitDrive& d) { d.limits.torque_nm = 0.0; }), MitStatus::kBadDrive);
-  EXPECT_EQ(status([](MitDrive& d) { d.limits.position_rad = kNaN; }), MitStatus::kBadDrive);
-  EXPECT_EQ(status([](MitDrive& d) { d.limits.kd_nmsprad = kInfinity; }), MitStatus::kBadDrive);
+  EXPECT_EQ(status([](MitDrive& d) { d.limits.position_rad = kNan; }), MitStatus::kBadDrive);
+  EXPECT_EQ(status([](MitDrive& d) { d.limits.kd_nmsprad = kInf; }), MitStatus::kBadDrive);
 }
 
 TEST(MitTest, RandomFramesAreReadOrRefused) {

@@ -5,18 +5,16 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "tests/drivers/can/frame_bytes.h"
 #include "tests/drivers/can/random_frame.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
 
 namespace reg = moteus_register;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string item_text(const MoteusItem& item) {
   constexpr std::array kNames = {"int8", "int16", "int32", "float"};
@@ -186,7 +184,7 @@ TEST(MoteusFrameTest, MostNegativeIntegerAndNotANumberAreUnset) {
   for (const Row& row :
        {Row{MoteusFormat::kInt8, "012080"}, Row{MoteusFormat::kInt16, "05200080"},
         Row{MoteusFormat::kInt32, "092000000080"}, Row{MoteusFormat::kFloat, "0d200000c07f"}}) {
-    for (const double unset : {kNaN, std::numeric_limits<double>::infinity()}) {
+    for (const double unset : {kNan, kInf}) {
       CanFrame frame;
       MoteusWriter writer(frame);
       writer.values(MoteusOperation::kWrite, row.format, reg::kCommandPosition, std::array{unset});

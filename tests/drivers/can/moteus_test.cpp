@@ -5,12 +5,12 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 
 #include "tests/drivers/can/frame_bytes.h"
 #include "tests/drivers/can/random_frame.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
@@ -18,7 +18,6 @@ namespace {
 namespace reg = moteus_register;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // What the golden frames ask for.
 constexpr MoteusRead kQuery[] = {{reg::kMode, 1, MoteusFormat::kInt8},
@@ -188,7 +187,7 @@ TEST(MoteusTest, CommandsThatMakeNoSenseAreRefused) {
     return encode_moteus_position(drive_of(), command, {}, frame);
   };
   using C = MoteusCommand;
-  for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {kNan, kInf}) {
     EXPECT_EQ(status([&](C& c) { c.position_rad = bad; }), MoteusStatus::kNotFinite);
     EXPECT_EQ(status([&](C& c) { c.velocity_radps = bad; }), MoteusStatus::kNotFinite);
     EXPECT_EQ(status([&](C& c) { c.kp_nmprad = bad; }), MoteusStatus::kNotFinite);
@@ -203,8 +202,8 @@ TEST(MoteusTest, CommandsThatMakeNoSenseAreRefused) {
       << "would be sent as 0, the drive's default";
   EXPECT_EQ(status([](C& c) { c.watchdog_s = 31.0; }), MoteusStatus::kBadValue);
   CanFrame frame;
-  EXPECT_EQ(encode_moteus_torque(drive_of(), kNaN, 0.0, {}, frame), MoteusStatus::kNotFinite);
-  EXPECT_EQ(encode_moteus_torque(drive_of(), 0.0, kNaN, {}, frame), MoteusStatus::kNotFinite);
+  EXPECT_EQ(encode_moteus_torque(drive_of(), kNan, 0.0, {}, frame), MoteusStatus::kNotFinite);
+  EXPECT_EQ(encode_moteus_torque(drive_of(), 0.0, kNan, {}, frame), MoteusStatus::kNotFinite);
   EXPECT_EQ(encode_moteus_torque(drive_of(), 0.0, 31.0, {}, frame), MoteusStatus::kBadValue);
   MoteusDrive nobody = drive_of();
   nobody.id = 0;

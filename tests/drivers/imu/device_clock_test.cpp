@@ -10,8 +10,8 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kStart_ns = 1000 * kMs * 1000;
+constexpr std::int64_t kMilli_ns = 1'000'000;
+constexpr std::int64_t kStart_ns = 1000 * kMilli_ns * 1000;
 
 /// Errors of the sample times, after the first second.
 struct Errors {
@@ -28,9 +28,9 @@ Errors simulate(double drift_ppm,
   Errors errors;
   int count = 0;
   for (int i = 0; i < 30'000; ++i) {
-    const std::int64_t taken_ns = kStart_ns + i * 2 * kMs;
-    const auto device_ns =
-        static_cast<std::uint64_t>(77 * kMs + std::llround(i * 2e6 * (1.0 + drift_ppm * 1e-6)));
+    const std::int64_t taken_ns = kStart_ns + i * 2 * kMilli_ns;
+    const auto device_ns = static_cast<std::uint64_t>(
+        77 * kMilli_ns + std::llround(i * 2e6 * (1.0 + drift_ppm * 1e-6)));
     const std::int64_t host_ns = taken_ns + latency_ns(taken_ns, random);
     const std::int64_t estimate_ns = clock.update(device_ns, host_ns);
     EXPECT_LE(estimate_ns, host_ns);
@@ -75,9 +75,10 @@ TEST(DeviceClockTest, BurstOfLateReadsChangesAlmostNothing) {
   // Every second, for 0.1 s, 16 ms more; and once, a read that is 0.9 s late.
   for (const double drift_ppm : {-50.0, 50.0}) {
     const Errors errors = simulate(drift_ppm, [](std::int64_t taken_ns, std::mt19937& random) {
-      const std::int64_t phase_ns = taken_ns % (1000 * kMs);
-      const bool once = taken_ns == kStart_ns + 20'000 * kMs;
-      return poll_latency(random) + (phase_ns < 100 * kMs ? 16 * kMs : 0) + (once ? 900 * kMs : 0);
+      const std::int64_t phase_ns = taken_ns % (1000 * kMilli_ns);
+      const bool once = taken_ns == kStart_ns + 20'000 * kMilli_ns;
+      return poll_latency(random) + (phase_ns < 100 * kMilli_ns ? 16 * kMilli_ns : 0) +
+             (once ? 900 * kMilli_ns : 0);
     });
     EXPECT_LT(errors.most_us, 120.0);
     EXPECT_EQ(errors.restarts, 0U);
@@ -97,18 +98,20 @@ TEST(DeviceClockTest, HostClockThatIsSlewedIsFollowed) {
 TEST(DeviceClockTest, DeviceThatWasRestartedIsFittedAnew) {
   DeviceClock clock;
   for (std::int64_t i = 0; i < 100; ++i) {
-    clock.update(static_cast<std::uint64_t>(500 + i * 2) * kMs, kStart_ns + i * 2 * kMs);
+    clock.update(static_cast<std::uint64_t>(500 + i * 2) * kMilli_ns,
+                 kStart_ns + i * 2 * kMilli_ns);
   }
-  const std::int64_t again_ns = kStart_ns + 900 * kMs;
-  EXPECT_EQ(clock.update(3 * kMs, again_ns), again_ns);
-  EXPECT_EQ(clock.update(5 * kMs, again_ns + 3 * kMs), again_ns + 2 * kMs + 2 * kMs / 1666);
+  const std::int64_t again_ns = kStart_ns + 900 * kMilli_ns;
+  EXPECT_EQ(clock.update(3 * kMilli_ns, again_ns), again_ns);
+  EXPECT_EQ(clock.update(5 * kMilli_ns, again_ns + 3 * kMilli_ns),
+            again_ns + 2 * kMilli_ns + 2 * kMilli_ns / 1666);
   EXPECT_EQ(clock.restarts(), 1U);
 }
 
 TEST(DeviceClockTest, DeviceClockThatJumpsAheadIsFittedAnew) {
   DeviceClock clock;
-  clock.update(500 * kMs, kStart_ns);
-  EXPECT_EQ(clock.update(9000 * kMs, kStart_ns + 2 * kMs), kStart_ns + 2 * kMs);
+  clock.update(500 * kMilli_ns, kStart_ns);
+  EXPECT_EQ(clock.update(9000 * kMilli_ns, kStart_ns + 2 * kMilli_ns), kStart_ns + 2 * kMilli_ns);
   EXPECT_EQ(clock.restarts(), 1U);
 }
 
@@ -116,11 +119,11 @@ TEST(DeviceClockTest, DeviceClockThatStoodIsFittedAnewAfterASecond) {
   DeviceClock clock;
   std::int64_t error_ns = 0;
   for (std::int64_t i = 0; i < 1000; ++i) {
-    const std::int64_t taken_ns = kStart_ns + i * 2 * kMs;
-    const std::int64_t stood_ns = i >= 100 ? 300 * kMs : 0;
+    const std::int64_t taken_ns = kStart_ns + i * 2 * kMilli_ns;
+    const std::int64_t stood_ns = i >= 100 ? 300 * kMilli_ns : 0;
     error_ns = clock.update(static_cast<std::uint64_t>(taken_ns - stood_ns), taken_ns) - taken_ns;
     EXPECT_LE(error_ns, 0);
-    EXPECT_GE(error_ns, i >= 100 && i < 610 ? -300 * kMs : 0);
+    EXPECT_GE(error_ns, i >= 100 && i < 610 ? -300 * kMilli_ns : 0);
   }
   EXPECT_EQ(error_ns, 0);
   EXPECT_EQ(clock.restarts(), 1U);
@@ -131,7 +134,7 @@ TEST(DeviceClockTest, TimesNeverGoBack) {
   std::mt19937 random(5);
   std::int64_t last_ns = 0;
   for (std::int64_t i = 0; i < 2000; ++i) {
-    const std::int64_t host_ns = kStart_ns + i * 2 * kMs;
+    const std::int64_t host_ns = kStart_ns + i * 2 * kMilli_ns;
     const auto wild = static_cast<std::uint64_t>(random()) << (random() % 33);
     const std::int64_t sample_ns =
         clock.update(i % 3 == 0 ? wild : static_cast<std::uint64_t>(host_ns), host_ns);

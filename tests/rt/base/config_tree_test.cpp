@@ -12,11 +12,10 @@
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 ConfigTree from(const std::string& toml, const std::string& origin = "a.toml") {
   ConfigTree config;
@@ -235,7 +234,7 @@ TEST(ConfigTreeTest, ElementsOutliveTheTree) {
 void ask_all(ConfigTree& config) {
   config.number("b.tenth", 0.1, 0.0, 1.0);
   config.number("b.big", 1e6, 0.0, kInf);
-  config.number("b.none", std::numeric_limits<double>::quiet_NaN(), 0.0, 1.0);
+  config.number("b.none", kNan, 0.0, 1.0);
   config.integer("a.count", 4, 0, 9);
   config.flag("a.on", true);
   config.text("name", "x\ty \xce\xbc");

@@ -3,19 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "fake_robot.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kTicksIn2ms = 8;
 
 std::array<double, 4> tilted(double angle_deg) {

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <set>
 #include <string>
 #include <type_traits>
 
 #include "fake_robot.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
@@ -22,9 +22,6 @@ static_assert(!std::is_aggregate_v<SafeCommand>);
 static_assert(!std::is_assignable_v<SafeCommand&, const JointCommand&>);
 static_assert(std::is_default_constructible_v<SafeCommand>);
 static_assert(std::is_copy_constructible_v<SafeCommand>);
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 class SafetyGateTest : public testing::Test {
  protected:
@@ -413,7 +410,7 @@ TEST_F(SafetyGateTest, FaultOfADriveIsAFaultInEveryModeAndNamesItsJoint) {
 }
 
 TEST_F(SafetyGateTest, EveryJointAtFaultIsNamedUntilTheNextLatch) {
-  sensors.joints.velocity_radps[4] = std::numeric_limits<double>::quiet_NaN();
+  sensors.joints.velocity_radps[4] = kNan;
   judge(Mode::kWalk);
   sensors.joints.velocity_radps[4] = 0.0;
   sensors.joints.velocity_radps[9] = 1e3;

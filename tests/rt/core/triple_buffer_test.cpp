@@ -72,8 +72,8 @@ TEST(TripleBufferTest, ReaderThatPreemptsTheWriterOnItsProcessorFinishes) {
   ASSERT_EQ(setrlimit(RLIMIT_RTTIME, &guard), 0);
 
   constexpr int kReads = 300;
-  using Payload = std::array<std::uint64_t, 50>;
-  const auto buffer = std::make_unique<TripleBuffer<Payload>>();
+  using LongPayload = std::array<std::uint64_t, 50>;
+  const auto buffer = std::make_unique<TripleBuffer<LongPayload>>();
   std::atomic<bool> end{false}, permitted{true};
   int reads = 0, fresh = 0, torn = 0, backwards = 0;
   std::thread reader([&] {
@@ -85,7 +85,7 @@ TEST(TripleBufferTest, ReaderThatPreemptsTheWriterOnItsProcessorFinishes) {
     const auto start = std::chrono::steady_clock::now();
     for (std::uint64_t last = 0; reads < kReads; ++reads) {
       std::this_thread::sleep_until(start + std::chrono::milliseconds(reads));
-      const Payload& payload = buffer->read();
+      const LongPayload& payload = buffer->read();
       const std::uint64_t number = buffer->sequence();
       torn += std::count(payload.begin(), payload.end(), number) != 50;
       backwards += number < last;
@@ -96,7 +96,7 @@ TEST(TripleBufferTest, ReaderThatPreemptsTheWriterOnItsProcessorFinishes) {
   });
   std::thread writer([&] {
     if (!become_realtime(cpu, 10)) return;
-    Payload payload;
+    LongPayload payload;
     for (std::uint64_t n = 1; !end; ++n) {
       payload.fill(n);
       buffer->write(payload);

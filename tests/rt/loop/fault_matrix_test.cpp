@@ -8,16 +8,14 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "disturbed_loop.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using FaultMatrixTest = EveryModeTest;
 
@@ -28,7 +26,7 @@ struct FaultCase {
   std::function<void(DisturbedLoop&)> each_tick = nullptr;  ///< before it
 };
 
-std::vector<FaultCase> cases() {
+std::vector<FaultCase> every_case() {
   const auto sensor = [](Fault fault, std::uint64_t within_ticks, auto spoil) {
     return FaultCase{fault, within_ticks, [spoil](DisturbedLoop& p) { p.robot.spoil = spoil; }};
   };
@@ -86,7 +84,7 @@ TEST_F(FaultMatrixTest, EveryFaultInEveryModeOnlyBrakesInTimeAndStaysHarmless) {
   double worst_torque_nm = 0.0, worst_speed_radps = 0.0;
   int runs = 0;
   const double limit_nm = config.robot.model.torque_limit_nm[0];
-  for (const FaultCase& c : cases()) {
+  for (const FaultCase& c : every_case()) {
     const FaultRow& row = kFaultTable[std::countr_zero(static_cast<std::uint64_t>(c.fault))];
     std::uint64_t slowest_ticks = 0;
     double torque_nm = 0.0, speed_radps = 0.0;
@@ -140,7 +138,7 @@ TEST_F(FaultMatrixTest, EveryFaultInEveryModeOnlyBrakesInTimeAndStaysHarmless) {
 
 TEST_F(FaultMatrixTest, EveryFaultOfTheTableHasACase) {
   std::uint64_t covered = static_cast<std::uint64_t>(Fault::kNonFiniteOutput);  // faults_test.cpp
-  for (const FaultCase& c : cases()) covered |= static_cast<std::uint64_t>(c.fault);
+  for (const FaultCase& c : every_case()) covered |= static_cast<std::uint64_t>(c.fault);
   EXPECT_EQ(covered, (std::uint64_t{1} << kNumFaults) - 1);
 }
 

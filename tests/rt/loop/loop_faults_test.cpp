@@ -8,12 +8,11 @@
 
 #include "rt/loop/lockstep.h"
 #include "tests/rt/support.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kTicksIn2ms = 8;
 constexpr std::uint64_t kDisturbed_tick = 130;
 

@@ -15,9 +15,9 @@ constexpr OperatorId kPage{1}, kPeer{2};
 Twist forward(double vx_mps) { return {.linear_mps = {vx_mps, 0.0, 0.0}}; }
 
 /// A controller that does what it is asked, in a thread of its own, and stands.
-class Controller {
+class WillingController {
  public:
-  explicit Controller(RemoteOperator& op)
+  explicit WillingController(RemoteOperator& op)
       : thread_([this, &op] {
           Mode mode = Mode::kStand;
           for (std::uint64_t tick = 0; !end_; ++tick) {
@@ -31,7 +31,7 @@ class Controller {
         }) {
     while (ticks_ < 2) std::this_thread::yield();
   }
-  ~Controller() {
+  ~WillingController() {
     end_ = true;
     thread_.join();
   }
@@ -45,7 +45,7 @@ class Controller {
 struct OperatorDeskTest : testing::Test {
   RemoteOperator op{1200};
   OperatorDesk desk{op, 60.0, true};  // a velocity holds for longer than any test takes
-  Controller controller{op};
+  WillingController controller{op};
 };
 
 TEST_F(OperatorDeskTest, OneOfTwoOperatorsHoldsTheVelocityAndTheOtherIsTold) {

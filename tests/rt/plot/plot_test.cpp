@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "tests/rt/plot/picture.h"
+#include "tests/support/not_finite.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(PlotTest, TicksAreRoundNumbersWithinTheRange) {
   EXPECT_EQ(plot::ticks(0.0, 1.0, 6), (std::vector<double>{0.0, 0.2, 0.4, 0.6, 0.8, 1.0}));

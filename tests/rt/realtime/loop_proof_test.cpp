@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <limits>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -14,11 +13,10 @@
 #include "rt/operator/remote_operator.h"
 #include "tests/rt/realtime/watched_section.h"
 #include "tests/rt/support.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A clock that watches the threads that look at it: what they do from one sleep to the next.
 class WatchingClock final : public SystemClock {

@@ -10,11 +10,10 @@
 
 #include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
+#include "tests/support/not_finite.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 RunResult run_live(LiveOperator& op, const std::function<void()>& at_each_tick) {
   Policy policy = load_shipped_policy();

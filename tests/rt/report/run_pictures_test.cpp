@@ -5,19 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "rt/base/errors.h"
 #include "rt/report/run_csv.h"
 #include "tests/rt/plot/picture.h"
 #include "tests/rt/report/made_up_trot.h"
+#include "tests/support/not_finite.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class RunPicturesTest : public testing::Test {
  protected:

@@ -22,7 +22,7 @@ TerrainDescription read(const std::string& toml) {
   return t;
 }
 
-std::string refusal(const std::string& toml) {
+std::string refusal_of(const std::string& toml) {
   try {
     read(toml);
   } catch (const InputError& error) {
@@ -30,8 +30,8 @@ std::string refusal(const std::string& toml) {
   }
   return "(accepted)";
 }
-void expect_refused(const std::string& toml, const std::string& key) {
-  const std::string what = refusal(toml);
+void expect_names(const std::string& toml, const std::string& key) {
+  const std::string what = refusal_of(toml);
   EXPECT_NE(what.find(key), std::string::npos) << what;
   EXPECT_EQ(what.find('\n'), std::string::npos) << what;
 }
@@ -102,29 +102,27 @@ TEST(TerrainTest, PatchesTakeTheFirstGroundOrAPresetWithDifferences) {
 }
 
 TEST(TerrainTest, RefusesBadValuesInOneLine) {
-  expect_refused("[terrain]\nstifness_npm = 3.0", "stifness_npm");
-  expect_refused("[terrain]\nkind = \"linear\"\nstiffness_npm = -5.0", "stiffness_npm");
-  expect_refused("[terrain]\nsigma_flat_npm3 = -1e6", "sigma_flat_npm3");
-  expect_refused("[terrain]\nsigma_cone_npm3 = nan", "sigma_cone_npm3");
-  expect_refused("[terrain]\nfriction = inf", "friction");
-  expect_refused("[terrain]\nfriction = \"high\"", "friction");
-  expect_refused("[terrain]\nkind = \"mud\"", "kind");
-  expect_refused("[terrain]\neffects.filter = 1", "filter");
-  expect_refused("[terrain]\nfoot.shape = \"ball\"", "shape");
-  expect_refused("[terrain]\nroughness_m = -0.01", "roughness_m");
-  expect_refused("[terrain]\n[terrain.effects]\nfiltre = true", "filtre");
-  expect_refused("[terrain\n", "my.toml");
-  expect_refused("[[terrain.patch]]\nfrom_x_m = 2.0\n[[terrain.patch]]\nfrom_x_m = 1.0",
-                 "from_x_m");
-  expect_refused("[[terrain.patch]]\nfrom_x_m = 2.0\n[[terrain.patch]]\nfrom_x_m = 2.0",
-                 "from_x_m");
-  expect_refused("[[terrain.patch]]\nfrom_x_m = nan", "from_x_m");
-  expect_refused("[[terrain.patch]]\nfrom_x_m = 1.0\npreset = \"lava\"", "lava");
-  expect_refused("[[terrain.patch]]\nfrom_x_m = 1.0\nfrictoin = 0.2", "frictoin");
+  expect_names("[terrain]\nstifness_npm = 3.0", "stifness_npm");
+  expect_names("[terrain]\nkind = \"linear\"\nstiffness_npm = -5.0", "stiffness_npm");
+  expect_names("[terrain]\nsigma_flat_npm3 = -1e6", "sigma_flat_npm3");
+  expect_names("[terrain]\nsigma_cone_npm3 = nan", "sigma_cone_npm3");
+  expect_names("[terrain]\nfriction = inf", "friction");
+  expect_names("[terrain]\nfriction = \"high\"", "friction");
+  expect_names("[terrain]\nkind = \"mud\"", "kind");
+  expect_names("[terrain]\neffects.filter = 1", "filter");
+  expect_names("[terrain]\nfoot.shape = \"ball\"", "shape");
+  expect_names("[terrain]\nroughness_m = -0.01", "roughness_m");
+  expect_names("[terrain]\n[terrain.effects]\nfiltre = true", "filtre");
+  expect_names("[terrain\n", "my.toml");
+  expect_names("[[terrain.patch]]\nfrom_x_m = 2.0\n[[terrain.patch]]\nfrom_x_m = 1.0", "from_x_m");
+  expect_names("[[terrain.patch]]\nfrom_x_m = 2.0\n[[terrain.patch]]\nfrom_x_m = 2.0", "from_x_m");
+  expect_names("[[terrain.patch]]\nfrom_x_m = nan", "from_x_m");
+  expect_names("[[terrain.patch]]\nfrom_x_m = 1.0\npreset = \"lava\"", "lava");
+  expect_names("[[terrain.patch]]\nfrom_x_m = 1.0\nfrictoin = 0.2", "frictoin");
   std::string many;
   for (int i = 0; i < kMaxRegions; ++i)
     many += "[[terrain.patch]]\nfrom_x_m = " + std::to_string(i) + ".0\n";
-  expect_refused(many, "patch");
+  expect_names(many, "patch");
   ConfigTree config;
   EXPECT_THROW(add_terrain_layer(config, "no-such-terrain"), InputError);
 }

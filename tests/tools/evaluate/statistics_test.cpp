@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "tests/support/not_finite.h"
 
 namespace sandrunner::evaluate {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Wilson's intervals as tabulated, e.g. by R's prop.test(correct = FALSE).
 TEST(StatisticsTest, RateIntervalsAreWilsons) {

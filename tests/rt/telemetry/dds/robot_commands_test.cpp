@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "rt/loop/lockstep.h"
@@ -12,12 +11,11 @@
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/dds/support.h"
 #include "tests/support/child_process.h"
+#include "tests/support/not_finite.h"
 #include "tests/support/small_robot.h"
 
 namespace sandrunner {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Sends Twists at 50 Hz, however often it is asked to.
 class Driver {
