@@ -31,11 +31,12 @@ struct DriveFigures {
 /// What the bench saw.
 struct BenchReport {
   double time_s = 0.0;
-  bool was_enabled = false;              ///< all drives were on at a time
-  bool base_touched = false;             ///< the ground, while it walked
-  double distance_m = 0.0;               ///< from where it lay, level
-  double walked_s = 0.0;                 ///< with the policy's gains
-  std::optional<double> mean_speed_mps;  ///< over the second half of the walk
+  bool was_enabled = false;   ///< all drives were on at a time
+  bool base_touched = false;  ///< the ground, while it walked
+  double distance_m = 0.0;    ///< from where it lay, level
+  double walked_s = 0.0;      ///< with the policy's gains
+  /// Over the second half of the walk; none in torque mode, where no drive is told gains.
+  std::optional<double> mean_speed_mps;
   JointArray<DriveFigures> drives;
   std::vector<FaultFigures> faults;
   std::uint64_t imu_packets = 0, imu_not_taken = 0;
