@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reward of a policy step: scale * (bounded(sum of what is paid - ramp * sum of what is
-// charged)
-// - what is always charged). The bound is for that no sum of prices makes lying down the better
-// choice: early it cuts at zero, later sums below -debt count ever less, but they count. Where
-// everything is cut, as it else is on soft soil at speed, no price is felt, and falling costs
-// nothing.
+// The reward of a policy step: scale * (bounded(what is paid - ramp * what is charged) - what is
+// always charged). The bound is there so that no sum of prices makes lying down the better choice:
+// early it cuts at zero; later sums below -debt count ever less, but they count. Where everything
+// is cut, as it else is on soft soil at speed, no price is felt, and falling costs nothing.
 //
 // A new term is a function here, its row in kPaid, kCharged or kAlwaysCharged, which also makes it
 // a column of the learning curve, and its settings in RewardSettings and kRewardSettings, with
