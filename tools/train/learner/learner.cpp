@@ -415,7 +415,7 @@ void Learner::load(const Checkpoint& checkpoint) {
   checkpoint.get("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
   checkpoint.get("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
   checkpoint.get("learner.asymmetry", asymmetry_.data(),
-                   static_cast<std::size_t>(asymmetry_.size()));
+                 static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.get("learner.reset", &rollout_.reset(0, 0),
                  static_cast<std::size_t>(rollout_.shape.envs));
   const auto get_first_step = [&](const std::string& name, auto& field) {
