@@ -64,8 +64,8 @@ std::string ms(const std::optional<double>& time_s) {
   return time_s ? fmt::format("{:.2f} ms", 1e3 * *time_s) : "never";
 }
 
-void judge_bench(const FaultRun& run, const RunPlace& place, const BenchReport& report,
-                 std::vector<std::string>& wrong) {
+void judge_bench(const FaultRun& run, const RunPlace& place, DriveMode mode,
+                 const BenchReport& report, std::vector<std::string>& wrong) {
   const auto require = [&](const char* what, double bound_s, const std::optional<double>& found) {
     if (bound_s > 0.0 && (!found || *found > bound_s)) {
       wrong.push_back(fmt::format("{} after {}, expected {}", what, ms(found), ms(bound_s)));
@@ -84,7 +84,8 @@ void judge_bench(const FaultRun& run, const RunPlace& place, const BenchReport& 
   if (report.base_touched) wrong.emplace_back("the robot fell");
   if (place.speed_mps > 0.0) {
     // In torque mode drives are told no gains, and the bench cannot tell when the robot walks.
-    const double speed = report.mean_speed_mps.value_or(report.distance_m / place.walk_s);
+    const double speed = mode == DriveMode::kTorque ? report.distance_m / place.walk_s
+                                                    : report.mean_speed_mps.value_or(0.0);
     if (std::fabs(speed - place.speed_mps) > kSpeedTolerance * place.speed_mps) {
       wrong.push_back(
           fmt::format("walked at {:.3f} m/s, expected {:.3f} to 5 %", speed, place.speed_mps));
@@ -126,7 +127,7 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
 
   RunVerdict verdict;
   verdict.report = report_lines(report, config.robot.description);
-  judge_bench(run, place, report, verdict.wrong);
+  judge_bench(run, place, config.hardware->mode, report, verdict.wrong);
   const std::optional<int> ended = controller.ended();
   if (ended != run.exit_code) {
     verdict.wrong.push_back(

@@ -90,6 +90,7 @@ TEST(RewardTest, CostsGrowWithTheirRampAndPricesMakeARewardNegativeOnlyLate) {
   const float bottomless = reward(s, r, {.late = 1.0}).value;
   EXPECT_LT(bottomless, static_cast<float>(-r.scale * r.debt));
   EXPECT_LT(-bottomless, r.scale * r.fall / 10.0);
+  EXPECT_LT(kPolicyHz * r.debt, r.fall);
 }
 
 TEST(RewardTest, BelowTheDebtASumCountsEverLessButCounts) {
