@@ -40,7 +40,7 @@ using Error = beast::error_code;
 using Steady = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kSendEvery{16};
-constexpr int kStateEvery = 15;  // of these: 4 times a second, so that silence means something
+constexpr int kStateEvery = 6;  // of these: 10 times a second, so that silence means something
 constexpr int kSendBuffer = 64 << 10;    // the kernel hoards no more for a page that does not read
 constexpr std::size_t kMostAnswers = 4;  // waiting for a page; then it is not listened to
 constexpr std::chrono::seconds kHandshakeTime{5}, kIdleTime{60};

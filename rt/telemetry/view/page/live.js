@@ -27,14 +27,14 @@ export class Live {
     let looked = performance.now();
     setInterval(() => {
       // While the page itself was held up it could not hear: what it missed by then is waiting to be read.
-      this.silent_ms += Math.min(performance.now() - looked, 2 * kLook_ms);
+      this.silent_ms += Math.min(performance.now() - looked, kLook_ms);
       looked = performance.now();
     }, kLook_ms);
     this.#connect();
   }
 
-  /** Nothing was heard for too long to believe what is shown. */
-  get lost() { return this.silent_ms > kLost_ms; }
+  /** Nothing was heard for too long to believe what is shown; of a recording all that there is to hear was heard. */
+  get lost() { return !this.recorded && this.silent_ms > kLost_ms; }
 
   /** @param {object} message as view_messages.h has them */
   say(message) {
