@@ -10,8 +10,8 @@
 
 namespace sandrunner {
 
-/// Counts of durations in nanoseconds, in buckets whose width is a sixteenth of their power of two:
-/// quantiles are right to 6 %. Fixed in size, add() is real-time safe.
+/// Counts of durations in nanoseconds, in buckets whose width is a 64th of their power of two:
+/// quantiles are right to 1.6 %. Fixed in size, add() is real-time safe.
 class LogHistogram {
  public:
   /// Negative durations count as 0.
@@ -39,11 +39,11 @@ class LogHistogram {
   }
 
  private:
-  static constexpr int kFineBits = 4;
+  static constexpr int kFineBits = 6;
   static constexpr std::uint64_t kFine = 1u << kFineBits;
   static constexpr std::size_t kBuckets = (64 - kFineBits + 1) * kFine;
 
-  // Below 16 one bucket each; above, sixteen to a power of two.
+  // Below 64 one bucket each; above, 64 to a power of two.
   static std::size_t bucket_of(std::uint64_t v) noexcept {
     if (v < kFine) return v;
     const int shift = 63 - std::countl_zero(v) - kFineBits;
