@@ -11,7 +11,7 @@
 
 #include "rt/core/floating_point.h"
 #include "tools/bench/clock.h"
-#include "tools/bench/mujoco_robot.h"
+#include "tools/bench/standing_mujoco.h"
 #include "tools/bench/trotting_robots.h"
 
 namespace sandrunner::bench {
@@ -55,7 +55,8 @@ void require_walking(const TrottingBatch& robots) {
 Report run_batch_bench(int rounds) {
   flush_denormals_to_zero();
   const sim::Robot robot = sim::load_raibo();
-  MujocoRobot mujoco(robot, MujocoSolver::kDefault), mujoco_fastest(robot, MujocoSolver::kFastest);
+  StandingMujoco mujoco(robot, MujocoSolver::kDefault);
+  StandingMujoco mujoco_fastest(robot, MujocoSolver::kFastest);
   TrottingRobot one(robot);
   TrottingBatch x8(robot, kRobots, sim::BatchWidth::kEight);
   std::unique_ptr<TrottingBatch> x16;

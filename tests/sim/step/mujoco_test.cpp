@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/sim/mujoco_robot.h"
 #include "tests/sim/support.h"
+#include "tools/bench/mujoco/mujoco_robot.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -44,7 +44,7 @@ class MujocoTest : public testing::Test {
   }
 
   const Robot robot_ = load_raibo();
-  MujocoRobot mujoco_{robot_.model, false};
+  bench::MujocoRobot mujoco_{robot_.model, {.on_ground = false}};
   const mjModel* const model_ = mujoco_.model();
   mjData* const data_ = mujoco_.data();
   Dynamics<double> dynamics_;

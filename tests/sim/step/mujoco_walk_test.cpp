@@ -9,11 +9,15 @@
 
 #include "estimator/observation.h"
 #include "policy/policy_file.h"
-#include "tests/sim/mujoco_robot.h"
 #include "tests/sim/support.h"
+#include "tools/bench/mujoco/mujoco_robot.h"
 
 namespace sandrunner::sim {
 namespace {
+
+// Contacts stiff enough to yield a tenth of a millimetre, overdamped.
+const bench::MujocoSettings kHardGround{.option = "cone='elliptic'",
+                                        .contact = "friction='0.8' condim='3' solref='0.002 1'"};
 
 struct Walk {
   double speed_mps = 0.0;      ///< over ground, of the last 2 of 3 s
@@ -66,7 +70,7 @@ TEST(MujocoWalkTest, ShippedPolicyWalksAlikeInBothEngines) {
   for (const double vx_mps : {1.0, 2.0}) {
     SCOPED_TRACE(vx_mps);
     Bench bench;
-    MujocoRobot mujoco(bench.robot.model, true);
+    bench::MujocoRobot mujoco(bench.robot.model, kHardGround);
     mujoco.set(bench.state.rigid);
     const Walk theirs = walk(
         policy, vx_mps, [&] { return mujoco.state(); },

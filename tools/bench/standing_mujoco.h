@@ -2,10 +2,10 @@
 // The yardstick: the same robot in MuJoCo, standing on a plane on its four feet.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "sim/robot/robot_model.h"
+#include "tools/bench/mujoco/mujoco_robot.h"
 
 namespace sandrunner::bench {
 
@@ -15,26 +15,24 @@ enum class MujocoSolver {
   kFastest,  ///< PGS, elliptic cone, one iteration: the fastest of those tried
 };
 
-class MujocoRobot {
+class StandingMujoco {
  public:
-  MujocoRobot(const sim::Robot& robot, MujocoSolver solver);
-  ~MujocoRobot();
-  MujocoRobot(const MujocoRobot&) = delete;
-  MujocoRobot& operator=(const MujocoRobot&) = delete;
+  StandingMujoco(const sim::Robot& robot, MujocoSolver solver);
 
   /// `steps` times the joint torques of a PD law (nominal pose) and mj_step.
   void advance(int steps);
 
   /// Contacts a step, mean over all steps.
-  double mean_contacts() const;
+  double mean_contacts() const { return contacts_ / steps_; }
   /// Height of the base, m.
-  double height_m() const;
+  double height_m() const { return robot_.state().position.z; }
   /// Version and settings in one line, as MuJoCo itself holds them.
   std::string description() const;
 
  private:
-  struct Simulation;
-  std::unique_ptr<Simulation> simulation_;
+  MujocoRobot robot_;
+  JointArray<double> nominal_rad_;
+  double contacts_ = 0.0, steps_ = 0.0;
 };
 
 }  // namespace sandrunner::bench
