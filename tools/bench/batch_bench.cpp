@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "rt/base/processor_name.h"
 #include "rt/core/floating_point.h"
 #include "tools/bench/clock.h"
 #include "tools/bench/standing_mujoco.h"

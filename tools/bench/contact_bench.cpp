@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "rt/base/processor_name.h"
 #include "rt/core/floating_point.h"
 #include "sim/lanes/random.h"
 #include "sim/robot/dynamics.h"

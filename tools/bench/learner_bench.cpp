@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "rt/base/processor_name.h"
 #include "rt/core/floating_point.h"
 #include "sim/lanes/processor.h"
 #include "tools/bench/clock.h"

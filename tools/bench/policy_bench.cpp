@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "policy/network.h"
+#include "rt/base/processor_name.h"
 #include "rt/core/floating_point.h"
 #include "tools/bench/clock.h"
 #include "tools/bench/eigen_network.h"

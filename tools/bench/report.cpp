@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace sandrunner::bench {
@@ -19,15 +18,6 @@ void print(const Report& report) {
   for (const auto& [name, q] : report.ratios) {
     fmt::print("{:<32}{:>12.3f}{:>12.3f}{:>12.3f}{:>7}\n", name, q.median, q.q1, q.q3, q.runs);
   }
-}
-
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
 }
 
 std::string to_json(const Report& report) {

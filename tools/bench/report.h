@@ -18,9 +18,6 @@ struct Report {
 
 void print(const Report& report);
 
-/// Model name of the processor, "unknown" where the system does not tell.
-std::string processor_name();
-
 std::string to_json(const Report& report);
 
 }  // namespace sandrunner::bench

@@ -10,13 +10,13 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
 #include "rt/base/build.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
+#include "rt/base/processor_name.h"
 #include "rt/base/standard_error.h"
 #include "tools/train/curve_page.h"
 #include "tools/train/task/leg_modes.h"
@@ -36,14 +36,6 @@ double cpu_seconds() {
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::string processor_name() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
 }
 
 // Of the figures by which a robot moves: another one would not continue to the same weights.
