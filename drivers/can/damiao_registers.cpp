@@ -15,7 +15,7 @@ bool is_whole(DamiaoRegister reg) noexcept {
          number == 36;
 }
 
-bool is_possible(const MitDrive& drive) noexcept {
+bool is_a_damiao(const MitDrive& drive) noexcept {
   return drive.variant == MitVariant::kDamiao && drive.motor_id >= 1 && drive.motor_id <= 0xF &&
          drive.reply_id <= kMaxStandardId;
 }
@@ -38,7 +38,7 @@ bool value_bits(const DamiaoAccess& access, std::uint32_t& bits) noexcept {
 
 DamiaoStatus encode(const MitDrive& drive, const DamiaoAccess& access, std::uint32_t id,
                     bool with_value, CanFrame& frame) noexcept {
-  if (!is_possible(drive)) return DamiaoStatus::kBadDrive;
+  if (!is_a_damiao(drive)) return DamiaoStatus::kBadDrive;
   std::uint32_t bits = 0;
   if (with_value && !value_bits(access, bits)) return DamiaoStatus::kBadValue;
   frame = {};
@@ -56,7 +56,7 @@ DamiaoStatus encode(const MitDrive& drive, const DamiaoAccess& access, std::uint
 
 DamiaoStatus decode(const MitDrive& drive, const CanFrame& frame, std::uint32_t id,
                     DamiaoAccess& access) noexcept {
-  if (!is_possible(drive)) return DamiaoStatus::kBadDrive;
+  if (!is_a_damiao(drive)) return DamiaoStatus::kBadDrive;
   if (frame.error) return DamiaoStatus::kErrorFrame;
   const bool wants_fd = drive.format == CanFormat::kFdWithBitRateSwitch;
   if (frame.extended || frame.fd != wants_fd) return DamiaoStatus::kWrongFormat;

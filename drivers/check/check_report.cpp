@@ -130,8 +130,8 @@ std::string imu_line(const ImuConfig& config, const ImuFindings& findings) {
   return fmt::format(
       "IMU {}: {}, {:.1f} of {} samples/s, |a| {:.3f} m/s^2, up {:.1f} degrees from body z, gyro "
       "at rest ({:.4f}, {:.4f}, {:.4f}) rad/s\n",
-      config.device, findings.state, f.rate_hz, config.rate_hz, std::hypot(a[0], a[1], a[2]),
-      kDegrees * f.tilt_rad, w[0], w[1], w[2]);
+      config.device, findings.state, f.rate_hz, config.rate_hz, length(a), kDegrees * f.tilt_rad,
+      w[0], w[1], w[2]);
 }
 
 std::string check_report(const HardwareConfig& config, const RobotDescription& robot,

@@ -22,8 +22,6 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-double length(const Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
-
 Rotation product(const Rotation& a, const Rotation& b) {
   const Vector3 av{a[1], a[2], a[3]}, bv{b[1], b[2], b[3]};
   const Vector3 c = cross(av, bv);

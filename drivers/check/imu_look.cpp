@@ -17,8 +17,6 @@ constexpr double kMostGravityError_mps2 = 0.5;
 constexpr double kMostBias_radps = 0.05;
 constexpr double kLeastRate = 0.95;
 
-double length(const Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
-
 double angle(const Vector3& a, const Vector3& b) {
   const double lengths = length(a) * length(b);
   if (lengths == 0.0) return 0.0;

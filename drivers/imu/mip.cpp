@@ -8,8 +8,6 @@ namespace sandrunner::mip {
 
 namespace {
 
-constexpr std::uint8_t kApply = 0x01;  // function selector: use the new setting
-
 using Writer = BigEndianWriter<kMaxPayload>;
 
 Packet command(std::uint8_t descriptor_set, std::uint8_t descriptor, Bytes data = {}) noexcept {

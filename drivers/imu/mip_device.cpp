@@ -7,8 +7,6 @@ namespace sandrunner::mip {
 
 namespace {
 
-constexpr std::uint8_t kApply = 0x01;
-
 bool offered(std::uint8_t field) {
   return field == kAccel || field == kGyro || field == kQuaternion || field == kReferenceTime;
 }

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::size_t kHeaderSize = 4, kExtendedHeaderSize = 6, kChecksumSize = 1;
 constexpr std::size_t kLeastExtended = 255;
-constexpr std::size_t kOutputSize = 4;
 constexpr std::size_t kFieldHeaderSize = 3;  // identifier, size of the data
 
 std::uint8_t sum(Bytes bytes) noexcept {

@@ -61,7 +61,7 @@ struct Output {
   bool operator==(const Output&) const = default;
 };
 inline constexpr std::uint16_t kEveryMessage = 0xFFFF;
-inline constexpr std::size_t kMostOutputs = 32;
+inline constexpr std::size_t kMostOutputs = 32, kOutputSize = 4;
 /// Sets what is sent, in this order; further ones than kMostOutputs are left out. The device keeps
 /// it without power. Its answer, kOutputs + 1, holds what it will really send.
 Message set_outputs(std::span<const Output> outputs) noexcept;

@@ -10,7 +10,6 @@ namespace sandrunner::xsens {
 namespace {
 
 constexpr std::string_view kProduct = "MTi-630-8A1G6       ";
-constexpr std::size_t kOutputSize = 4;
 
 bool offered(std::uint16_t id) {
   return id == kSampleTime || id == kQuaternionNwu || id == kAcceleration || id == kRateOfTurn;

@@ -51,6 +51,8 @@ template <typename T>
 using JointArray = std::array<T, kNumJoints>;
 using Vector3 = std::array<double, 3>;
 
+inline double length(const Vector3& v) noexcept { return std::hypot(v[0], v[1], v[2]); }
+
 /// Whether none of the numbers of an array is NaN or infinite.
 template <std::size_t kSize>
 bool all_finite(const std::array<double, kSize>& values) noexcept {

@@ -39,8 +39,6 @@ constexpr double kAccelerationTime_s = 0.05;
 constexpr double kHeightTime_s = 0.1;
 constexpr double kHeightSpeed_mps = 1.0;
 
-double length(const Vector3& v) noexcept { return std::hypot(v[0], v[1], v[2]); }
-
 void set_diagonal(std::array<double, 36>& covariance, std::size_t first, const Vector3& variances) {
   for (std::size_t i = 0; i < 3; ++i) covariance[7 * (first + i)] = variances[i];
 }

@@ -2,7 +2,6 @@
 #include "rt/telemetry/mcap/mcap_reader.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
+#include "rt/telemetry/mcap/mcap_crc.h"
 
 namespace sandrunner {
 namespace {
@@ -26,12 +26,6 @@ constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 /// No zstd block holds more than 128 KiB in 4 bytes (format, section 3.1.1.2): with this limit, a
 /// short chunk cannot ask for much memory.
 constexpr std::uint64_t kMaxZstdRatio = (128U << 10) / 4U;
-
-std::uint32_t add_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
-  if (bytes.empty()) return crc;  // a null pointer would make zlib start again
-  return static_cast<std::uint32_t>(
-      ::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
 
 /// Records that only seeking needs, and those of later versions.
 bool is_skipped(std::uint8_t opcode) {

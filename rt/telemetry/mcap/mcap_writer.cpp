@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "rt/telemetry/mcap/mcap_crc.h"
 
 namespace sandrunner {
 namespace {
@@ -26,11 +26,6 @@ using Bytes = std::vector<std::byte>;
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 /// Fast, because the recorder shares the computer with the robot's other work: see README.md.
 constexpr int kCompressionLevel = 1;
-
-std::uint32_t add_crc(std::uint32_t crc, std::span<const std::byte> bytes) {
-  return static_cast<std::uint32_t>(
-      ::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
 
 void put_bytes(Bytes& to, const void* bytes, std::size_t size) {
   // Not insert(): g++ 12 at -O3 warns of an overflow in it that cannot happen.

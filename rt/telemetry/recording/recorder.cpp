@@ -9,7 +9,6 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::size_t kBatchTicks = 40;
 constexpr std::size_t kQueuedBatches = 200;  // two seconds
 
 }  // namespace
@@ -19,7 +18,7 @@ Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingL
     : path_(path),
       limits_(limits),
       info_(std::move(info)),
-      queue_(kBatchTicks, kQueuedBatches, wait),
+      queue_(kTicksPerMessage, kQueuedBatches, wait),
       policy_(policy ? std::optional<Policy>(*policy) : std::nullopt) {
   if (config) replay_.emplace(*config, start_mode_of(info_), policy_ ? &*policy_ : nullptr);
   McapWriter::try_path(path_);

@@ -13,7 +13,6 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::size_t kBatchTicks = 40;  // in a message
 constexpr const char* kStateIdl =
     "module sandrunner {\n  struct ReplayState {\n    sequence<octet> bytes;\n  };\n};\n";
 constexpr const char* kEventIdl =
@@ -103,7 +102,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
 
 void RecordingWriter::write(std::span<const TickRecord> ticks) {
   while (!ticks.empty()) {
-    const std::size_t count = std::min(ticks.size(), kBatchTicks);
+    const std::size_t count = std::min(ticks.size(), kTicksPerMessage);
     write_batch(ticks.first(count));
     ticks = ticks.subspan(count);
   }

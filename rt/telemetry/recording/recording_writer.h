@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -13,6 +14,9 @@
 #include "rt/telemetry/odometry.h"
 
 namespace sandrunner {
+
+/// Ticks in a message of a recording, and in a batch that the recorder takes.
+inline constexpr std::size_t kTicksPerMessage = 40;
 
 /// What a recording says about the run besides its ticks; with them, it is enough for a replay.
 struct RecordingInfo {
