@@ -27,7 +27,7 @@ LAYERS = [
     ["rt/telemetry/view"],
     ["rt/run"],
     ["rt"],
-    ["tools/train/data", "tools/train/kernels"],
+    ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
     ["tools/bench", "tools/ctl", "tools/evaluate", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
 ]
