@@ -24,8 +24,15 @@ async function open(url, viewport = { width: 480, height: 300 }) {  // what a ma
   await page.waitForFunction("window.sandrunner?.ready_ms", { timeout: 60000 });
   return page;
 }
-const until = (page, what, timeout = 30000) => page.waitForFunction(what, { timeout, polling: 50 });
 const text = (page, id) => page.$eval(`#${id}`, (element) => element.textContent);
+async function until(page, what, timeout = 30000) {
+  try {
+    await page.waitForFunction(what, { timeout, polling: 50 });
+  } catch (error) {
+    const shown = await Promise.all(["lost", "mode", "answer", "refusal"].map(async (id) => `${id}: '${await text(page, id)}'`));
+    throw new Error(`waited for ${what}; ${shown.join(", ")}, ${await page.evaluate("sandrunner.frames")} frames`, { cause: error });
+  }
+}
 const click = (page, id) => page.$eval(`#${id}`, (element) => element.click());
 async function hold(page) {
   await click(page, "hold");
