@@ -34,8 +34,9 @@ inline constexpr std::uint8_t kPing = 0x01, kSetIdle = 0x02, kResume = 0x06, kUa
 /// Fields of k3dmCommands. kImuBaseRate is the older form, of which the manual gives an example.
 inline constexpr std::uint8_t kImuBaseRate = 0x06, kBaseRate = 0x0E, kMessageFormat = 0x0F,
                               kStreamControl = 0x11;
+/// First byte of a setting: use the new one.
+inline constexpr std::uint8_t kApply = 0x01;
 /// Fields of replies: what each command is answered with, and what kBaseRate brings besides.
-inline constexpr std::uint8_t kApply = 0x01;  // function selector: use the new setting
 inline constexpr std::uint8_t kAck = 0xF1, kBaseRateReply = 0x8E;
 /// Fields of kSensorData.
 inline constexpr std::uint8_t kAccel = 0x04, kGyro = 0x05, kQuaternion = 0x0A, kGpsTime = 0x12,
