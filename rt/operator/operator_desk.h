@@ -43,7 +43,7 @@ class OperatorDesk {
   /// A velocity. `publisher`: what `who` sends it with.
   CommandVerdict drive(const Twist& twist, std::uint64_t publisher, const OperatorId& who);
 
-  /// A mode request; waits for the controller's answer, up to 20 ms. `objection` is asked about
+  /// A mode request; waits for the controller's answer, up to 100 ms. `objection` is asked about
   /// what does not end the motion, and says why not, or nothing; unset: there is none.
   RequestOutcome request(std::string_view name, const OperatorId& who,
                          const std::function<std::string()>& objection = {});
