@@ -13,8 +13,8 @@
 namespace sandrunner {
 namespace {
 
-// The controller answers within a tick. A busy computer holds a thread that is not real-time up for some tens of ms; what
-// has not answered after this time is not running.
+// The controller answers within a tick. A busy computer holds a thread that is not real-time up for
+// some tens of ms; what has not answered after this time is not running.
 constexpr auto kAnswerTime = std::chrono::milliseconds(100);
 constexpr auto kLookEvery = std::chrono::microseconds(250);
 constexpr const char* kNoAnswer = "the controller does not answer";

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <immintrin.h>
+
+#include <algorithm>
+
+#include "policy/activations.h"
+#include "policy/network_parameters.h"
+
+namespace sandrunner {
+
+inline constexpr int kPackedLanes = 8;  // in an AVX register
+
+/// A layer's weights in the order in which `multiply_panel` reads them, so that a step is one forward
+/// stream through memory: panels of up to 64 rows; in each the bias, then one column after the
+/// other.
+///
+/// A panel is summed in eight registers, which hide the latency of the fused multiply-add. Narrow
+/// layers have fewer rows than that: there `kChains` sums share the columns (column j goes to sum j
+/// mod kChains).
+template <int kInputs, int kOutputs>
+struct PackedLayer {
+  static constexpr int kVectors = std::min(8, (kOutputs + kPackedLanes - 1) / kPackedLanes);
+  static constexpr int kChains = 8 / kVectors;
+  static constexpr int kRows = kVectors * kPackedLanes;
+  static constexpr int kPanels = (kOutputs + kRows - 1) / kRows;
+  static constexpr int kPaddedOutputs = kPanels * kRows;
+  static_assert(kInputs % kChains == 0 && kVectors * kChains == 8);
+
+  alignas(64) float panel[kPanels][1 + kInputs][kRows];
+};
+
+/// `result` (kRows) = one panel times `input` (kInputs).
+template <int kInputs, int kOutputs>
+inline void multiply_panel(const PackedLayer<kInputs, kOutputs>& layer, int index,
+                           const float* input, float* result) noexcept {
+  using Layer = PackedLayer<kInputs, kOutputs>;
+  const float* weight = layer.panel[index][0];
+  __m256 sum[Layer::kChains][Layer::kVectors];
+  for (int chain = 0; chain < Layer::kChains; ++chain) {
+    for (int v = 0; v < Layer::kVectors; ++v) {
+      sum[chain][v] = chain == 0 ? _mm256_load_ps(weight + v * kPackedLanes) : _mm256_setzero_ps();
+    }
+  }
+  weight += Layer::kRows;
+  for (int column = 0; column < kInputs; column += Layer::kChains) {
+    for (int chain = 0; chain < Layer::kChains; ++chain) {
+      const __m256 x = _mm256_broadcast_ss(input + column + chain);
+      for (int v = 0; v < Layer::kVectors; ++v) {
+        sum[chain][v] =
+            _mm256_fmadd_ps(_mm256_load_ps(weight + v * kPackedLanes), x, sum[chain][v]);
+      }
+      weight += Layer::kRows;
+    }
+  }
+  for (int stride = Layer::kChains / 2; stride > 0; stride /= 2) {
+    for (int chain = 0; chain < stride; ++chain) {
+      for (int v = 0; v < Layer::kVectors; ++v) {
+        sum[chain][v] = _mm256_add_ps(sum[chain][v], sum[chain + stride][v]);
+      }
+    }
+  }
+  for (int v = 0; v < Layer::kVectors; ++v) _mm256_store_ps(result + v * kPackedLanes, sum[0][v]);
+}
+
+/// Output of a layer, padded to whole panels.
+template <int kInputs, int kOutputs>
+struct LayerOutput {
+  alignas(64) float value[PackedLayer<kInputs, kOutputs>::kPaddedOutputs];
+};
+
+template <int kInputs, int kOutputs>
+inline void linear(const PackedLayer<kInputs, kOutputs>& layer, const float* input,
+                   LayerOutput<kInputs, kOutputs>& output) noexcept {
+  using Layer = PackedLayer<kInputs, kOutputs>;
+  for (int p = 0; p < Layer::kPanels; ++p) {
+    multiply_panel(layer, p, input, output.value + p * Layer::kRows);
+  }
+}
+
+template <int kInputs, int kOutputs>
+inline void linear_leaky_relu(const PackedLayer<kInputs, kOutputs>& layer, const float* input,
+                              LayerOutput<kInputs, kOutputs>& output) noexcept {
+  linear(layer, input, output);
+  for (float& value : output.value) value = leaky_relu(value);
+}
+
+template <int kInputs, int kOutputs>
+void pack(const DenseParameters& parameters, PackedLayer<kInputs, kOutputs>& layer) {
+  using Layer = PackedLayer<kInputs, kOutputs>;
+  for (int row = 0; row < kOutputs; ++row) {
+    auto& panel = layer.panel[row / Layer::kRows];
+    const int lane = row % Layer::kRows;
+    panel[0][lane] = parameters.bias[row];
+    for (int j = 0; j < kInputs; ++j) panel[1 + j][lane] = parameters.weight[row * kInputs + j];
+  }
+}
+
+}  // namespace sandrunner
