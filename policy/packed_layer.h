@@ -12,9 +12,9 @@ namespace sandrunner {
 
 inline constexpr int kPackedLanes = 8;  // in an AVX register
 
-/// A layer's weights in the order in which `multiply_panel` reads them, so that a step is one forward
-/// stream through memory: panels of up to 64 rows; in each the bias, then one column after the
-/// other.
+/// A layer's weights in the order in which `multiply_panel` reads them, so that a step is one
+/// forward stream through memory: panels of up to 64 rows; in each the bias, then one column after
+/// the other.
 ///
 /// A panel is summed in eight registers, which hide the latency of the fused multiply-add. Narrow
 /// layers have fewer rows than that: there `kChains` sums share the columns (column j goes to sum j
