@@ -192,7 +192,7 @@ void Task::hard_reset(int env, Env& e) {
   e.step = 0;
   e.action = e.action_1 = e.action_2 = {};
   e.air_s = e.stance_s = {};
-  e.unloaded_steps = {};
+  e.unloaded_steps = e.was_active = {};
   e.drift = {};
   // Some start exactly as a robot that has stood up, and is then told to go: their first step has
   // to break the symmetry.
@@ -247,11 +247,32 @@ void Task::soft_reset(int env, Env& e, float x_m) {
   }
 }
 
-void Task::push(int env, Env& e, sim::RobotState<float> state) {
+// A push, now and then. True if there was one.
+bool Task::push(int env, Env& e, sim::RobotState<float>& state) const {
+  if (uniform(env, e) >= config_.episode.push_probability) return false;
   const double v = config_.episode.push_speed_mps;
   state.rigid.velocity.x += static_cast<float>(uniform(env, e, -v, v));
   state.rigid.velocity.y += static_cast<float>(uniform(env, e, -v, v));
-  batch_.set_state(env, state);
+  return true;
+}
+
+// Feet that have just touched down on patchy ground may find it softer than the others do: that of
+// another patch, drawn by chance. (Not harder: they would stand in it.) True if one does.
+bool Task::loosen(int env, Env& e, sim::RobotState<float>& state) const {
+  if (!is_patchy(env)) return false;
+  bool any = false;
+  for (int l = 0; l < kNumLegs; ++l) {
+    sim::FootContact<float>& foot = state.feet[l];
+    const bool touched_down = foot.active != 0.0f && !e.was_active[l];
+    e.was_active[l] = foot.active != 0.0f;
+    if (!touched_down || uniform(env, e) >= config_.ground.loose_step_share) continue;
+    const auto other = static_cast<std::size_t>(sim::kMaxRegions * uniform(env, e));
+    const auto sigma = [&](std::size_t patch) { return e.ground_features[patch][kSigmaFlat]; };
+    if (sigma(other) >= sigma(static_cast<std::size_t>(foot.region))) continue;
+    foot.region = static_cast<float>(other);
+    any = true;
+  }
+  return any;
 }
 
 }  // namespace sandrunner::train

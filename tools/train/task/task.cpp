@@ -133,7 +133,7 @@ StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
 // Judges the step just done and resets the robot if its episode is over.
 void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& window) {
   Env& e = envs_[static_cast<std::size_t>(env)];
-  const sim::RobotState<float> state = batch_.state(env);
+  sim::RobotState<float> state = batch_.state(env);
   const sim::BatchReport<float> report = batch_.report(env);
   const sim::BatchSums<float> sums = batch_.sums(env);
   StepOutcome s = follow(e, state, report, sums);
@@ -170,7 +170,8 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
     rollout.end(t, env) = learner::End::kNone;
     approach_target(e);
     if (--e.command_steps_left <= 0) new_command(env, e);
-    if (uniform(env, e) < config_.episode.push_probability) push(env, e, state);
+    const bool pushed = push(env, e, state), loosened = loosen(env, e, state);
+    if (pushed || loosened) batch_.set_state(env, state);
   }
 }
 

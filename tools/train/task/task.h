@@ -74,6 +74,7 @@ class Task {
       kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
 
   static constexpr int kGroundFeatures = 6;
+  static constexpr std::size_t kSigmaFlat = 1;  // of them: rises with the stiffness
   static constexpr int kUnloadedSteps = 2;  // after which a foot without a load counts as lifted
 
   // One environment beside its robot in the batch. Trivially copyable: a checkpoint.
@@ -85,7 +86,7 @@ class Task {
     JointArray<float> action{}, action_1{}, action_2{};  // the latest, and those before it
     JointArray<float> joint_offset{};
     std::array<float, kNumLegs> air_s{}, stance_s{};
-    std::array<std::int32_t, kNumLegs> unloaded_steps{};
+    std::array<std::int32_t, kNumLegs> unloaded_steps{}, was_active{};
     std::array<float, 3> drift{};  // vx, vy, yaw rate, low-passed
     float noise_level = 1.0f;
     // For the critic: of each patch of ground, and of the robot.
@@ -111,7 +112,8 @@ class Task {
   void new_robot(int env, Env& e);
   void hard_reset(int env, Env& e);
   void soft_reset(int env, Env& e, float x_m);
-  void push(int env, Env& e, sim::RobotState<float> state);
+  bool push(int env, Env& e, sim::RobotState<float>& state) const;
+  bool loosen(int env, Env& e, sim::RobotState<float>& state) const;
 
   // observe.cpp: what is shown.
   std::array<float, kEstimateSize> truth(const Env& e, const sim::RobotState<float>& state) const;
