@@ -74,7 +74,7 @@ struct HardwareConfig {
 /// named by the joints of `robot`, each exactly once. Throws InputError: a joint without a drive or
 /// with two, two drives of one identifier, an unknown protocol or model, a rate that does not
 /// divide the control rate, a drive whose range is below what `gate` lets through (torque, speed,
-/// positions).
+/// positions, gains).
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
 
@@ -83,7 +83,8 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
 double told_speed_radps(const HardwareConfig& hardware) noexcept;
 
 /// What hardware changes of the gate's thresholds: ages follow the rate of the exchange, the speed
-/// fault is one that can be told.
+/// fault is one that can be told, torque limits are scaled by `torque_scale`, and whether the robot
+/// hangs.
 void adapt_gate(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 
 }  // namespace sandrunner

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Strict layered configuration from TOML. Layers are added from the weakest to the strongest
-// (terrain preset or file < --config < --set); a value is the one of the last layer that has its
-// key.
+// (terrain preset or file < --hardware < --config < --set); a value is the one of the last layer
+// that has its key.
 //
 //   ConfigTree config;
 //   config.add_text(embedded_preset, "preset dry-sand");

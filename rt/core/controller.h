@@ -17,8 +17,8 @@
 namespace sandrunner {
 
 // What a robot or a policy gives is 0 here: without them nothing moves. The other values are
-// choices of this project, tried in simulation. Settings of the same names override both
-// (rt/README.md).
+// choices of this project, tried in simulation. Settings of the same names override both,
+// but for postures and `skip_fold_rad` (rt/README.md).
 
 /// Walk: joint targets of the policy with the policy's gains.
 struct WalkConfig {

@@ -66,7 +66,8 @@ struct FaultRow {
 };
 
 // In the order of the bits. After any of them: damping from that very tick on, drives off after
-// `damping.fault_s`; at once where time is not to be trusted or the drives are cut.
+// `damping.fault_s` (counted in steps where time cannot be trusted); drives that were cut are off
+// already.
 inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kNonFiniteJoint, "non_finite_joint",
      "NaN or infinity in a joint's position, velocity or torque", "drives", kAlways, "1 tick"},

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The modes of the controller and every way from one to another.
 //
-//            | arm      damp     stop     passive   stand     walk   reset     | stood up  stopped
-//            | fault
-//   ---------+-------------------------------------------------------------------+-------------------+------
-//   Passive  | Damping  .        .        .         .         .      .         | .         . |
-//   Fault Damping  | .        .        .        Passive   StandUp   .      .         | .         .
-//   | Fault StandUp  | .        Damping  Damping  .         .         .      .         | Stand . |
-//   Fault Stand    | .        Damping  .        .         .         Walk   .         | .         .
-//   | Fault Walk     | .        Damping  (1)      .         (1)       .      .         | . Stand |
-//   Fault Fault    | .        .        .        .         .         .      Passive(2)| .         .
-//   | .
+// clang-format off
+//            | arm      damp     stop     passive  stand    walk  reset      | stood up  stopped | fault
+//   ---------+---------------------------------------------------------------+-------------------+------
+//   Passive  | Damping  .        .        .        .        .     .          | .         .       | Fault
+//   Damping  | .        .        .        Passive  StandUp  .     .          | .         .       | Fault
+//   StandUp  | .        Damping  Damping  .        .        .     .          | Stand     .       | Fault
+//   Stand    | .        Damping  .        .        .        Walk  .          | .         .       | Fault
+//   Walk     | .        Damping  (1)      .        (1)      .     .          | .         Stand   | Fault
+//   Fault    | .        .        .        .        .        .     Passive(2) | .         .       | .
+// clang-format on
 //
 // "." stays. Two steps from rest to motion: arm switches the drives on, which only brake, stand
 // lets them move. A robot that carries itself goes to Passive only through Damping: it is let down,

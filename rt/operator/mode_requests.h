@@ -8,7 +8,7 @@
 
 namespace sandrunner {
 
-/// What an operator may request over DDS, by name.
+/// What an operator may request over DDS or from a page of --view, by name.
 inline constexpr std::array<std::string_view, 6> kRequests = {"arm",  "stand", "walk",
                                                               "stop", "damp",  "reset_fault"};
 inline constexpr const char* kRequestNames = "arm, stand, walk, stop, damp or reset_fault";

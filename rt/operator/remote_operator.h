@@ -17,9 +17,10 @@ struct OperatorRequests {
   std::uint64_t request_number = 0;  ///< counts the requests; 0: none yet
 };
 
-/// The control thread's end of commands that come over DDS. The age of a velocity counts from the
-/// tick at which it was first seen; beyond the stale time it is replaced by zero. Until the first
-/// request, the robot stays as it is. Ends in damping when it is interrupted.
+/// The control thread's end of commands that come over DDS or from a page of --view. The age of a
+/// velocity counts from the tick at which it was first seen; beyond the stale time it is replaced
+/// by zero. Until the first request, the robot stays as it is. Ends in damping when it is
+/// interrupted.
 class RemoteOperator final : public OperatorInput {
  public:
   /// `stale_ticks`: the greatest age at which a velocity is still followed, in control ticks.

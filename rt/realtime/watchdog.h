@@ -10,7 +10,8 @@
 namespace sandrunner {
 
 /// How long the control thread may not tick while the machine runs: longer than any stall that the
-/// safety gate tolerates, shorter than the drives' own time-outs are by habit.
+/// safety gate tolerates. Drives have let go by then through their own time-out (50 ms unless set,
+/// at most 100).
 inline constexpr std::int64_t kWatchdog_ns = 100'000'000;
 
 /// The last line but the drives' own: when the control thread hangs, cuts the drives, for good,

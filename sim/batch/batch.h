@@ -104,8 +104,8 @@ class Batch {
   BatchSums<float> sums(int robot) const noexcept;
   BatchReport<float> report(int robot) const noexcept;
 
-  /// Advances all robots of a pack by `ticks` control ticks; their sums start at zero. The calling
-  /// thread must flush denormals (flush_denormals_to_zero()).
+  /// Advances all robots of a pack by `ticks` steps of `StepSettings::dt_s`; their sums start at
+  /// zero. The calling thread must flush denormals (flush_denormals_to_zero()).
   void advance(int pack, int ticks) noexcept;
 
  private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One 0.25 ms step of a robot on its ground: dynamics, contact law of each foot, contact problem,
-// semi-implicit Euler. No clock, no heap, and no branch that depends on one lane; instantiated for
-// double (the simulator behind RobotIo) and for float and float packs (training).
+// One step (0.25 ms; in trainings 0.5) of a robot on its ground: dynamics, contact law of each
+// foot, contact problem, semi-implicit Euler. No clock, no heap, and no branch that depends on one
+// lane; instantiated for double (the simulator behind RobotIo) and for float and float packs
+// (training).
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/evaluate/corners.py POLICY...: holds a policy's own envelope against falls. From each of its corners to each other
+"""tools/evaluate/corners.py POLICY: holds a policy's own envelope against falls. From each of its corners to each other
 as a step and back, through the whole controller (sandrunner), on every preset and on sand of 1/0.15 MN/m^3, from the
 nominal pose, disturbed starts and after standing up. Prints runs and falls for each ground and corner, and how each fall
 is repeated; ends with 1 if there was one. The envelope is that of the policy file (sandrunner-policy envelope)."""

@@ -12,7 +12,8 @@ namespace sandrunner::evaluate {
 /// Everything: settings, the robot's name, and every figure of every group with its interval.
 std::string results_json(const Results& results, const std::string& robot, const Options& options);
 
-/// One row a group and policy, columns `key`, `key_low`, `key_high`; empty where there is none.
+/// One row a group and policy, columns `key`, `key_low`, `key_high`, `key_n`; empty where there is
+/// none.
 std::string part_csv(const PartResults& results, const std::vector<std::string>& policies);
 
 }  // namespace sandrunner::evaluate

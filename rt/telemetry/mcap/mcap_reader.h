@@ -27,7 +27,7 @@ namespace sandrunner {
 /// that are not an MCAP file throw InputError: one line with the path, the place, what was found
 /// and what was expected; what was read before that stays valid. Memory is bounded whatever the
 /// bytes are: for a chunk by kMcapMaxChunkBytes, for everything that is kept by 256 MiB. Chunks
-/// compressed with anything but zstd are refused.
+/// are read as they are or compressed with zstd; others are refused.
 class McapReader {
  public:
   /// Opens the file and reads its header. Throws InputError.

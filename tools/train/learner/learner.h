@@ -120,7 +120,7 @@ class Learner {
   /// KL target of the updates to come.
   void set_kl_target(double kl_target) { config_.kl_target = kl_target; }
   /// Takes the weights of a policy that can act already, before the first step; its actions get
-  /// half as much noise again as is left in the end.
+  /// half as much noise again as `action_std_min`.
   void set_policy(const std::vector<PolicyTensor>& tensors) {
     set_policy_tensors(layout_, tensors, parameters_);
     std::fill_n(parameters_.begin() + layout_.log_std(), kActionSize,
