@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -25,8 +24,7 @@ template <typename... Arguments>
 /// `text` from a file as one line: at most `limit` bytes, control characters as '?'.
 inline std::string printable(std::string_view text, std::size_t limit = 80) {
   std::string line(text.substr(0, limit));
-  const auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
-  std::replace_if(line.begin(), line.end(), is_control, '?');
+  replace_controls(line, '?');
   return text.size() > limit ? line + "..." : line;
 }
 

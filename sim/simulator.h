@@ -89,7 +89,6 @@ class Simulator final : public RobotIo {
   const StepReport<double>& report() const noexcept { return report_; }  ///< of the last step
   const RobotModel<double>& model() const noexcept { return model_; }
   const Terrain<double>& terrain() const noexcept { return terrain_; }
-  const RobotStepper<double>& stepper() const noexcept { return stepper_; }
   /// Height of the undisturbed surface, m.
   double surface_height(double x_m, double y_m) const noexcept;
 

@@ -165,10 +165,12 @@ MitStatus encode_mit_special(const MitDrive& drive, MitSpecial special, CanFrame
 
 MitStatus decode_mit_reply(const MitDrive& drive, const CanFrame& frame, MitReply& reply) noexcept {
   const MitStatus status = check_frame(drive, frame, drive.reply_id, reply_length(drive.variant));
-  if (status != MitStatus::kOk) return status;
+  if (status != MitStatus::kOk && status != MitStatus::kWrongLength) return status;
   const bool is_damiao = drive.variant == MitVariant::kDamiao;
   const Code motor = is_damiao ? frame.data[0] & 0xF : frame.data[0];
-  if (motor != drive.motor_id) return MitStatus::kOtherMotor;
+  // Before the length: drives share an identifier, and only one of them sent this.
+  if (frame.length == 0 || motor != drive.motor_id) return MitStatus::kOtherMotor;
+  if (status != MitStatus::kOk) return status;
 
   const auto& data = frame.data;
   const MitLimits& limits = drive.limits;

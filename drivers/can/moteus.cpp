@@ -51,9 +51,12 @@ void write_mode(MoteusWriter& writer, MoteusMode mode) noexcept {
   writer.values(MoteusOperation::kWrite, MoteusFormat::kInt8, moteus_register::kMode, value);
 }
 
-MoteusStatus check_frame(const MoteusDrive& drive, const CanFrame& frame) noexcept {
+// Whether a frame can be read, whose address is `concerned` by this drive: first of all, as another
+// node's is none of its business.
+MoteusStatus check_frame(const MoteusDrive& drive, const CanFrame& frame, bool concerned) noexcept {
   if (!is_possible(drive)) return MoteusStatus::kBadDrive;
   if (frame.error) return MoteusStatus::kErrorFrame;
+  if (!concerned) return MoteusStatus::kOtherId;
   return frame.fd ? MoteusStatus::kOk : MoteusStatus::kWrongFormat;
 }
 
@@ -61,13 +64,12 @@ MoteusStatus check_frame(const MoteusDrive& drive, const CanFrame& frame) noexce
 template <typename Take>
 MoteusStatus each_register(const MoteusDrive& drive, const CanFrame& frame,
                            const Take& take) noexcept {
-  if (const MoteusStatus status = check_frame(drive, frame); status != MoteusStatus::kOk) {
-    return status;
-  }
   const MoteusAddress address = moteus_address(frame);
-  if (address.source != drive.id || address.destination != drive.host_id ||
-      address.prefix != drive.prefix || address.wants_reply) {
-    return MoteusStatus::kOtherId;
+  const bool concerned = address.source == drive.id && address.destination == drive.host_id &&
+                         address.prefix == drive.prefix && !address.wants_reply;
+  if (const MoteusStatus status = check_frame(drive, frame, concerned);
+      status != MoteusStatus::kOk) {
+    return status;
   }
   MoteusReader reader(frame);
   MoteusItem item;
@@ -300,15 +302,15 @@ MoteusStatus decode_moteus_reply(const MoteusDrive& drive, const CanFrame& frame
 
 MoteusStatus decode_moteus_request(const MoteusDrive& drive, const CanFrame& frame,
                                    MoteusRequest& request) noexcept {
-  if (const MoteusStatus status = check_frame(drive, frame); status != MoteusStatus::kOk) {
-    return status;
-  }
   MoteusRequest read;
   read.address = moteus_address(frame);
   constexpr std::uint8_t kEverybody = 127;
-  if (read.address.prefix != drive.prefix ||
-      (read.address.destination != drive.id && read.address.destination != kEverybody)) {
-    return MoteusStatus::kOtherId;
+  const bool concerned =
+      read.address.prefix == drive.prefix &&
+      (read.address.destination == drive.id || read.address.destination == kEverybody);
+  if (const MoteusStatus status = check_frame(drive, frame, concerned);
+      status != MoteusStatus::kOk) {
+    return status;
   }
   MoteusReader reader(frame);
   MoteusItem item;

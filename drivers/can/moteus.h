@@ -67,14 +67,10 @@ struct MoteusCommand {
   double watchdog_s = 0.0;
 };
 
-/// What decode_moteus_reply() needs and what it can tell, in int16 and in float.
+/// What decode_moteus_reply() needs and what it can tell.
 inline constexpr MoteusRead kMoteusState[] = {{moteus_register::kMode, 1, MoteusFormat::kInt8},
                                               {moteus_register::kPosition, 3, MoteusFormat::kInt16},
                                               {moteus_register::kVoltage, 3, MoteusFormat::kInt8}};
-inline constexpr MoteusRead kMoteusStateFloat[] = {
-    {moteus_register::kMode, 1, MoteusFormat::kInt8},
-    {moteus_register::kPosition, 3, MoteusFormat::kFloat},
-    {moteus_register::kVoltage, 3, MoteusFormat::kInt8}};
 
 struct MoteusReply {
   MoteusMode mode = MoteusMode::kStopped;

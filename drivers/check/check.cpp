@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -17,6 +16,7 @@
 #include "drivers/robot/bring_up.h"
 #include "drivers/robot/bus_plan.h"
 #include "drivers/robot/emergency_stop.h"
+#include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
@@ -27,10 +27,6 @@ namespace {
 
 constexpr int kExchanges = 200;  // a second
 constexpr int kExchangesPerPicture = 20;
-
-std::int64_t now_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class Check {
  public:
@@ -197,16 +193,17 @@ class Check {
     DriveLook look(config_, sockets_);
     ImuLook imu_look;
     const Imu::Counters before = imu ? imu->counters() : Imu::Counters();
-    const std::int64_t start_ns = now_ns();
+    const std::int64_t start_ns = clock_ns(CLOCK_MONOTONIC);
     const auto look_at_imu = [&] {
-      while (imu->poll(now_ns())) imu_look.add(imu->sample());
+      while (imu->poll(clock_ns(CLOCK_MONOTONIC))) imu_look.add(imu->sample());
       const Imu::Counters now = imu->counters();
-      findings_.imu =
-          ImuFindings{.figures = imu_look.figures(now.samples - before.samples,
-                                                  1e-9 * static_cast<double>(now_ns() - start_ns)),
-                      .state = to_string(imu->state(now_ns())),
-                      .bad_packets = now.bad_checksums - before.bad_checksums + now.repeated -
-                                     before.repeated + now.incomplete - before.incomplete};
+      findings_.imu = ImuFindings{
+          .figures =
+              imu_look.figures(now.samples - before.samples,
+                               1e-9 * static_cast<double>(clock_ns(CLOCK_MONOTONIC) - start_ns)),
+          .state = to_string(imu->state(clock_ns(CLOCK_MONOTONIC))),
+          .bad_packets = now.bad_checksums - before.bad_checksums + now.repeated - before.repeated +
+                         now.incomplete - before.incomplete};
     };
     const bool live = isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0;
     std::size_t drawn_lines = 0;

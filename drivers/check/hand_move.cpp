@@ -8,10 +8,10 @@
 #include <cmath>
 #include <map>
 
+#include "rt/core/rotation.h"
+
 namespace sandrunner {
 namespace {
-
-using Rotation = std::array<double, 4>;  // (w, x, y, z)
 
 constexpr double kShortestLever_m = 1e-3;
 constexpr double kLeastMove_rad = 0.05;
@@ -20,26 +20,6 @@ Vector3 sum(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[
 
 Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Rotation product(const Rotation& a, const Rotation& b) {
-  const Vector3 av{a[1], a[2], a[3]}, bv{b[1], b[2], b[3]};
-  const Vector3 c = cross(av, bv);
-  const double dot = av[0] * bv[0] + av[1] * bv[1] + av[2] * bv[2];
-  return {a[0] * b[0] - dot, a[0] * bv[0] + b[0] * av[0] + c[0], a[0] * bv[1] + b[0] * av[1] + c[1],
-          a[0] * bv[2] + b[0] * av[2] + c[2]};
-}
-
-Vector3 turn(const Rotation& r, const Vector3& v) {
-  const Vector3 axis{r[1], r[2], r[3]};
-  const Vector3 t = cross(axis, v), u = cross(axis, t);
-  return {v[0] + 2.0 * (r[0] * t[0] + u[0]), v[1] + 2.0 * (r[0] * t[1] + u[1]),
-          v[2] + 2.0 * (r[0] * t[2] + u[2])};
-}
-
-Rotation about(const Vector3& axis, double angle_rad) {
-  const double s = std::sin(0.5 * angle_rad);
-  return {std::cos(0.5 * angle_rad), s * axis[0], s * axis[1], s * axis[2]};
 }
 
 /// A link in the frame of the base.
@@ -55,10 +35,10 @@ std::map<std::string, Placed> place_links(const RobotDescription& robot,
   for (const RobotFrame& frame : robot.frames) {
     const Placed& parent = links[frame.parent];
     Placed link;
-    link.origin_m = sum(parent.origin_m, turn(parent.rotation, frame.translation_m));
+    link.origin_m = sum(parent.origin_m, rotated(parent.rotation, frame.translation_m));
     link.rotation = product(parent.rotation, frame.rotation_wxyz);
     if (frame.joint >= 0) {
-      link.rotation = product(link.rotation, about(frame.axis, pose_rad[frame.joint]));
+      link.rotation = turned(link.rotation, frame.axis, pose_rad[frame.joint]);
     }
     link.moved = parent.moved || frame.joint == joint;
     links[frame.name] = link;
@@ -86,7 +66,7 @@ std::string positive_motion(const RobotDescription& robot, const JointArray<doub
                                    [&](const RobotFrame& frame) { return frame.joint == joint; });
   if (turned == robot.frames.end()) return "";
   const Placed& pivot = links.at(turned->name);
-  const Vector3 axis = turn(pivot.rotation, turned->axis);
+  const Vector3 axis = rotated(pivot.rotation, turned->axis);
   std::string part = turned->name;
   Vector3 fastest{};
   for (const RobotFrame& frame : robot.frames) {

@@ -6,29 +6,14 @@
 #include <cmath>
 
 #include "rt/base/errors.h"
+#include "rt/core/rotation.h"
 
 namespace sandrunner {
 
 namespace {
 
-using Quaternion = std::array<double, 4>;
-
-Quaternion product(const Quaternion& a, const Quaternion& b) noexcept {
-  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-          a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
-}
-
-Quaternion conjugate(const Quaternion& q) noexcept { return {q[0], -q[1], -q[2], -q[3]}; }
-
-Vector3 rotate(const Quaternion& q, const Vector3& v) noexcept {
-  const Quaternion r = product(product(q, {0.0, v[0], v[1], v[2]}), conjugate(q));
-  return {r[1], r[2], r[3]};
-}
-
 /// Whether it is a rotation, to 1 %; only then is it given the length 1.
-bool normalise(Quaternion& q) noexcept {
+bool normalise(Rotation& q) noexcept {
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(std::abs(norm - 1.0) <= 0.01)) return false;
   for (double& number : q) number /= norm;
@@ -37,9 +22,9 @@ bool normalise(Quaternion& q) noexcept {
 
 }  // namespace
 
-ImuMounting::ImuMounting(const Quaternion& body_from_sensor_wxyz)
+ImuMounting::ImuMounting(const Rotation& body_from_sensor_wxyz)
     : body_from_sensor_(body_from_sensor_wxyz) {
-  const Quaternion& q = body_from_sensor_wxyz;
+  const Rotation& q = body_from_sensor_wxyz;
   if (!normalise(body_from_sensor_)) {
     throw InputError(
         fmt::format("IMU mounting: ({}, {}, {}, {}) is no rotation: expected a quaternion "
@@ -54,7 +39,7 @@ ImuMounting ImuMounting::from_rpy(const Vector3& rpy_rad) {
                                  rpy_rad[0], rpy_rad[1], rpy_rad[2]));
   }
   const auto about = [&rpy_rad](std::size_t axis) {
-    Quaternion q{std::cos(rpy_rad[axis] / 2), 0.0, 0.0, 0.0};
+    Rotation q{std::cos(rpy_rad[axis] / 2), 0.0, 0.0, 0.0};
     q[axis + 1] = std::sin(rpy_rad[axis] / 2);
     return q;
   };
@@ -62,12 +47,12 @@ ImuMounting ImuMounting::from_rpy(const Vector3& rpy_rad) {
 }
 
 Vector3 ImuMounting::to_body(const Vector3& sensor) const noexcept {
-  return rotate(body_from_sensor_, sensor);
+  return rotated(body_from_sensor_, sensor);
 }
 
-Quaternion ImuMounting::to_orientation(const Quaternion& sensor_wxyz,
-                                       const Quaternion& previous) const noexcept {
-  Quaternion q = product(sensor_wxyz, conjugate(body_from_sensor_));
+Rotation ImuMounting::to_orientation(const Rotation& sensor_wxyz,
+                                     const Rotation& previous) const noexcept {
+  Rotation q = product(sensor_wxyz, inverse(body_from_sensor_));
   normalise(q);
   double dot = 0.0;
   for (std::size_t i = 0; i < q.size(); ++i) dot += q[i] * previous[i];
@@ -78,10 +63,10 @@ Quaternion ImuMounting::to_orientation(const Quaternion& sensor_wxyz,
 }
 
 ImuReading ImuMounting::to_sensor(const ImuSample& sample) const noexcept {
-  const Quaternion sensor_from_body = conjugate(body_from_sensor_);
+  const Rotation sensor_from_body = inverse(body_from_sensor_);
   ImuReading reading;
-  reading.acceleration_mps2 = rotate(sensor_from_body, sample.linear_acceleration_mps2);
-  reading.angular_velocity_radps = rotate(sensor_from_body, sample.angular_velocity_radps);
+  reading.acceleration_mps2 = rotated(sensor_from_body, sample.linear_acceleration_mps2);
+  reading.angular_velocity_radps = rotated(sensor_from_body, sample.angular_velocity_radps);
   reading.orientation_wxyz = product(sample.orientation_wxyz, body_from_sensor_);
   return reading;
 }

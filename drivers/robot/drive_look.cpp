@@ -54,6 +54,7 @@ void DriveLook::take(std::size_t bus, const ReceivedFrame& received) {
     if (!drives_[j].take(received.frame, 0)) continue;
     FoundDrive& f = found_[j];
     ++f.replies;
+    if (received.stamp_ns == 0) return;  // the adapter gives none
     const double trip_s = 1e-9 * static_cast<double>(received.stamp_ns - sent_ns_[j]);
     f.longest_round_trip_s = std::max(f.longest_round_trip_s, trip_s);
     f.round_trip_s += (trip_s - f.round_trip_s) / f.replies;

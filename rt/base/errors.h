@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -16,6 +15,17 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Replaces control characters, which a terminal would obey: those of ASCII, and the 32 more of
+/// UTF-8, of two bytes.
+inline void replace_controls(std::string& text, char with) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    if (byte < 0x20 || byte == 0x7f) text[i] = with;
+    if (byte == 0xc2 && next >= 0x80 && next < 0xa0) text[i] = text[i + 1] = with;
+  }
+}
+
 /// An error message as the one line that a program prints: what it quotes of the user's may hold
 /// line breaks, and be long, which costs the message its middle.
 inline std::string one_line(std::string message) {
@@ -23,9 +33,7 @@ inline std::string one_line(std::string message) {
   if (message.size() > kLongest) {
     message.replace(kLongest - kEnd, message.size() - kLongest, " ... ");
   }
-  std::replace_if(
-      message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
-      ' ');
+  replace_controls(message, ' ');
   return message;
 }
 

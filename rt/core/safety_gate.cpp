@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "rt/core/joint_pd.h"
-
 namespace sandrunner {
 namespace {
 

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "rt/base/clock_ns.h"
+
 namespace sandrunner {
 
 void Lockstep::tick(const OperatorCommand& command) noexcept {
@@ -27,15 +29,11 @@ void Lockstep::restore(const LockstepState& state, std::uint64_t next_tick) noex
   next_tick_ = next_tick;
 }
 
-std::int64_t wall_clock_ns() noexcept {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
                      OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
                      const StartTap& begin_tap, const BetweenTicks& between) {
   Lockstep loop(robot, config, start, policy);
-  if (begin_tap) begin_tap(wall_clock_ns());
+  if (begin_tap) begin_tap(clock_ns(CLOCK_REALTIME));
   const auto begin = std::chrono::steady_clock::now();
   bool running = true;
   while (running) {

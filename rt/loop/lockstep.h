@@ -69,9 +69,6 @@ struct LoopEnd {
   GateState gate;
 };
 
-/// The wall clock, ns since 1970.
-std::int64_t wall_clock_ns() noexcept;
-
 /// Ticks until `op` or `interrupt` ends it, then the drives are off.
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
                      OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
@@ -270,7 +269,8 @@ std::vector<double> ticks(double begin, double end, int most) {
     const double first = std::ceil(begin / value(1.0) - 1e-9);
     const double last = std::floor(end / value(1.0) + 1e-9);
     if (last - first + 1.0 > most) continue;
-    for (double count = first; count <= last; ++count) result.push_back(value(count));
+    // Counted, as a step more may be no other number.
+    for (int n = 0; n <= static_cast<int>(last - first); ++n) result.push_back(value(first + n));
     break;
   }
   return result;

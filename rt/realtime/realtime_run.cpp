@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
 #include "rt/realtime/watchdog.h"
@@ -121,7 +122,7 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
     threads.set_up(setup);
     const std::string missing = missing_rights(setup.items());
     if (!missing.empty()) to_standard_error(fmt::format("sandrunner: {}\n", missing));
-    const std::int64_t start_ns = wall_clock_ns() + kLeadTime_ns;
+    const std::int64_t start_ns = clock_ns(CLOCK_REALTIME) + kLeadTime_ns;
     threads.start();
     if (begin_tap) begin_tap(start_ns);
     std::uint64_t ticks_seen = 0;

@@ -157,8 +157,11 @@ class SideView {
     cairo_t* cr = canvas_.cairo();
     const double half_m = 0.5 * kSideViewWidth_px / kPixelsPerMeter;
     const double bottom_px = top_px_ + kSideViewHeight_px;
-    for (double mark = std::ceil((distance_m - half_m) / kStep_m);
-         mark * kStep_m < distance_m + half_m; ++mark) {
+    const double first = std::ceil((distance_m - half_m) / kStep_m);
+    constexpr int kMarks = static_cast<int>(kSideViewWidth_px / kPixelsPerMeter / kStep_m) + 1;
+    for (int i = 0; i < kMarks; ++i) {
+      const double mark = first + i;
+      if (!(mark * kStep_m < distance_m + half_m)) break;
       const double at_px = std::floor(x_px(mark * kStep_m - distance_m)) + 0.5;
       cairo_set_line_width(cr, 1.0);
       canvas_.set_color(plot::kFaintInk);

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "rt/telemetry/rotation.h"
+#include "rt/core/rotation.h"
 
 namespace sandrunner {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "rt/telemetry/rotation.h"
+#include "rt/core/rotation.h"
 
 namespace sandrunner {
 namespace {

@@ -70,11 +70,13 @@ void send_command(const Options& options, Interrupt& interrupt) {
   const DdsParticipant participant(options.dds, kIdentity);
   CommandWriter writer(participant, options.dds);
   if (!interrupt.wait_until(kFindRobot_ns, [&] { return writer.has_robot(); })) {
+    if (interrupt.came()) return;
     throw RefusedError(fmt::format("no robot listens on rt/cmd_vel {}", place(options.dds)));
   }
   const std::int64_t start_ns = steady_ns();
   const long long wanted =
-      options.for_s ? std::max(1LL, std::llround(*options.for_s * 20.0)) : INT64_MAX;
+      options.for_s ? std::max(1LL, std::llround(*options.for_s * (1e9 / kCommandPeriod_ns)))
+                    : INT64_MAX;
   long long sent = 0;
   // Each has its own time since the start: a late one does not delay the next.
   while (sent < wanted && !interrupt.came()) {
@@ -98,6 +100,7 @@ void request_mode(const Options& options, Interrupt& interrupt) {
   const DdsParticipant participant(options.dds, kIdentity);
   ModeClient client(participant);
   if (!interrupt.wait_until(kFindRobot_ns, [&] { return client.has_robot(); })) {
+    if (interrupt.came()) return;
     throw RefusedError(fmt::format("{}: no robot answered {}", options.mode, place(options.dds)));
   }
   // The robot may find us a moment after we find it; a request before that would be lost.

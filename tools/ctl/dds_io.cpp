@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <random>
 
+#include "rt/base/clock_ns.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/ros_time.h"
 
@@ -53,8 +53,7 @@ void CommandWriter::send(const VelocityCommand& command) {
   }
   char frame[] = "base_link";
   geometry_msgs_msg_dds__TwistStamped_ stamped{};
-  stamped.header.stamp = ros_time(
-      std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count());
+  stamped.header.stamp = ros_time(clock_ns(CLOCK_REALTIME));
   stamped.header.frame_id = frame;
   stamped.twist = twist;
   dds_write(writer_, &stamped);

@@ -62,15 +62,17 @@ class Drive {
         writer_(participant_, options.dds),
         modes_(participant_),
         reader_(participant_),
-        device_(GamepadDevice::find()) {
-    if (!interrupt_.wait_until(kFindRobot_ns,
-                               [&] { return writer_.has_robot() && modes_.has_robot(); })) {
-      throw RefusedError(fmt::format("drive: no robot answered {}", place(options.dds)));
-    }
+        device_(GamepadDevice::find()),
+        where_(place(options.dds)) {
     if (device_) gamepad_.emplace(device_->ranges());
   }
 
   void run() {
+    if (!interrupt_.wait_until(kFindRobot_ns,
+                               [&] { return writer_.has_robot() && modes_.has_robot(); })) {
+      if (interrupt_.came()) return;
+      throw RefusedError(fmt::format("drive: no robot answered {}", where_));
+    }
     RawTerminal terminal;
     say(fmt::format(
         "{}{}", kHelp,
@@ -118,6 +120,7 @@ class Drive {
     send(std::nullopt);  // zero at once, before the request
     modes_.ask(request);
     asked_ = request;
+    waits_ = true;
     asked_ns_ = steady_ns();
   }
 
@@ -125,10 +128,10 @@ class Drive {
     const std::int64_t now_ns = steady_ns();
     if (const auto reply = modes_.reply()) {
       report(asked_ + (reply->accepted ? ": accepted" : ": refused: " + one_line(reply->reason)));
-      asked_.clear();
-    } else if (!asked_.empty() && now_ns - asked_ns_ > kAnswer_ns) {
-      report(asked_ + ": no answer");
-      asked_.clear();
+      waits_ = false;
+    } else if (waits_ && now_ns - asked_ns_ > kAnswer_ns) {
+      report(asked_ + ": no answer");  // it may come yet
+      waits_ = false;
     }
     const double scale = 0.1 * keys_.scale_tenths();
     std::optional<VelocityCommand> wanted = keys_.command(now_ns);
@@ -158,8 +161,10 @@ class Drive {
   CommandPacer pacer_;
   std::optional<GamepadDevice> device_;
   std::optional<Gamepad> gamepad_;
+  const std::string where_;  // the robot is looked for
   bool quit_ = false;
-  std::string asked_;  // the request without an answer yet
+  std::string asked_;   // the latest request
+  bool waits_ = false;  // for its answer
   std::int64_t asked_ns_ = 0, next_line_ns_ = 0;
 };
 

@@ -6,15 +6,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <stdexcept>
 
+#include "rt/base/clock_ns.h"
+
 namespace sandrunner::ctl {
 
-std::int64_t steady_ns() noexcept {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+std::int64_t steady_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
 
 Interrupt::Interrupt() {
   std::signal(SIGPIPE, SIG_IGN);

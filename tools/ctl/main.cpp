@@ -2,8 +2,6 @@
 // sandrunner-ctl: watches and commands a robot over DDS.
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "rt/base/errors.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"

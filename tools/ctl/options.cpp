@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <vector>
 
 #include "rt/base/command_line.h"
 #include "rt/base/errors.h"

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "rt/base/errors.h"
 #include "rt/core/mode_machine.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/sandrunner.h"

@@ -41,7 +41,7 @@ std::string property(const dds_qos_t* qos, const char* name) {
   if (!dds_qget_prop(qos, name, &value)) return "?";
   std::string text = value;
   dds_free(value);
-  return text;
+  return one_line(text);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ Neighbours NeighbourWatch::look() const {
         if (topic == "sandrunner/mode_reply") {
           found.robots.push_back(place_of(writer.participant_key));
         } else if (topic == "rt/cmd_vel" && cmd_vel_type_ != writer.type_name) {
-          add_once(found.other_commands, writer.type_name);
+          add_once(found.other_commands, one_line(writer.type_name));
         }
       });
   return found;

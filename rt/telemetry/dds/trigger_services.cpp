@@ -72,21 +72,38 @@ std::vector<dds_entity_t> TriggerServices::readers() const {
 
 void TriggerServices::answer(
     const std::function<RequestOutcome(std::string_view request, const dds_guid_t&)>& follow) {
+  struct Reply {
+    dds_entity_t writer;
+    dds_guid_t asker;
+    std_srvs_srv_dds__Trigger_Response_ to;
+    RequestOutcome outcome;
+  };
+  std::vector<Reply> replies;
   for (const Service& service : services_) {
-    take(service.calls, [&](const void* message, const dds_sample_info_t& info) {
-      const auto& call = *static_cast<const std_srvs_srv_dds__Trigger_Request_*>(message);
-      const dds_guid_t asker = participant_of(service.calls, info.publication_handle);
-      RequestOutcome outcome = follow(service.request, asker);
-      const std_srvs_srv_dds__Trigger_Response_ reply{.client = call.client,
-                                                      .number = call.number,
-                                                      .success = outcome.accepted,
-                                                      .message = outcome.text.data()};
-      const auto deadline = std::chrono::steady_clock::now() + kFindReader;
-      while (!is_read_by(service.replies, asker) && std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::sleep_for(kLookEvery);
-      }
-      dds_write(service.replies, &reply);
-    });
+    take(
+        service.calls,
+        [&](const void* message, const dds_sample_info_t& info) {
+          const auto& call = *static_cast<const std_srvs_srv_dds__Trigger_Request_*>(message);
+          const dds_guid_t asker = participant_of(service.calls, info.publication_handle);
+          replies.push_back({.writer = service.replies,
+                             .asker = asker,
+                             .to = {.client = call.client,
+                                    .number = call.number,
+                                    .success = false,
+                                    .message = nullptr},
+                             .outcome = follow(service.request, asker)});
+        },
+        kDepth);
+  }
+  // All were followed before any is waited for: a client that is gone holds up no stop.
+  const auto deadline = std::chrono::steady_clock::now() + kFindReader;
+  for (Reply& reply : replies) {
+    while (!is_read_by(reply.writer, reply.asker) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(kLookEvery);
+    }
+    reply.to.success = reply.outcome.accepted;
+    reply.to.message = reply.outcome.text.data();
+    dds_write(reply.writer, &reply.to);
   }
 }
 

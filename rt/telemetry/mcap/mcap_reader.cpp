@@ -119,6 +119,9 @@ McapReader::McapReader(std::istream& stream, std::string name)
 }
 
 void McapReader::read_header() {
+  stream_.seekg(0, std::ios::end);
+  size_ = static_cast<std::uint64_t>(stream_.tellg());
+  stream_.seekg(0);
   std::array<std::byte, kMcapMagic.size()> magic;
   const bool whole = read_bytes(magic);
   const auto size = static_cast<std::size_t>(offset_);
@@ -141,9 +144,10 @@ bool McapReader::skip_damage() {
   stream_.clear();
   // Pieces overlap by the head of a chunk less one byte, so that none is missed between two.
   constexpr std::size_t kOverlap = kChunkHeadBytes - 1;
-  Bytes piece(kOverlap + kPieceBytes);
   std::uint64_t begin = record_offset_ + 1;
-  while (true) {
+  // The next chunk is often near.
+  for (std::size_t size = 4096;; size = std::min(2 * size, kPieceBytes)) {
+    Bytes piece(kOverlap + size);
     stream_.seekg(static_cast<std::streamoff>(begin));
     stream_.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
     const auto got = static_cast<std::size_t>(stream_.gcount());
@@ -176,6 +180,8 @@ bool McapReader::read_body(std::uint64_t size) {
   if (size > kMaxRecordBytes) {
     fail(fmt::format("found a length of {} bytes, expected at most {}", size, kMaxRecordBytes));
   }
+  if (offset_ > size_ || size > size_ - offset_)
+    return false;  // nor is the rest read, for each such length
   record_.clear();
   while (record_.size() < size) {
     const std::size_t at = record_.size();

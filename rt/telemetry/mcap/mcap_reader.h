@@ -83,6 +83,7 @@ class McapReader {
   std::ifstream file_;
   std::istream& stream_;
   std::string name_;
+  std::uint64_t size_ = 0;           ///< of the file
   std::uint64_t offset_ = 0;         ///< bytes read from the file
   std::uint64_t record_offset_ = 0;  ///< where its current record starts
   std::uint32_t crc_ = 0;            ///< of the data section, then of the summary

@@ -22,10 +22,6 @@ constexpr std::size_t kBlockTicks = 400;   // 0.1 s, 1 MB; longer blocks compres
 constexpr std::size_t kQueuedBlocks = 20;  // two seconds
 constexpr int kCompressionLevel = 1;       // as in files
 
-constexpr std::uint64_t to_ticks(double time_s) {
-  return static_cast<std::uint64_t>(time_s * kControlHz);
-}
-
 std::vector<std::byte> compressed(std::span<const TickRecord> ticks) {
   std::vector<std::byte> room(ZSTD_compressBound(ticks.size_bytes()));
   const std::size_t size =
@@ -48,7 +44,7 @@ BlackBox::BlackBox(std::string folder, RecordingInfo info, const ControllerConfi
                    const Policy* policy, double window_s, bool wait)
     : folder_(std::move(folder)),
       info_(std::move(info)),
-      kept_ticks_(to_ticks(window_s + kBlackBoxAfter_s)),
+      kept_ticks_(ticks_from_s(window_s + kBlackBoxAfter_s)),
       queue_(kBlockTicks, kQueuedBlocks, wait),
       policy_(policy ? std::optional<Policy>(*policy) : std::nullopt),
       replay_(config, start_mode_of(info_), policy_ ? &*policy_ : nullptr) {
@@ -71,7 +67,7 @@ void BlackBox::work() {
   try {
     while (const std::optional<TickQueue::Batch> batch = queue_.take()) {
       keep(*batch);
-      write_marked(to_ticks(kBlackBoxAfter_s));
+      write_marked(ticks_from_s(kBlackBoxAfter_s));
     }
     write_marked(0);
   } catch (const std::bad_alloc&) {  // locked memory is limited, and the run itself needs it more
@@ -151,10 +147,10 @@ void BlackBox::write(const Mark& mark) {
       keep_queued();
     }
     kept.get();
-  } catch (const InputError& error) {
-    file.problem = error.what();
   } catch (const std::bad_alloc&) {
     file.problem = "out of memory";
+  } catch (const std::runtime_error& error) {  // of the file, or of a thread that was not to be had
+    file.problem = error.what();
   }
   result_.files.push_back(std::move(file));
 }

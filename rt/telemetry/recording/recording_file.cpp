@@ -98,11 +98,11 @@ class RecordingReader {
   /// The next message; null at the end, and at damage, which is noted.
   const McapMessage* next() {
     try {
-      const McapMessage* const message = reader_.next();
+      const McapMessage* message = reader_.next();
       // A cut file has no chunk behind its end; one in which a length is wrong has.
-      if (!message && begun_ && !reader_.complete() && reader_.skip_damage()) {
+      while (!message && begun_ && !reader_.complete() && reader_.skip_damage()) {
         note_damage(fmt::format("{}: found a record that is longer than the file", path_));
-        return next();
+        message = reader_.next();
       }
       return message;
     } catch (const InputError& error) {

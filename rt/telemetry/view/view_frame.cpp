@@ -44,18 +44,29 @@ constexpr ViewField field(const char* name, std::size_t offset) {
   field<decltype(ViewFootprint::member)>(#member, offsetof(ViewFootprint, member))
 
 constexpr std::array kFrameFields = {
-    FRAME(t_s),           FRAME(position_m),
-    FRAME(odometry),      FRAME(orientation_wxyz),
-    FRAME(position_rad),  FRAME(velocity_radps),
-    FRAME(torque_nm),     FRAME(peak_torque_nm),
-    FRAME(penetration_m), FRAME(foot_force_n),
-    FRAME(stance_m),      FRAME(asked),
-    FRAME(given),         FRAME(motion),
-    FRAME(estimate),      FRAME(truth),
-    FRAME(power_w),       FRAME(torque_squared_nm2),
-    FRAME(late_us),       FRAME(control_us),
-    FRAME(tick_us),       FRAME(mode),
-    FRAME(faults),        FRAME(flags),
+    FRAME(t_s),
+    FRAME(position_m),
+    FRAME(odometry),
+    FRAME(orientation_wxyz),
+    FRAME(position_rad),
+    FRAME(velocity_radps),
+    FRAME(peak_torque_nm),
+    FRAME(penetration_m),
+    FRAME(foot_force_n),
+    FRAME(stance_m),
+    FRAME(asked),
+    FRAME(given),
+    FRAME(motion),
+    FRAME(estimate),
+    FRAME(truth),
+    FRAME(power_w),
+    FRAME(torque_squared_nm2),
+    FRAME(late_us),
+    FRAME(control_us),
+    FRAME(tick_us),
+    FRAME(mode),
+    FRAME(faults),
+    FRAME(flags),
     FRAME(skipped),
 };
 constexpr std::array kFootprintFields = {FOOTPRINT(t_s), FOOTPRINT(x_m), FOOTPRINT(y_m),
@@ -150,7 +161,6 @@ ViewFrame ViewFrameMaker::make_frame(const TickRecord& tick) const {
     f.orientation_wxyz = floats(odometry_.orientation_wxyz());
     f.position_rad = floats(sensors.joints.position_rad);
     f.velocity_radps = floats(sensors.joints.velocity_radps);
-    f.torque_nm = floats(sensors.joints.torque_nm);
     f.penetration_m.fill(kUnknown);
     for (auto& force : f.foot_force_n) force.fill(kUnknown);
     for (auto& stance : f.stance_m) stance.fill(kUnknown);
@@ -165,7 +175,6 @@ ViewFrame ViewFrameMaker::make_frame(const TickRecord& tick) const {
   f.orientation_wxyz = floats(now.orientation_wxyz);
   f.position_rad = floats(now.joint_position_rad);
   f.velocity_radps = floats(now.joint_velocity_radps);
-  f.torque_nm = floats(now.joint_torque_nm);
   f.penetration_m = floats(now.foot_penetration_m);
   for (std::size_t l = 0; l < kNumLegs; ++l) {
     f.foot_force_n[l] = floats(now.foot_force_n[l]);

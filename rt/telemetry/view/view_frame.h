@@ -40,7 +40,7 @@ struct ViewFrame {
   Vector3 position_m{};            ///< of the base origin
   std::array<double, 3> odometry;  ///< dead-reckoned x, y, yaw; m, rad
   std::array<float, 4> orientation_wxyz;
-  JointArray<float> position_rad, velocity_radps, torque_nm;
+  JointArray<float> position_rad, velocity_radps;
   JointArray<float> peak_torque_nm;  ///< of largest size since the frame before, with its sign
   std::array<float, kNumLegs> penetration_m;
   std::array<std::array<float, 3>, kNumLegs> foot_force_n;  ///< of the ground on the foot

@@ -376,7 +376,11 @@ class ViewServer::Implementation {
 
   void accept(Tcp::acceptor& acceptor) {
     acceptor.async_accept([this, &acceptor](Error error, Tcp::socket socket) {
-      if (!error && hub_.sockets < kViewSockets) {
+      if (error) {  // no descriptor is left, for one: at once again, it would be the same
+        refused_.push_back(&acceptor);
+        return;
+      }
+      if (hub_.sockets < kViewSockets) {
         Error ignored;
         socket.set_option(Tcp::no_delay(true), ignored);
         socket.set_option(Tcp::socket::send_buffer_size(kSendBuffer), ignored);
@@ -393,6 +397,7 @@ class ViewServer::Implementation {
       const bool state = ++ticks_ % kStateEvery == 0 && !hub_.pages.empty();
       const std::string text = state ? hub_.state() : std::string();
       for (Page* const page : std::vector(hub_.pages)) page->send(text);
+      for (Tcp::acceptor* const acceptor : std::exchange(refused_, {})) accept(*acceptor);
       tick();
     });
   }
@@ -400,6 +405,7 @@ class ViewServer::Implementation {
   Hub hub_;  // outlives what is in io_
   asio::io_context io_;
   std::vector<Tcp::acceptor> acceptors_;
+  std::vector<Tcp::acceptor*> refused_;  // that accept again at the next tick
   asio::steady_timer timer_;
   std::uint64_t ticks_ = 0;
   int port_ = 0;

@@ -344,7 +344,14 @@ TEST(MitTest, AReplyThatIsNotThisDrivesIsRefusedAndSaysWhy) {
     EXPECT_EQ(status([](CanFrame& f) { f.fd = true; }), MitStatus::kWrongFormat);
     EXPECT_EQ(status([](CanFrame& f) { f.error = true; }), MitStatus::kErrorFrame);
     EXPECT_EQ(status([](CanFrame& f) { f.data[0] ^= 1; }), MitStatus::kOtherMotor);
-    for (int length = 0; length < 256; ++length) {
+    EXPECT_EQ(status([](CanFrame& f) { f.length = 0; }), MitStatus::kOtherMotor);
+    EXPECT_EQ(status([](CanFrame& f) {
+                f.data[0] ^= 1;
+                f.length = 3;
+              }),
+              MitStatus::kOtherMotor)
+        << "a frame of another motor is not this one's bad reply";
+    for (int length = 1; length < 256; ++length) {
       if (length == good.length) continue;
       EXPECT_EQ(status([&](CanFrame& f) { f.length = static_cast<std::uint8_t>(length); }),
                 MitStatus::kWrongLength);

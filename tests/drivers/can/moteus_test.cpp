@@ -258,6 +258,13 @@ TEST(MoteusTest, AReplyThatIsNotThisDrivesOrNotWholeSaysWhy) {
   EXPECT_EQ(status(good, [](CanFrame& f) { f.id = 0x8100; }), MoteusStatus::kOtherId);
   EXPECT_EQ(status(good, [](CanFrame& f) { f.error = true; }), MoteusStatus::kErrorFrame);
   EXPECT_EQ(status(good, [](CanFrame& f) { f.fd = false; }), MoteusStatus::kWrongFormat);
+  EXPECT_EQ(status(good,
+                   [](CanFrame& f) {
+                     f.fd = false;
+                     f.id = 0x200;
+                   }),
+            MoteusStatus::kOtherId)
+      << "a classic frame of another node is not this drive's bad reply";
   EXPECT_EQ(status(good, [](CanFrame& f) { f.length = 12; }), MoteusStatus::kTruncated);
   EXPECT_EQ(status("2404000f005000000170ff", as_it_is), MoteusStatus::kOk);
   EXPECT_EQ(status("24040010005000000170ff", as_it_is), MoteusStatus::kBadMode);

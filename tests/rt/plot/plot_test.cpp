@@ -32,6 +32,12 @@ TEST(PlotTest, TicksAreRoundNumbersWithinTheRange) {
   }
 }
 
+TEST(PlotTest, TicksEndWhereAStepMoreIsNoOtherNumber) {
+  for (const double begin : {2e15, 1e17, -1e300, 1e308}) {
+    EXPECT_LE(plot::ticks(begin, begin + 1.0, 7).size(), 7U) << begin;
+  }
+}
+
 TEST(PlotTest, TickLabelsHaveTheDigitsOfTheStep) {
   EXPECT_EQ(plot::tick_label(0.2, 0.2), "0.2");
   EXPECT_EQ(plot::tick_label(1.0, 0.05), "1.00");

@@ -8,6 +8,7 @@
 #include <limits>
 #include <thread>
 
+#include "rt/base/clock_ns.h"
 #include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
 #include "tests/support/not_finite.h"
@@ -52,7 +53,7 @@ TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFi
             .tap =
                 [&](const TickRecord& tick) {
                   ticks_before_start += start_ns == 0;
-                  const std::int64_t now_ns = wall_clock_ns();
+                  const std::int64_t now_ns = clock_ns(CLOCK_REALTIME);
                   // When its slot began, by the stamps, plus how late it was.
                   const std::int64_t began_ns =
                       start_ns + static_cast<std::int64_t>(tick.input.sensors.tick) * 250'000 +

@@ -112,4 +112,14 @@ inline std::vector<std::pair<std::size_t, std::size_t>> records_of_type(const st
   return found;
 }
 
+/// In order, but for the length of its chunk: 60 MB.
+inline std::string head_of_a_chunk_beyond_the_file() {
+  const std::uint64_t stored = std::uint64_t{60} << 20, length = 16 + 8 + 4 + 4 + 4 + 8 + stored;
+  const auto raw = [](const auto& number) {
+    return std::string(reinterpret_cast<const char*>(&number), sizeof number);
+  };
+  return std::string(1, '\x06') + raw(length) + std::string(28, '\0') +
+         std::string("\x04\0\0\0zstd", 8) + raw(stored);
+}
+
 }  // namespace sandrunner

@@ -127,6 +127,27 @@ TEST(McapTest, DamageIsSkippedToTheNextChunk) {
   }
 }
 
+TEST(McapTest, ManyLengthsBeyondTheFileAreSkippedOneByOne) {
+  constexpr int kHeads = 60000;
+  const TemporaryFolder folder;
+  std::string bytes = sample_bytes(folder, 60, 12);
+  bytes.resize(bytes.size() / 2);
+  for (int i = 0; i < kHeads; ++i) bytes += head_of_a_chunk_beyond_the_file();
+  std::istringstream stream(bytes);
+  McapReader reader(stream, "some.mcap");
+  int skipped = 0;
+  for (bool more = true; more;) {
+    try {
+      while (reader.next()) {
+      }
+    } catch (const InputError&) {
+    }
+    more = reader.skip_damage();
+    skipped += more;
+  }
+  EXPECT_GE(skipped, kHeads - 1);
+}
+
 TEST(McapTest, MutatedFilesEndInAnErrorOrAsCutAndNeverGiveWrongMessages) {
   const TemporaryFolder folder;
   const std::string sample = sample_bytes(folder, 60, 12);

@@ -143,6 +143,19 @@ TEST(CtlProgramTest, CmdWithoutAnEndIsEndedBySignalsWithZero) {
   }
 }
 
+TEST(CtlProgramTest, SignalsEndTheSearchForARobotWithoutAnError) {
+  const DdsConfig config = test_config();
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"cmd", "0.5", "0", "0"},
+                                                std::vector<std::string>{"mode", "stand"}}) {
+    Program program(words, config);
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));  // of two seconds
+    program.signal(SIGINT);
+    const Ended& ended = program.wait();
+    EXPECT_EQ(ended.code, 0) << words[0] << ": " << ended.err;
+    EXPECT_EQ(ended.err, "") << words[0];
+  }
+}
+
 TEST(CtlProgramTest, CmdSendsTwistStampedWhenTold) {
   DdsConfig config = test_config();
   config.stamped_cmd_vel = true;

@@ -4,7 +4,7 @@ import { Strip } from './plots.js';
 
 const kAsked = '#8a949e', kTrue = '#1d5c99', kBelieved = '#f07c12';
 // Legs of a pair often move alike: left ones are wide and light, right ones narrow and dark on top.
-export const kLegColors = ['#93c2ee', '#12518f', '#f2bd7c', '#a84a08'];
+const kLegColors = ['#93c2ee', '#12518f', '#f2bd7c', '#a84a08'];
 const kDeadline_us = 250, kGravity = 9.81, kJointsPerLeg = 3;
 export const kSpan_s = 6;
 

@@ -20,6 +20,12 @@ export function markStep(range, wanted) {
   return power * ([1, 2, 5, 10].find((m) => m * power >= rough) ?? 10);
 }
 
+/** The multiples of `step` from `low` to `high`; counted, as a step more may be no other number. */
+export function marks(low, high, step) {
+  const first = Math.ceil(low / step), count = Math.floor(high / step) - first + 1;
+  return Array.from({ length: Math.max(0, count) }, (_, i) => (first + i) * step);
+}
+
 const digitsOf = (step) => Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 
 const kLeft = 40, kRight = 8, kFont = 'system-ui, sans-serif';
@@ -105,10 +111,10 @@ export class Strip {
       g.lineTo(width - kRight, Math.round(y(value)) + 0.5);
       g.stroke();
     };
-    for (let n = Math.ceil(low / step); n * step <= high; ++n) {
-      line(n * step, n === 0 ? '#b9c2ca' : '#e8ecef', []);
+    for (const value of marks(low, high, step)) {
+      line(value, value === 0 ? '#b9c2ca' : '#e8ecef', []);
       g.fillStyle = '#66717c';
-      g.fillText((n * step).toFixed(digits), kLeft - 5, y(n * step) + 3.5);
+      g.fillText(value.toFixed(digits), kLeft - 5, y(value) + 3.5);
     }
     for (const limit of this.limits) line(limit, '#d8322f', [5, 3]);
     g.setLineDash([]);
@@ -117,9 +123,7 @@ export class Strip {
   #times(g, x, from, t, width, height) {
     const step = markStep(t - from, 5), digits = digitsOf(step);
     g.textAlign = 'center';
-    for (let n = Math.ceil(from / step); n * step <= t; ++n) {
-      g.fillText((n * step).toFixed(digits), Math.min(width - 12, x(n * step)), height - 6);
-    }
+    for (const at of marks(from, t, step)) g.fillText(at.toFixed(digits), Math.min(width - 12, x(at)), height - 6);
   }
 
   #head(g, width) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The time line: where the run is in what mode, how fast it went, faults, and the shown time; pointer and keys move it.
 import { isForPage } from './keys.js';
-import { context2d, markStep } from './plots.js';
+import { context2d, marks, markStep } from './plots.js';
 
-export const kModeColors = { passive: '#e3e7eb', damping: '#f3d9b1', stand_up: '#d5e3d0', stand: '#bfdcb8', walk: '#a9c9ea', fault: '#f0a9a4' };
+const kModeColors = { passive: '#e3e7eb', damping: '#f3d9b1', stand_up: '#d5e3d0', stand: '#bfdcb8', walk: '#a9c9ea', fault: '#f0a9a4' };
 const kInset = 8;
 
 export class Timeline {
@@ -90,8 +90,6 @@ export class Timeline {
     g.fillStyle = '#66717c';
     g.textAlign = 'center';
     g.font = '10px system-ui, sans-serif';
-    for (let n = Math.ceil(begin / step); n * step <= end; ++n) {
-      g.fillText(`${n * step} s`, Math.min(width - 14, Math.max(12, x(n * step))), height - 1);
-    }
+    for (const at of marks(begin, end, step)) g.fillText(`${at} s`, Math.min(width - 14, Math.max(12, x(at))), height - 1);
   }
 }

@@ -234,6 +234,17 @@ TEST_F(RecordingTest, DamagedChunkCostsItsOwnSpanOnly) {
   expect_damage_costs_its_own_span(path(), 4000);
 }
 
+TEST_F(RecordingTest, ManyChunksBeyondTheFileAreOneDamage) {
+  record();
+  std::string bytes = read_file(path());
+  bytes.resize(bytes.size() / 2);
+  for (int i = 0; i < 60000; ++i) bytes += head_of_a_chunk_beyond_the_file();
+  write_file(folder_.path("many.mcap"), bytes);
+  const RecordingContents contents = read_ticks(folder_.path("many.mcap"));
+  EXPECT_FALSE(contents.complete);
+  EXPECT_NE(contents.damage, "");
+}
+
 TEST_F(RecordingTest, DamagedLastChunkIsSaidToBeLostToTheEnd) {
   record();
   std::string bytes = read_file(path());

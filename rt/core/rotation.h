@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "rt/core/messages.h"
 
@@ -25,15 +26,29 @@ inline Rotation turned(const Rotation& start, const Vector3& axis, double angle_
   return product(start, {std::cos(0.5 * angle_rad), s * axis[0], s * axis[1], s * axis[2]});
 }
 
+/// The rotation back.
+inline Rotation inverse(const Rotation& q) noexcept { return {q[0], -q[1], -q[2], -q[3]}; }
+
+/// Columns of the rotation from body to world: the body's x, y and z axis in the world.
+inline std::array<Vector3, 3> body_axes(const Rotation& q) noexcept {
+  const auto [w, x, y, z] = q;
+  return {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+           {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+           {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
+}
+
+/// A vector of the body frame in the world frame.
+inline Vector3 to_world(const std::array<Vector3, 3>& axes, const Vector3& v) noexcept {
+  Vector3 world{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    world[k] = axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2];
+  }
+  return world;
+}
+
 /// A vector of the rotated frame in the frame that it is rotated from.
 inline Vector3 rotated(const Rotation& q, const Vector3& v) noexcept {
-  const auto [w, x, y, z] = q;
-  return {(1.0 - 2.0 * (y * y + z * z)) * v[0] + 2.0 * (x * y - w * z) * v[1] +
-              2.0 * (x * z + w * y) * v[2],
-          2.0 * (x * y + w * z) * v[0] + (1.0 - 2.0 * (x * x + z * z)) * v[1] +
-              2.0 * (y * z - w * x) * v[2],
-          2.0 * (x * z - w * y) * v[0] + 2.0 * (y * z + w * x) * v[1] +
-              (1.0 - 2.0 * (x * x + y * y)) * v[2]};
+  return to_world(body_axes(q), v);
 }
 
 }  // namespace sandrunner
