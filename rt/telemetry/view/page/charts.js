@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The plots beside the scene, from the fields of the frames.
+import { tellsTruth } from './moment.js';
 import { Strip } from './plots.js';
 
 const kAsked = '#8a949e', kTrue = '#1d5c99', kBelieved = '#f07c12';
@@ -10,7 +11,7 @@ export const kSpan_s = 6;
 
 export function makeCharts({ hello, frames }, robot, parent) {
   // Without truth, what it alone tells is left out.
-  const hasTruth = (frames.at(0, 'flags') & 1) !== 0;
+  const hasTruth = tellsTruth(frames);
   const truth = (value) => (hasTruth ? [{ name: 'true', color: kTrue, value }] : []);
   const at = (field, k = 0, scale = 1) => (i) => scale * frames.at(i, field, k);
   const legs = (value) => hello.legs.map((name, l) => ({ name, color: kLegColors[l], wide: l % 2 === 0, value: value(l) }));

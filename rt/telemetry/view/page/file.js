@@ -16,13 +16,13 @@ async function inflate(id) {
  * @param {Uint8Array} planes
  */
 function unpack(fields, planes) {
-  const kWidth = { f64: 8, f32: 4, u32: 4, i32: 4, i16: 2 };
-  const perRow = fields.reduce((sum, f) => sum + f.count * kWidth[f.type], 0);
+  const widthOf = (type) => Table.kTypes[type].BYTES_PER_ELEMENT;
+  const perRow = fields.reduce((sum, f) => sum + f.count * widthOf(f.type), 0);
   const rows = planes.length / perRow;
   const columns = {};
   let from = 0;
   for (const { name, type, count } of fields) {
-    const width = kWidth[type];
+    const width = widthOf(type);
     columns[name] = [];
     for (let k = 0; k < count; ++k) {
       const bytes = new Uint8Array(rows * width);

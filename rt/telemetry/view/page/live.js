@@ -2,6 +2,7 @@
 // The source of a page that this computer's sandrunner serves: the same as of a file, but it grows. It connects again
 // by itself, keeps what was seen, and begins anew if another run answers.
 import { GrowingTable } from './growing_table.js';
+import { tellsTruth } from './moment.js';
 
 const kMostFrames = 60000, kMostPrints = 8192, kMostTiles = 2048, kAgain_ms = 500, kLost_ms = 500, kLook_ms = 100;
 
@@ -104,7 +105,7 @@ export class Live {
     const { run } = this;
     if (run.live || run.frames.count < 2) return;
     run.live = this;
-    if ((run.frames.at(0, 'flags') & 1) === 0) {
+    if (!tellsTruth(run.frames)) {
       run.hello.note = 'This robot does not tell what really is: all that is shown is measured or estimated.';
     }
     this.begin(this.run);

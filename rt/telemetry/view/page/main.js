@@ -8,7 +8,7 @@ import { hasRun, readCurve, readRun } from './file.js';
 import { Hand } from './hand.js';
 import { Live } from './live.js';
 import { LivePlayer } from './live_player.js';
-import { momentAt } from './moment.js';
+import { momentAt, tellsTruth } from './moment.js';
 import { kColors } from './overlays.js';
 import { Player } from './player.js';
 import { Robot } from './robot.js';
@@ -103,7 +103,7 @@ function show(run) {
     return;
   }
   const robot = new Robot(hello.urdf, hello.base, hello.joints);
-  const state = new State(hello, (frames.at(0, 'flags') & 1) !== 0);
+  const state = new State(hello, tellsTruth(frames));
   robot.pose(momentAt(frames, frames.time(0)));
   const surface = new Surface(run), view = makeView(run, robot, surface);
   const player = run.live ? new LivePlayer(run) : new Player(frames);

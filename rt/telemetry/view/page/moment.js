@@ -4,6 +4,9 @@
 const kHasTruth = 1, kHasEstimate = 2;  // bits of `flags` (view_frame.h)
 const kLongestGap_s = 0.1;  // over a longer one nothing is known of the motion between
 
+/** Whether a run tells what really is: simulated robots do. */
+export const tellsTruth = (frames) => frames.count > 0 && (frames.at(0, 'flags') & kHasTruth) !== 0;
+
 /** The moment at time t of at least one frame: plain numbers and arrays; `row` is the frame at or before it. */
 export function momentAt(frames, t) {
   const row = Math.max(0, frames.countUntil(t) - 1), next = Math.min(row + 1, frames.count - 1);

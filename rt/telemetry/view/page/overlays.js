@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is drawn over the scene: contact forces, what the network believes, the robot's path. Each kind has a switch.
 import * as THREE from 'three';
+import { tellsTruth } from './moment.js';
 
-const kForce_m_per_n = 0.0016, kSpeed_m_per_mps = 0.25, kTrail_s = 20, kTrailPoints = 800;
+export const kForce_m_per_n = 0.0016;
+const kSpeed_m_per_mps = 0.25, kTrail_s = 20, kTrailPoints = 800;
 export const kColors = { force: '#d8322f', belief: '#f07c12', truth: '#1d5c99' };
 
 const flat = (color, more = {}) => new THREE.MeshBasicMaterial({ color: new THREE.Color(color).convertSRGBToLinear(), ...more });
@@ -66,7 +68,7 @@ export class Overlays {
   constructor({ hello, frames }, robot, surface) {
     this.robot = robot;
     this.feet = hello.feet;
-    this.hasTruth = frames.count > 0 && (frames.at(0, 'flags') & 1) !== 0;
+    this.hasTruth = tellsTruth(frames);
     this.forces = hello.feet.map(() => new Arrow(kColors.force, 0.008));
     this.rings = hello.feet.map(() => new THREE.Mesh(new THREE.TorusBufferGeometry(0.05, 0.0035, 8, 40), flat(kColors.belief)));
     this.believedSpeed = new Arrow(kColors.belief, 0.008);

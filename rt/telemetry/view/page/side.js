@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The robot from its right side on a plain canvas, for browsers without WebGL: as side_view.cpp draws it.
 import * as THREE from 'three';
+import { kForce_m_per_n } from './overlays.js';
 import { context2d } from './plots.js';
 
 // What lies to the left is drawn further to the front and up, so that left legs do not hide behind right ones.
@@ -111,7 +112,7 @@ export class SideView {
     g.strokeStyle = '#d8322f';
     g.lineWidth = 4;
     this.hello.feet.forEach((foot, l) => {
-      const at = this.robot.where(foot), force = new THREE.Vector3(...forces.slice(3 * l, 3 * l + 3)).multiplyScalar(0.0016);
+      const at = this.robot.where(foot), force = new THREE.Vector3(...forces.slice(3 * l, 3 * l + 3)).multiplyScalar(kForce_m_per_n);
       if (!(force.length() > 0.02)) return;
       const from = view(at), to = view(at.clone().add(force));
       g.beginPath();
