@@ -19,6 +19,7 @@ constexpr NumberSetting<R> kRun[] = {
     {"settle_share", &R::settle_share, 0.0, 1.0},
     {"settle_kl_share", &R::settle_kl_share, 1e-3, 1.0},
     {"settle_action_std", &R::settle_action_std, 1e-3, 10.0},
+    {"settle_soft_reset_share", &R::settle_soft_reset_share, 0.0, 1.0},
 };
 
 using L = learner::LearnerConfig;

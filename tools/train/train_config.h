@@ -11,12 +11,13 @@ namespace sandrunner::train {
 
 /// Table `run` of tools/train/training.toml.
 struct RunSettings {
-  int envs = 0;                      ///< environments
-  double transitions = 0;            ///< of all environments together, when the training ends
-  double checkpoint_interval_s = 0;  ///< least time between checkpoints
-  double settle_share = 0;           ///< last share, 0 to 1, in which updates become smaller
-  double settle_kl_share = 0;        ///< KL target at the end, over that before; 0 to 1
-  double settle_action_std = 0;      ///< most noise of the actions at the end
+  int envs = 0;                        ///< environments
+  double transitions = 0;              ///< of all environments together, when the training ends
+  double checkpoint_interval_s = 0;    ///< least time between checkpoints
+  double settle_share = 0;             ///< last share, 0 to 1, in which updates become smaller
+  double settle_kl_share = 0;          ///< KL target at the end, over that before; 0 to 1
+  double settle_action_std = 0;        ///< most noise of the actions at the end
+  double settle_soft_reset_share = 0;  ///< EpisodeSettings::soft_reset_share in that last part
 };
 
 /// All settings of a training.

@@ -213,7 +213,8 @@ void Training::run(const std::atomic<bool>& interrupted) {
   if (transitions() > before) save();
 }
 
-// In the last part smaller and smaller updates, and less and less noise: the policy settles.
+// In the last part smaller and smaller updates, less and less noise, and more starts: the policy
+// settles.
 void Training::settle() {
   const RunSettings& run = config_.run;
   const learner::LearnerConfig& learner = config_.learner;
@@ -224,6 +225,8 @@ void Training::settle() {
   learner_.set_action_std_most(
       run.settle_action_std *
       std::pow(learner.action_std_start / run.settle_action_std, std::clamp(left, 0.0, 1.0)));
+  task_.set_soft_reset_share(left < 1.0 ? run.settle_soft_reset_share
+                                        : config_.task.episode.soft_reset_share);
 }
 
 void Training::fall_back() {

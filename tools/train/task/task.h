@@ -63,6 +63,8 @@ class Task {
   WindowStats end_window(double transitions);
   const Curriculum& curriculum() const { return curriculum_; }
   CommandRange command_range() const;
+  /// Of the episodes that end in time, those whose robot goes on as it is.
+  void set_soft_reset_share(double share) { config_.episode.soft_reset_share = share; }
   /// 0 to 1: how far the costs have risen to their values at the end of the training.
   double late() const { return cost_ramp_.late; }
 
