@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "rt/base/errors.h"
 #include "rt/telemetry/dds/ros.h"
 
 namespace sandrunner {
