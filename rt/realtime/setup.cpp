@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -89,6 +90,7 @@ RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
   };
   if (config_.control_cpu < 0) config_.control_cpu = free_cpu(config_.policy_cpu);
   if (config_.policy_cpu < 0) config_.policy_cpu = free_cpu(config_.control_cpu);
+  if (config_.affinity != Need::kOff) keep_others_off_control_cpu();
   if (config_.lock_memory != Need::kOff) {
     // The heap keeps what it has once had, and takes it from one piece.
     mallopt(M_TRIM_THRESHOLD, -1);
@@ -107,6 +109,7 @@ RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
 }
 
 RealtimeSetup::~RealtimeSetup() {
+  for (const auto& [thread, cpus] : moved_) sched_setaffinity(thread, sizeof cpus, &cpus);
   if (dma_latency_ >= 0) close(dma_latency_);
   if (locked_) munlockall();
 }
@@ -124,6 +127,19 @@ void RealtimeSetup::note(Need need, const std::string& name, int error, const st
     throw InputError(fmt::format("realtime: {} is required and was not obtained: {}", name, why));
   }
   items_.push_back({name, false, why, grant});
+}
+
+void RealtimeSetup::keep_others_off_control_cpu() {
+  std::error_code unreadable;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", unreadable)) {
+    const pid_t thread = std::atoi(task.path().filename().c_str());
+    cpu_set_t cpus;
+    if (sched_getaffinity(thread, sizeof cpus, &cpus) != 0) continue;  // it has ended
+    cpu_set_t others = cpus;
+    CPU_CLR(config_.control_cpu, &others);
+    if (CPU_EQUAL(&others, &cpus) || CPU_COUNT(&others) == 0) continue;
+    if (sched_setaffinity(thread, sizeof others, &others) == 0) moved_.emplace_back(thread, cpus);
+  }
 }
 
 void RealtimeSetup::pin(pthread_t thread, const std::string& name, int cpu) {

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <pthread.h>
+#include <sched.h>
+#include <sys/types.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rt/base/config_tree.h"
@@ -17,7 +20,8 @@ enum class Need { kRequire, kWarn, kOff };
 struct RealtimeConfig {
   Need lock_memory = Need::kWarn;  ///< all pages resident, heap and stacks faulted in beforehand
   Need priority = Need::kWarn;     ///< SCHED_FIFO
-  Need affinity = Need::kWarn;     ///< a processor of its own for each of the two threads
+  Need affinity = Need::kWarn;     ///< a processor of its own for each of the two threads; none
+                                   ///< of the process's others runs on the control thread's
   Need dma_latency = Need::kWarn;  ///< no deep idle states of the processor
   int control_priority = 80;
   int policy_priority = 70;  ///< below the control thread's
@@ -41,7 +45,9 @@ struct SetupItem {
 /// in items(); a required one throws InputError.
 class RealtimeSetup {
  public:
-  /// Locks memory, fits the heap, and holds the processors awake.
+  /// Locks memory, fits the heap, holds the processors awake, and keeps all threads of the process
+  /// off the control thread's processor, if there is another, until the destructor; threads that
+  /// they start later stay off it too.
   explicit RealtimeSetup(const RealtimeConfig& config);
   ~RealtimeSetup();
   RealtimeSetup(const RealtimeSetup&) = delete;
@@ -50,7 +56,7 @@ class RealtimeSetup {
   /// SCHED_FIFO and processor of the two threads, before they are let into their loops.
   void adopt_control_thread(pthread_t thread);
   void adopt_policy_thread(pthread_t thread);
-  /// Above both, on any processor.
+  /// Above both; where the other threads are.
   void adopt_watchdog_thread(pthread_t thread);
 
   const std::vector<SetupItem>& items() const noexcept { return items_; }
@@ -60,10 +66,12 @@ class RealtimeSetup {
             const std::string& grant);
   void adopt(pthread_t thread, const std::string& name, int priority);
   void pin(pthread_t thread, const std::string& name, int cpu);
+  void keep_others_off_control_cpu();
 
   RealtimeConfig config_;
   std::vector<SetupItem> items_;
-  int dma_latency_ = -1;  // file descriptor
+  std::vector<std::pair<pid_t, cpu_set_t>> moved_;  // threads, and the processors that they had
+  int dma_latency_ = -1;                            // file descriptor
   bool locked_ = false;
 };
 

@@ -111,7 +111,37 @@ TEST(RealtimeSetupTest, ThreadsGetTheLastProcessors) {
   EXPECT_EQ(setup.items()[0].detail, "CPU " + std::to_string(cpus.back()));
   const int last_but_one = cpus.size() > 1 ? cpus[cpus.size() - 2] : cpus[0];
   EXPECT_EQ(setup.items()[1].detail, "CPU " + std::to_string(last_but_one));
-  EXPECT_EQ(allowed_cpus(), cpus);  // the others stay where they were
+}
+
+TEST(RealtimeSetupTest, NoOtherThreadRunsOnTheControlThreadsProcessor) {
+  const std::vector<int> cpus = allowed_cpus();
+  if (cpus.size() < 2) GTEST_SKIP() << "needs two processors";
+  const std::vector<int> others(cpus.begin(), cpus.end() - 1);
+  std::atomic<int> stage{0};
+  std::vector<int> during, after;
+  std::thread earlier([&] {
+    stage.wait(0);
+    during = allowed_cpus();
+    stage = 2;
+    stage.notify_all();
+    stage.wait(2);
+    after = allowed_cpus();
+  });
+  RealtimeConfig config = all_off();
+  config.affinity = Need::kRequire;
+  {
+    const RealtimeSetup setup(config);
+    EXPECT_EQ(allowed_cpus(), others);
+    stage = 1;
+    stage.notify_all();
+    stage.wait(1);
+  }
+  stage = 3;
+  stage.notify_all();
+  earlier.join();
+  EXPECT_EQ(during, others);
+  EXPECT_EQ(after, cpus);
+  EXPECT_EQ(allowed_cpus(), cpus);
 }
 
 TEST(RealtimeSetupTest, ThreadGetsItsPriority) {
