@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "policy/text.h"
+#include "rt/core/split_mix.h"
 
 namespace sandrunner {
 namespace {
@@ -78,15 +79,10 @@ class PlainNetwork {
   Doubles c_ = Doubles(kHiddenSize, 0.0);
 };
 
-/// Uniform numbers in [-1, 1) by SplitMix64 (Steele, Lea, Flood 2014): the same on every machine.
+/// Uniform numbers in [-1, 1) by SplitMix64: the same on every machine.
 class Uniform {
  public:
-  double next() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
-  }
+  double next() { return static_cast<double>(next_bits(state_) >> 11) * 0x1p-52 - 1.0; }
 
  private:
   std::uint64_t state_ = 0;

@@ -7,12 +7,13 @@
 #include <cstring>
 #include <type_traits>
 
+#include "rt/core/split_mix.h"
+
 namespace sandrunner {
 
 /// 64-bit hash of state, word by word: equal bits give equal values on every machine and from every
 /// compiler. Finds accidental differences; no protection against intent. Steps of the word: xor,
-/// odd multiplier (golden ratio), xor-shift; the end is the finaliser of SplitMix64 (Steele et al.,
-/// OOPSLA 2014).
+/// odd multiplier (golden ratio), xor-shift; the end is the finaliser of SplitMix64.
 class StateHash {
  public:
   static_assert(std::endian::native == std::endian::little);
@@ -32,16 +33,11 @@ class StateHash {
     }
   }
 
-  std::uint64_t value() const noexcept {
-    std::uint64_t z = hash_;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-  }
+  std::uint64_t value() const noexcept { return mix_bits(hash_); }
 
  private:
   void add_word(std::uint64_t word) noexcept {
-    hash_ = (hash_ ^ word) * 0x9E3779B97F4A7C15u;
+    hash_ = (hash_ ^ word) * kGoldenRatio;
     hash_ ^= hash_ >> 32;
   }
 

@@ -130,6 +130,7 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
     row("a joint past its stop", fmt::format("{:6} control steps", f.joint_limit_steps));
     row("a joint too fast", fmt::format("{:6} control steps", f.speed_limit_steps));
   }
+  if (r.walked_s > 0.0) t += "over the whole run:\n";
   std::string counted;
   for (const GateCounterName& counter : kGateCounters) {
     const std::uint64_t ticks = r.end.gate.counters.*counter.ticks;

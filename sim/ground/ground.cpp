@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "rt/core/split_mix.h"
+
 namespace sandrunner::sim {
 
 Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double>& foot,
@@ -53,8 +55,8 @@ Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double
   g.roughness = rough ? p.roughness_m : 0.0;
   g.wave_number = 2.0 * std::numbers::pi / p.roughness_wavelength_m;
   // Spreads the seeds over [0, 2 pi).
-  g.phase = 2.0 * std::numbers::pi *
-            static_cast<double>((p.roughness_seed * 0x9E3779B97F4A7C15u) >> 40) / 16777216.0;
+  g.phase = 2.0 * std::numbers::pi * static_cast<double>((p.roughness_seed * kGoldenRatio) >> 40) /
+            16777216.0;
   return g;
 }
 

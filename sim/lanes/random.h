@@ -5,22 +5,17 @@
 
 #include <cstdint>
 
+#include "rt/core/split_mix.h"
 #include "sim/lanes/lanes.h"
 
 namespace sandrunner::sim {
 
-/// 64 random bits: two rounds of the SplitMix64 finaliser (Steele et al., OOPSLA 2014) over the
-/// mixed key.
+/// 64 random bits: two rounds of the SplitMix64 finaliser over the mixed key.
 inline std::uint64_t random_bits(std::uint64_t seed, std::uint64_t stream,
                                  std::uint64_t counter) noexcept {
-  const auto mix = [](std::uint64_t z) {
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-  };
-  const std::uint64_t key = mix(seed * 0x9E3779B97F4A7C15u + 0x632BE59BD9B4E019u) ^
-                            mix(stream * 0xD1B54A32D192ED03u + 0x8CB92BA72F3D8DD7u);
-  return mix(mix(key + counter * 0x9E3779B97F4A7C15u) ^ key);
+  const std::uint64_t key = mix_bits(seed * kGoldenRatio + 0x632BE59BD9B4E019u) ^
+                            mix_bits(stream * 0xD1B54A32D192ED03u + 0x8CB92BA72F3D8DD7u);
+  return mix_bits(mix_bits(key + counter * kGoldenRatio) ^ key);
 }
 
 /// Uniform in [0, 1).

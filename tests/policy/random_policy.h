@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "policy/policy_file.h"
+#include "rt/core/split_mix.h"
 
 namespace sandrunner {
 
@@ -16,12 +17,7 @@ class RandomFloats {
  public:
   explicit RandomFloats(std::uint64_t seed) : state_(seed) {}
 
-  std::uint64_t bits() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
+  std::uint64_t bits() { return next_bits(state_); }
 
   /// In [-1, 1).
   float next() { return static_cast<float>(bits() >> 40) * 0x1p-23f - 1.0f; }

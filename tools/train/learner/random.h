@@ -9,25 +9,20 @@
 #include <numbers>
 #include <utility>
 
+#include "rt/core/split_mix.h"
+
 namespace sandrunner::learner {
 
 /// What the numbers are for: streams of one seed are independent of each other.
 enum class Stream : std::uint64_t { kInitialization = 1, kAction = 2, kShuffle = 3 };
 
-/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits all depend on
-/// all input bits.
-constexpr std::uint64_t mix_bits(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15ULL;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-
-/// 64 uniform bits of counter (a, b).
+/// 64 uniform bits of counter (a, b), by SplitMix64.
 constexpr std::uint64_t counter_bits(std::uint64_t seed, Stream stream, std::uint64_t a,
                                      std::uint64_t b) {
-  const std::uint64_t key = mix_bits(mix_bits(seed) + static_cast<std::uint64_t>(stream));
-  return mix_bits(mix_bits(key + a) + b);
+  std::uint64_t key = next_bits(seed) + static_cast<std::uint64_t>(stream);
+  std::uint64_t row = next_bits(key) + a;
+  std::uint64_t element = next_bits(row) + b;
+  return next_bits(element);
 }
 
 /// Two independent standard normal values of counter (a, b) (Box and Muller 1958), |value| < 5.8.
