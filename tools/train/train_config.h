@@ -17,7 +17,7 @@ struct RunSettings {
   double settle_share = 0;             ///< last share, 0 to 1, in which updates become smaller
   double settle_kl_share = 0;          ///< KL target at the end, over that before; 0 to 1
   double settle_action_std = 0;        ///< most noise of the actions at the end
-  double settle_soft_reset_share = 0;  ///< EpisodeSettings::soft_reset_share in that last part
+  double settle_soft_reset_share = 0;  ///< EpisodeSettings::soft_reset_share at the end
 };
 
 /// All settings of a training.

@@ -219,14 +219,14 @@ void Training::settle() {
   const RunSettings& run = config_.run;
   const learner::LearnerConfig& learner = config_.learner;
   const double to_go = run.transitions - static_cast<double>(learner_.transitions());
-  const double left = to_go / std::max(run.transitions * run.settle_share, 1.0);
+  const double left =
+      std::clamp(to_go / std::max(run.transitions * run.settle_share, 1.0), 0.0, 1.0);
   learner_.set_symmetry_weight(learner.loss.symmetry_weight * task_.late());
-  learner_.set_kl_target(std::clamp(left, run.settle_kl_share, 1.0) * learner.kl_target);
-  learner_.set_action_std_most(
-      run.settle_action_std *
-      std::pow(learner.action_std_start / run.settle_action_std, std::clamp(left, 0.0, 1.0)));
-  task_.set_soft_reset_share(left < 1.0 ? run.settle_soft_reset_share
-                                        : config_.task.episode.soft_reset_share);
+  learner_.set_kl_target(std::max(left, run.settle_kl_share) * learner.kl_target);
+  learner_.set_action_std_most(run.settle_action_std *
+                               std::pow(learner.action_std_start / run.settle_action_std, left));
+  task_.set_soft_reset_share(
+      std::lerp(run.settle_soft_reset_share, config_.task.episode.soft_reset_share, left));
 }
 
 void Training::fall_back() {

@@ -192,6 +192,7 @@ void Task::hard_reset(int env, Env& e) {
   e.step = 0;
   e.action = e.action_1 = e.action_2 = {};
   e.air_s = e.stance_s = {};
+  e.since_touchdown_s.fill(static_cast<float>(config_.episode.length_s));  // no stride before it
   e.unloaded_steps = e.was_active = {};
   e.drift = {};
   // Some start exactly as a robot that has stood up, and is then told to go: their first step has

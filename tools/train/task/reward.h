@@ -70,6 +70,8 @@ struct RewardSettings {
   double slip = 0;                ///< per m^2/s^2
   double smoothness_1 = 0;        ///< per square of the action's change
   double smoothness_2 = 0;        ///< per square of the change of that
+  double short_stride = 0;        ///< per s that a stride is shorter than the next, at the end
+  double stride_shortest_s = 0;   ///< from touchdown to touchdown of a foot
   double pose = 0;                ///< per rad^2 off the nominal pose
   double pose_flexion_share = 0;  ///< of that, for HFE and KFE
   double joint_margin = 0;        ///< per rad of a knee past one of the next two
@@ -134,6 +136,8 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"slip", &RewardSettings::slip, 0.0, kNoLimit},
     {"smoothness_1", &RewardSettings::smoothness_1, 0.0, kNoLimit},
     {"smoothness_2", &RewardSettings::smoothness_2, 0.0, kNoLimit},
+    {"short_stride", &RewardSettings::short_stride, 0.0, kNoLimit},
+    {"stride_shortest_s", &RewardSettings::stride_shortest_s, 0.0, kNoLimit},
     {"pose", &RewardSettings::pose, 0.0, kNoLimit},
     {"pose_flexion_share", &RewardSettings::pose_flexion_share, 0.0, kNoLimit},
     {"joint_margin", &RewardSettings::joint_margin, 0.0, kNoLimit},
@@ -193,8 +197,8 @@ inline double velocity_paid(const StepOutcome& s, const RewardSettings& r, const
 inline double progress_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
   const double speed2 = command_speed2(s);
   if (!(speed2 > 0.01)) return 0.0;
-  const double along = s.vx * s.command[0] + s.vy * s.command[1];
-  return r.progress_weight * std::clamp(along / speed2, -1.0, 1.0);
+  const double along = s.drift[0] * s.command[0] + s.drift[1] * s.command[1];
+  return r.progress_weight * made(along / speed2);
 }
 
 inline double yaw_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
@@ -204,8 +208,7 @@ inline double yaw_paid(const StepOutcome& s, const RewardSettings& r, const Cost
 
 inline double yaw_progress_paid(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
   if (!(std::fabs(s.command[2]) > 0.1f)) return 0.0;
-  return r.yaw_progress_weight *
-         std::clamp(static_cast<double>(s.yaw_rate / s.command[2]), -1.0, 1.0);
+  return r.yaw_progress_weight * made(s.drift[2] / s.command[2]);
 }
 
 /// Pointed kernels of the velocities without the gait's own swing: every bit of drift costs.
@@ -291,6 +294,18 @@ inline double smoothness_2_charged(const StepOutcome& s, const RewardSettings& r
   return r.smoothness_2 * squares;
 }
 
+/// Of feet that touch down too soon after they last did: fast strides strike hard ground more often
+/// than they need to. By the time that lacks and not by its square: a step that catches a stumble
+/// is a short stride too.
+inline double short_stride_charged(const StepOutcome& s, const RewardSettings& r,
+                                   const CostRamp& ramp) {
+  double lack_s = 0.0;
+  for (const float stride_s : s.stride_s) {
+    if (stride_s > 0.0f) lack_s += std::max(r.stride_shortest_s - stride_s, 0.0);
+  }
+  return r.short_stride * ramp.late * lack_s;
+}
+
 /// Twice as much when told to stand.
 inline double pose_charged(const StepOutcome& s, const RewardSettings& r, const CostRamp&) {
   const bool still =
@@ -357,6 +372,7 @@ inline constexpr RewardTerm kCharged[] = {
     {"slip", slip_charged, 0},
     {"smoothness_1", smoothness_1_charged, 1},
     {"smoothness_2", smoothness_2_charged, 1},
+    {"short_stride", short_stride_charged, 1},
     {"pose", pose_charged, 1},
     {"joint_margin", joint_margin_charged, 1},
     {"orientation", orientation_charged, 2},

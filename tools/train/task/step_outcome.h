@@ -31,8 +31,10 @@ struct StepOutcome {
   float slip = 0;          ///< sum over feet in contact of v_xy^2, m^2/s^2
   std::array<float, kNumLegs> air_s{}, stance_s{};  ///< since when each foot is in the air, loaded
   std::array<bool, kNumLegs> contact{};             ///< the foot is loaded
-  std::array<float, kNumLegs> foot_clearance{};     ///< of its lowest point above the surface, m
-  std::array<float, kNumLegs> foot_speed{};         ///< horizontal, m/s
+  /// Of a foot that touched down in this step: since its last touchdown; else 0.
+  std::array<float, kNumLegs> stride_s{};
+  std::array<float, kNumLegs> foot_clearance{};  ///< of its lowest point above the surface, m
+  std::array<float, kNumLegs> foot_speed{};      ///< horizontal, m/s
   int lift_offs = 0;  ///< feet that were loaded a step ago and are not now
   bool fell = false;
 };
@@ -51,16 +53,21 @@ inline float velocity_kernel(const StepOutcome& s, double width, double width_pe
       std::exp(-(ex * ex + ey * ey) / (width + width_per_speed2 * command_speed2(s))));
 }
 
-/// Share of the commanded motion that the robot makes, 0 to 1; 1 for a command to stand.
+/// How much counts as made of a commanded motion, for the share that is, over the last stride: in
+/// full from 0.95 on. A gait swings about its mean, and where each moment counts, at most in full,
+/// or only the whole does, going too fast has more moments in full.
+inline double made(double share) { return std::clamp(share / 0.95, -1.0, 1.0); }
+
+/// How much of the commanded motion the robot makes, 0 to 1; 1 for a command to stand.
 inline double progress(const StepOutcome& s) {
   const double speed2 = command_speed2(s);
   double share = 1.0;
   if (speed2 > 0.01) {
-    share = (s.vx * s.command[0] + s.vy * s.command[1]) / speed2;
+    share = (s.drift[0] * s.command[0] + s.drift[1] * s.command[1]) / speed2;
   } else if (std::fabs(s.command[2]) > 0.1f) {
-    share = s.yaw_rate / s.command[2];
+    share = s.drift[2] / s.command[2];
   }
-  return std::clamp(share, 0.0, 1.0);
+  return std::max(made(share), 0.0);
 }
 
 }  // namespace sandrunner::train

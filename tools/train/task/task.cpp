@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "estimator/heading.h"
 #include "sim/ground/terrain_description.h"
@@ -121,6 +122,8 @@ StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
     e.air_s[l] = s.contact[l] ? 0.0f : e.air_s[l] + kStep_s;
     e.stance_s[l] = s.contact[l] ? e.stance_s[l] + kStep_s : 0.0f;
     s.lift_offs += was_loaded && !s.contact[l];
+    e.since_touchdown_s[l] += kStep_s;
+    if (s.contact[l] && !was_loaded) s.stride_s[l] = std::exchange(e.since_touchdown_s[l], 0.0f);
     s.foot_clearance[l] = -report.penetration[l];
     const sim::Vec3<float>& v = report.foot_velocity[l];
     s.foot_speed[l] = std::sqrt(v.x * v.x + v.y * v.y);

@@ -87,7 +87,7 @@ class Task {
     std::int32_t step = 0, command_steps_left = 0;
     JointArray<float> action{}, action_1{}, action_2{};  // the latest, and those before it
     JointArray<float> joint_offset{};
-    std::array<float, kNumLegs> air_s{}, stance_s{};
+    std::array<float, kNumLegs> air_s{}, stance_s{}, since_touchdown_s{};
     std::array<std::int32_t, kNumLegs> unloaded_steps{}, was_active{};
     std::array<float, 3> drift{};  // vx, vy, yaw rate, low-passed
     float noise_level = 1.0f;

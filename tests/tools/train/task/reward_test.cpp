@@ -52,6 +52,34 @@ TEST(RewardTest, StandingWhenToldToGoEarnsLessThanHalfOfGoing) {
   EXPECT_LT(paid(standing, r), 0.5 * paid(obedient(1.0f, 0.0f, 0.0f), r));
 }
 
+/// Mean of what is paid over a stride in which the motion swings by a half about `share` of the
+/// command, and its mean over 0.3 s by a twentieth.
+double paid_over_a_stride(std::array<float, 3> command, double share) {
+  constexpr int kPhases = 16;
+  double sum = 0.0;
+  for (int i = 0; i < kPhases; ++i) {
+    const double swing = std::sin(2.0 * M_PI * (i + 0.5) / kPhases);
+    const auto now = static_cast<float>(share + swing / 2.0);
+    const auto mean = static_cast<float>(share + swing / 20.0);
+    StepOutcome s = obedient(command[0], command[1], command[2]);
+    s.vx *= now;
+    s.vy *= now;
+    s.yaw_rate *= now;
+    for (float& drift : s.drift) drift *= mean;
+    sum += paid(s, shipped_settings());
+  }
+  return sum / kPhases;
+}
+
+TEST(RewardTest, MotionThatSwingsAboutTheCommandEarnsMostWithItsMeanAtTheCommand) {
+  for (const std::array<float, 3> command :
+       {std::array{0.5f, 0.0f, 0.0f}, {0.0f, 0.5f, 0.0f}, {0.0f, 0.0f, 0.5f}, {2.0f, 0.0f, 0.0f}}) {
+    const double at = paid_over_a_stride(command, 1.0);
+    EXPECT_GT(at, paid_over_a_stride(command, 1.04)) << command[0] << command[1] << command[2];
+    EXPECT_GT(at, paid_over_a_stride(command, 0.96)) << command[0] << command[1] << command[2];
+  }
+}
+
 TEST(RewardTest, EnergyIsChargedPerDistanceAndNotPerTime) {
   const RewardSettings r = shipped_settings();
   EXPECT_NEAR(energy_cost(obedient(1.0f, 0.0f, 0.0f)) / energy_cost(obedient(3.0f, 0.0f, 0.0f)),
@@ -112,6 +140,22 @@ TEST(RewardTest, LateAStruckStopCostsByTheShareOfTheStep) {
   };
   EXPECT_EQ(lost({.late = 0.0}), 0.0f);
   EXPECT_NEAR(lost({.late = 1.0}), r.scale * 0.25 * r.joint_stop, 1e-6);
+}
+
+TEST(RewardTest, LateAShortStrideCostsByTheTimeThatItLacks) {
+  RewardSettings r = shipped_settings();
+  r.stride_shortest_s = 0.3;
+  const StepOutcome none = obedient(1.0f, 0.0f, 0.0f);
+  const auto lost = [&](std::array<float, kNumLegs> stride_s, const CostRamp& ramp) {
+    StepOutcome s = none;
+    s.stride_s = stride_s;
+    return reward(none, r, ramp).value - reward(s, r, ramp).value;
+  };
+  const CostRamp late{.late = 1.0};
+  EXPECT_EQ(lost({0.1f}, {.late = 0.0}), 0.0f);
+  EXPECT_EQ(lost({0.3f, 0.4f}, late), 0.0f);
+  EXPECT_NEAR(lost({0.2f, 0.0f, 0.25f}, late), r.scale * r.cost_weight * r.short_stride * 0.15,
+              1e-6);
 }
 
 TEST(RewardTest, LateAFallCostsEvenWherePricesLeaveNothing) {

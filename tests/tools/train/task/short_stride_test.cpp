@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Strides as the reward sees them: from touchdown to touchdown of a foot.
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+#include "rt/core/floating_point.h"
+#include "tools/train/task/robot_settings.h"
+#include "tools/train/task/task.h"
+
+namespace sandrunner::train {
+namespace {
+
+constexpr int kMarching = 16, kMarch_steps = 120, kStride_steps = 20;
+constexpr int kTrot = 3 * kJointsPerLeg;  // the mode's first output
+constexpr float kLift = 0.8f;             // network units
+
+/// What short strides cost a step, in the mean of robots that lift diagonal pairs of feet in turn
+/// on hard ground every 0.2 s.
+double charged(double stride_shortest_s) {
+  flush_denormals_to_zero();
+  const sim::Robot robot = sim::load_raibo();
+  ConfigTree tree;
+  add_training_layers(tree, robot);
+  TaskConfig config = read_task_config(tree);
+  config.episode.reset_nominal_share = 1.0;
+  config.episode.push_probability = 0.0;
+  config.ground.patchy_envs = 0;
+  config.ground.rigid_envs = kMarching;
+  config.reward.short_stride = 1.0;
+  config.reward.cost_weight = config.reward.cost_end = 1.0;
+  config.reward.stride_shortest_s = stride_shortest_s;
+  Task task(config, robot, {kMarching, kMarching}, 1);
+  task.end_window(1e12);  // prices at their end
+  learner::Rollout rollout{{kMarching, kMarch_steps, Task::privileged_size()}, 1};
+  task.observe(0, 0, rollout);
+  for (int t = 0; t < kMarch_steps; ++t) {
+    const float lift = t / (kStride_steps / 2) % 2 == 0 ? kLift : -kLift;
+    auto modes = rollout.action(t);
+    modes.setZero();
+    modes.row(kTrot + 1).setConstant(lift);          // HFE
+    modes.row(kTrot + 2).setConstant(-2.0f * lift);  // KFE
+    task.step(0, t, rollout);
+  }
+  const WindowStats w = task.end_window(1e12);
+  EXPECT_EQ(w.falls[0], 0.0);
+  for (std::size_t i = 0; i < kRewardTerms; ++i) {
+    if (reward_term_name(i) == std::string_view("short_stride")) return -w.terms[i];
+  }
+  ADD_FAILURE() << "no term short_stride";
+  return 0.0;
+}
+
+TEST(ShortStride, CostsTheTimeFromTouchdownToTouchdownThatItLacks) {
+  // All but the first touchdown of each foot.
+  constexpr int kTouchdowns = kMarch_steps / kStride_steps;
+  constexpr double kStrides = kNumLegs * (kTouchdowns - 1);
+  EXPECT_NEAR(charged(0.3), kStrides * 0.1 / kMarch_steps, 0.1 * kStrides * 0.1 / kMarch_steps);
+  EXPECT_NEAR(charged(0.4), kStrides * 0.2 / kMarch_steps, 0.1 * kStrides * 0.2 / kMarch_steps);
+}
+
+TEST(ShortStride, LongEnoughOnesAreFree) { EXPECT_LT(charged(0.18), 0.05 * charged(0.3)); }
+
+}  // namespace
+}  // namespace sandrunner::train
