@@ -8,7 +8,7 @@
 
 #include "rt/core/floating_point.h"
 #include "tests/support/not_finite.h"
-#include "tools/train/task/robot_settings.h"
+#include "tests/tools/train/task/shipped_config.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::train {
@@ -36,9 +36,7 @@ void set_speed(Task& task, float speed_mps) {
 Outcome steps_with(float speed_mps) {
   flush_denormals_to_zero();
   const sim::Robot robot = sim::load_raibo();
-  ConfigTree tree;
-  add_training_layers(tree, robot);
-  Task task(read_task_config(tree), robot, {kFewEnvs, kFewEnvs}, 1);
+  Task task(shipped_task_config(robot), robot, {kFewEnvs, kFewEnvs}, 1);
   task.end_window(1e12);
   Outcome outcome;
   task.observe(0, 0, outcome.rollout);

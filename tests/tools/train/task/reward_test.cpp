@@ -6,18 +6,12 @@
 #include <set>
 #include <string>
 
-#include "rt/base/config_tree.h"
-#include "tools/train/task/robot_settings.h"
-#include "tools/train/task/task_config.h"
+#include "tests/tools/train/task/shipped_config.h"
 
 namespace sandrunner::train {
 namespace {
 
-RewardSettings shipped_settings() {
-  ConfigTree tree;
-  add_training_layers(tree, sim::load_raibo());
-  return read_task_config(tree).reward;
-}
+RewardSettings shipped_settings() { return shipped_task_config(sim::load_raibo()).reward; }
 
 // A robot in its nominal posture that does exactly what it is asked for.
 StepOutcome obedient(float vx, float vy, float wz) {

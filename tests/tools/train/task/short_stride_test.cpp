@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "rt/core/floating_point.h"
-#include "tools/train/task/robot_settings.h"
+#include "tests/tools/train/task/shipped_config.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::train {
@@ -20,9 +20,7 @@ constexpr float kLift = 0.8f;             // network units
 double charged(double stride_shortest_s) {
   flush_denormals_to_zero();
   const sim::Robot robot = sim::load_raibo();
-  ConfigTree tree;
-  add_training_layers(tree, robot);
-  TaskConfig config = read_task_config(tree);
+  TaskConfig config = shipped_task_config(robot);
   config.episode.reset_nominal_share = 1.0;
   config.episode.push_probability = 0.0;
   config.ground.patchy_envs = 0;
