@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which commands a policy survives: forward by sideways and forward by turning, as it accelerates
-// by its envelope, each on three grounds.
+// Which commands a policy survives: forward by sideways and forward by turning, changing by
+// 2 m/s^2 and 2 rad/s^2, each on three grounds.
 #include <array>
 #include <cmath>
 

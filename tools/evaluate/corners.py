@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """tools/evaluate/corners.py POLICY: holds a policy's own envelope against falls. From each of its corners to each other
 as a step and back, through the whole controller (sandrunner), on every preset and on sand of 1/0.15 MN/m^3, from the
-nominal pose, disturbed starts and after standing up. Prints runs and falls for each ground and corner, and how each fall
-is repeated; ends with 1 if there was one. The envelope is that of the policy file (sandrunner-policy envelope)."""
+nominal pose, disturbed starts and after standing up. Prints runs and falls for each ground and corner, and of each fall
+how it came and how it is repeated; ends with 1 if there was one. The envelope is that of the policy file
+(sandrunner-policy envelope)."""
 
 import argparse
 import collections
@@ -30,7 +31,8 @@ def envelope(programs, policy):
     """Largest vx, -vx, |vy|, |yaw rate| that the policy file allows."""
     text = subprocess.run([programs / 'sandrunner-policy', 'info', policy], check=True, capture_output=True,
                           text=True).stdout
-    found = re.search(r'^commands +vx -([\d.]+) to ([\d.]+), vy \+-([\d.]+) m/s, yaw rate \+-([\d.]+)', text, re.M)
+    found = re.search(r'^commands +vx -([\d.]+) to ([\d.]+), vy \+-([\d.]+) m/s, yaw rate \+-([\d.]+).*s\^2$',
+                      text, re.M)
     if not found:
         sys.exit(f'corners.py: {policy}: found no envelope, expected one (sandrunner-policy envelope)')
     back, forward, lateral, yaw = map(float, found.groups())
@@ -49,7 +51,7 @@ def corners(forward, back, lateral, yaw):
 
 
 def run(programs, policy, job, commands, folder):
-    """Exit code of one run, and how to repeat it."""
+    """Exit code of one run, how it ended, and how to repeat it."""
     ground, start, first, second = job
     a, b, zero = commands[first], commands[second], (0, 0, 0)
     rows = [(0.0, zero), (0.5, zero), (0.5, a), (3, a), (3, b), (5.5, b), (5.5, a), (7, a), (7, zero)]
@@ -62,7 +64,8 @@ def run(programs, policy, job, commands, folder):
         part.replace(file)
     words = [str(programs / 'sandrunner'), '--policy', str(policy), '--command', str(file), '--duration', '8',
              *GROUNDS[ground], *STARTS[start]]
-    return subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode, shlex.join(words)
+    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    return done.returncode, done.stdout.partition('\n')[0], shlex.join(words)
 
 
 def main():
@@ -81,14 +84,14 @@ def main():
     folder = pathlib.Path(tempfile.mkdtemp(prefix='corners-'))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         done = pool.map(lambda job: (job, *run(options.bin, options.policy, job, commands, folder)), jobs)
-        for job, code, words in done:
+        for job, code, end, words in done:
             if code not in (0, 1):
                 sys.exit(f'corners.py: exit {code}: {words}')
             for what in (job[0], f'from {job[2]}', f'to {job[3]}'):
                 runs[what] += 1
                 falls[what] += code
             if code:
-                print(f'fell ({", ".join(job)}): {words}', flush=True)
+                print(f'({", ".join(job)}): {end}: {words}', flush=True)
     fallen = sum(falls[ground] for ground in GROUNDS)
     for what in [*GROUNDS, *sorted(set(runs) - set(GROUNDS))]:
         print(f'{what:22}{runs[what]:6} runs{falls[what]:5} falls')

@@ -32,10 +32,10 @@ std::string robot_settings(const sim::Robot& robot) {
   toml += fmt::format("[robot]\nbase_com_m = [{:.3g}, {:.3g}, {:.3g}]\n", 0.03 * length,
                       0.02 * length, 0.015 * length);
   toml += "[command]\n";
-  set("speed_start_mps", speed);  // those of Raibo: recipe and paper
-  set("speed_max_mps", 4.0 * speed);
-  set("speed_step_mps", 0.02 * speed);
-  set("backward_mps", speed);
+  set("speed_start_mps", speed);        // 1 m/s of Raibo; recipe
+  set("speed_max_mps", 4.0 * speed);    // paper: commands up to 4 m/s
+  set("speed_step_mps", 0.02 * speed);  // each update that passes the gate; recipe
+  set("backward_mps", speed);           // recipe; the next too
   set("lateral_mps", 0.5 * speed);
   toml += "[reward]\n";
   set("torque", 1.0e-3 / std::pow(weight * length, 2));  // per N^2 m^2: copper losses; recipe
