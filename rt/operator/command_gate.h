@@ -17,7 +17,8 @@ struct Twist {
   Vector3 angular_radps{};
 };
 
-enum class CommandVerdict { kAccepted, kNotFinite, kAbsurd, kOtherPublisher };
+/// kObjection is not the gate's: who passes the command on objects (OperatorDesk).
+enum class CommandVerdict { kAccepted, kNotFinite, kAbsurd, kOtherPublisher, kObjection };
 
 /// Decides which velocity commands are accepted: finite ones of sensible size, from one publisher
 /// at a time. The first publisher holds the command until it has sent no good one for the stale

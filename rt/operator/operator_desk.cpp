@@ -25,9 +25,12 @@ OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk)
     : operator_(op), can_walk_(can_walk), gate_(static_cast<std::int64_t>(stale_s * 1e9)) {}
 
 CommandVerdict OperatorDesk::drive(const Twist& twist, std::uint64_t publisher,
-                                   const OperatorId& who) {
+                                   const OperatorId& who, const Objection& objection) {
+  const bool objected = objection && !objection().empty();
   const std::lock_guard lock(mutex_);
-  const CommandVerdict verdict = gate_.judge(twist, publisher, clock_ns(CLOCK_MONOTONIC));
+  const CommandVerdict verdict = objected
+                                     ? CommandVerdict::kObjection
+                                     : gate_.judge(twist, publisher, clock_ns(CLOCK_MONOTONIC));
   switch (verdict) {
     case CommandVerdict::kAccepted:
       holder_ = who;
@@ -45,12 +48,15 @@ CommandVerdict OperatorDesk::drive(const Twist& twist, std::uint64_t publisher,
     case CommandVerdict::kOtherPublisher:
       ++counts_.other_publisher;
       break;
+    case CommandVerdict::kObjection:
+      ++counts_.objected;
+      break;
   }
   return verdict;
 }
 
 RequestOutcome OperatorDesk::request(std::string_view name, const OperatorId& who,
-                                     const std::function<std::string()>& objection) {
+                                     const Objection& objection) {
   const std::lock_guard lock(mutex_);
   const std::string refusal = is_request(name) ? follow(name, who, objection)
                                                : fmt::format("unknown, expected {}", kRequestNames);
@@ -73,7 +79,7 @@ std::string OperatorDesk::last_request() const {
 }
 
 std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
-                                 const std::function<std::string()>& objection) {
+                                 const Objection& objection) {
   // A stop or damp waits for a controller that does not answer; until the controller has taken it,
   // nothing but a damp replaces it.
   const bool waiting = calming_number_ > operator_.considered();

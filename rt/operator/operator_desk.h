@@ -25,8 +25,8 @@ struct RequestOutcome {
 
 /// What became of the commands since the start.
 struct CommandCounts {
-  std::uint64_t accepted = 0;                                     ///< velocity commands
-  std::uint64_t not_finite = 0, absurd = 0, other_publisher = 0;  ///< refused ones
+  std::uint64_t accepted = 0;  ///< velocity commands
+  std::uint64_t not_finite = 0, absurd = 0, other_publisher = 0, objected = 0;  ///< refused ones
   std::uint64_t requests_accepted = 0, requests_refused = 0;
 };
 
@@ -36,17 +36,21 @@ struct CommandCounts {
 /// number of them.
 class OperatorDesk {
  public:
+  /// Why nothing that may move the robot is to be accepted by this way now; empty: nothing.
+  using Objection = std::function<std::string()>;
+
   /// `op` must outlive the desk. `stale_s`: a velocity older than this holds nothing any more.
   /// `can_walk`: there is a policy.
   OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk);
 
-  /// A velocity. `publisher`: what `who` sends it with.
-  CommandVerdict drive(const Twist& twist, std::uint64_t publisher, const OperatorId& who);
+  /// A velocity. `publisher`: what `who` sends it with. One that is objected to holds nothing.
+  CommandVerdict drive(const Twist& twist, std::uint64_t publisher, const OperatorId& who,
+                       const Objection& objection = {});
 
   /// A mode request; waits for the controller's answer, up to 100 ms. `objection` is asked about
-  /// what does not end the motion, and says why not, or nothing; unset: there is none.
+  /// what does not end the motion.
   RequestOutcome request(std::string_view name, const OperatorId& who,
-                         const std::function<std::string()>& objection = {});
+                         const Objection& objection = {});
 
   Mode mode() const noexcept { return operator_.mode(); }
   CommandCounts counts() const;
@@ -55,8 +59,7 @@ class OperatorDesk {
 
  private:
   // Why not; empty: done.
-  std::string follow(std::string_view name, const OperatorId& who,
-                     const std::function<std::string()>& objection);
+  std::string follow(std::string_view name, const OperatorId& who, const Objection& objection);
 
   RemoteOperator& operator_;
   const bool can_walk_;

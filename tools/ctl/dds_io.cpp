@@ -6,6 +6,7 @@
 #include <random>
 
 #include "rt/base/clock_ns.h"
+#include "rt/operator/mode_requests.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/ros_time.h"
 
@@ -13,6 +14,7 @@ namespace sandrunner::ctl {
 namespace {
 
 constexpr int kModeDepth = 32;
+constexpr dds_duration_t kRequestLifespan = DDS_MSECS(500);  // less than is waited for an answer
 
 }  // namespace
 
@@ -62,7 +64,9 @@ void CommandWriter::send(const VelocityCommand& command) {
 ModeClient::ModeClient(const DdsParticipant& participant)
     : replies_(
           participant.reader("sandrunner/mode_reply", sandrunner_ModeReply_desc, kModeDepth, true)),
-      requests_(
+      requests_(participant.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc,
+                                   kModeDepth, false, kRequestLifespan)),
+      calming_(
           participant.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc, kModeDepth)) {}
 
 void ModeClient::ask(std::string_view request) {
@@ -71,7 +75,8 @@ void ModeClient::ask(std::string_view request) {
   sandrunner_ModeRequest message{};
   message.id = id_;
   request.copy(message.request, sizeof message.request - 1);
-  check_dds(dds_write(requests_, &message), "sandrunner/mode_request");
+  const bool calms = decide(request, Mode::kPassive, true).calms;  // the same in every mode
+  check_dds(dds_write(calms ? calming_ : requests_, &message), "sandrunner/mode_request");
 }
 
 std::optional<sandrunner_ModeReply> ModeClient::reply() {

@@ -34,14 +34,18 @@ class CommandWriter {
   dds_entity_t writer_;
 };
 
-/// Sends mode requests and receives the answers, one request at a time.
+/// Sends mode requests and receives the answers, one request at a time. Where the network is gone,
+/// a stop or damp is sent again until it arrives; what sets the robot in motion is not after half a
+/// second: an operator who was told "no answer" must not see it move later.
 class ModeClient {
  public:
   /// Throws InputError.
   explicit ModeClient(const DdsParticipant& participant);
 
   /// Whether there is a robot that can receive a request and answer it.
-  bool has_robot() const { return readers_of(requests_) > 0 && writers_of(replies_) > 0; }
+  bool has_robot() const {
+    return readers_of(requests_) > 0 && readers_of(calming_) > 0 && writers_of(replies_) > 0;
+  }
   /// How many robots would answer.
   std::uint32_t robots() const { return writers_of(replies_); }
   /// Sends the request with this name.
@@ -50,7 +54,7 @@ class ModeClient {
   std::optional<sandrunner_ModeReply> reply();
 
  private:
-  dds_entity_t replies_, requests_;
+  dds_entity_t replies_, requests_, calming_;
   std::uint64_t id_ = 0;
 };
 

@@ -92,12 +92,14 @@ void CommandInbox::run() {
 }
 
 void CommandInbox::take_velocity() {
-  take(cmd_vel_, [this](const void* message, const dds_sample_info_t& info) {
+  // One look at the network for all that has arrived.
+  const OperatorDesk::Objection seen = [why_not = objection()] { return why_not; };
+  take(cmd_vel_, [&](const void* message, const dds_sample_info_t& info) {
     const Twist twist = twist_from(
         stamped_ ? static_cast<const geometry_msgs_msg_dds__TwistStamped_*>(message)->twist
                  : *static_cast<const geometry_msgs_msg_dds__Twist_*>(message));
     desk_.drive(twist, info.publication_handle,
-                operator_of(participant_of(cmd_vel_, info.publication_handle)));
+                operator_of(participant_of(cmd_vel_, info.publication_handle)), seen);
   });
 }
 
@@ -123,11 +125,13 @@ void CommandInbox::take_requests() {
 }
 
 RequestOutcome CommandInbox::answer(std::string_view request, const dds_guid_t& asker) {
-  return desk_.request(request, operator_of(asker), [this] {
-    const std::vector<std::string> others = neighbours_.look().robots;
-    return others.empty() ? std::string()
-                          : fmt::format("another robot would obey as well: {}", joined(others));
-  });
+  return desk_.request(request, operator_of(asker), [this] { return objection(); });
+}
+
+std::string CommandInbox::objection() const {
+  const std::vector<std::string> others = neighbours_.look().robots;
+  return others.empty() ? std::string()
+                        : fmt::format("another robot would obey as well: {}", joined(others));
 }
 
 }  // namespace sandrunner

@@ -33,6 +33,7 @@ class CommandInbox {
   void take_velocity();
   void take_requests();
   RequestOutcome answer(std::string_view request, const dds_guid_t& asker);
+  std::string objection() const;
 
   OperatorDesk& desk_;
   const std::string robot_;

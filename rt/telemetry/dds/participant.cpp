@@ -136,8 +136,9 @@ dds_entity_t DdsParticipant::topic(const char* name, const dds_topic_descriptor_
 }
 
 dds_entity_t DdsParticipant::writer(const char* name, const dds_topic_descriptor_t& type, int depth,
-                                    bool latched) const {
+                                    bool latched, dds_duration_t lifespan) const {
   const Qos qos = make_qos(depth, true, latched);
+  dds_qset_lifespan(qos.get(), lifespan);
   writers_.push_back(
       check_dds(dds_create_writer(participant_, topic(name, type), qos.get(), nullptr), name));
   return writers_.back();

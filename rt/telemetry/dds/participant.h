@@ -22,9 +22,10 @@ class DdsParticipant {
   DdsParticipant& operator=(const DdsParticipant&) = delete;
 
   /// Reliable writer that keeps the last `depth` values and waits at most 10 ms; `latched`: readers
-  /// that come later get the last values too. Throws InputError.
+  /// that come later get the last values too; a value that has not arrived within `lifespan` is not
+  /// sent again. Throws InputError.
   dds_entity_t writer(const char* topic, const dds_topic_descriptor_t& type, int depth,
-                      bool latched = false) const;
+                      bool latched = false, dds_duration_t lifespan = DDS_INFINITY) const;
   /// Reader of the last `depth` values; if not `reliable`, it also matches writers that are not.
   /// Throws InputError.
   dds_entity_t reader(const char* topic, const dds_topic_descriptor_t& type, int depth,

@@ -20,6 +20,7 @@ void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
   add("commands_not_finite", commands.not_finite);
   add("commands_absurd", commands.absurd);
   add("commands_of_other_publisher", commands.other_publisher);
+  add("commands_beside_another_robot", commands.objected);
   add("requests_accepted", commands.requests_accepted);
   add("requests_refused", commands.requests_refused);
   add("messages_not_written", failed_writes);

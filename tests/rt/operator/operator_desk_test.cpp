@@ -73,9 +73,12 @@ TEST_F(OperatorDeskTest, AnObjectionHoldsForWhatDoesNotEndTheMotion) {
   const auto objection = [] { return std::string("two robots"); };
   EXPECT_EQ(desk.request("walk", kPeer, objection).text, "two robots");
   EXPECT_TRUE(desk.request("stop", kPeer, objection).accepted);
+  EXPECT_EQ(desk.drive(forward(0.5), 2, kPeer, objection), CommandVerdict::kObjection);
+  EXPECT_EQ(desk.drive(forward(0.5), 1, kPage), CommandVerdict::kAccepted);  // nobody held it
   EXPECT_EQ(desk.request("fly", kPeer).text,
             "unknown, expected arm, stand, walk, stop, damp or reset_fault");
   EXPECT_EQ(desk.counts().requests_refused, 2u);
+  EXPECT_EQ(desk.counts().objected, 1u);
 }
 
 TEST_F(OperatorDeskTest, OperatorsInManyThreadsLeaveOneHolder) {

@@ -4,9 +4,13 @@
 #include <termios.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
 
 #include "fake_robot.h"
 #include "program.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner::ctl {
 namespace {
@@ -155,6 +159,47 @@ TEST_F(DriveProgramTest, StatusRefreshesOnATerminalUntilItIsInterrupted) {
   EXPECT_GE(took.count(), 0.2 * static_cast<double>(screens()));  // five a second at most
   program.signal(SIGINT);
   EXPECT_EQ(program.wait().code, 0);
+}
+
+// The loopback interface of a network of its own goes down between the two, and comes back.
+TEST(DriveWithoutNetworkTest, WhatWasNotAnsweredIsNotObeyedOnceTheNetworkIsBack) {
+  if (run_shell("unshare --map-root-user --net ip link set lo up").code != 0) {
+    GTEST_SKIP() << "no network namespace can be made here";
+  }
+  const TemporaryFolder folder;
+  const Pty pty;
+  const std::string script =
+      "wait_for() { until test -e $1; do sleep 0.02; done; }\n"
+      "ip link set lo up\n" SANDRUNNER_PROGRAM
+      " --clock realtime --command dds --set dds.enabled=true --set 'realtime.lock_memory=\"off\"'"
+      " >robot 2>&1 & robot=$!\n"
+      "(wait_for down; ip link set lo down; touch is_down; wait_for up; ip link set lo up) "
+      "&\n" SANDRUNNER_CTL " drive\n" SANDRUNNER_CTL
+      " status --once >status\nkill $robot; wait $robot";
+  ChildProcess all({"unshare", "--map-root-user", "--net", "sh", "-c", script},
+                   {.folder = folder.path(""), .terminal = pty.slave()});
+  std::string shown;
+  const auto shows = [&](const char* text) {
+    return wait_until(
+        [&] {
+          shown += pty.shown();
+          return shown.find(text) != std::string::npos;
+        },
+        20);
+  };
+  ASSERT_TRUE(shows("mode passive")) << shown;
+  write_file(folder.path("down"), "");
+  ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(folder.path("is_down")); }));
+  pty.type("r");
+  ASSERT_TRUE(shows("arm: no answer")) << shown;
+  write_file(folder.path("up"), "");
+  shown.clear();
+  ASSERT_TRUE(shows("mode ")) << shown;                         // they hear each other again
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // what is sent again comes at once
+  pty.type("\x1b");
+  all.wait();
+  EXPECT_NE(read_file(folder.path("status")).find("passive"), std::string::npos)
+      << read_file(folder.path("status"));
 }
 
 TEST(DriveWithoutRobotTest, SaysThatThereIsNone) {

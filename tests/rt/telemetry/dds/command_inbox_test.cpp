@@ -63,6 +63,22 @@ TEST(CommandInboxTest, ATwistDrivesAndWhenItStopsTheRobotSlowsDown) {
   EXPECT_EQ(setup.robot.mode(), Mode::kWalk);
 }
 
+TEST(CommandInboxTest, ARobotThatWalksSlowsToAStandWhileASecondOneWouldObeyToo) {
+  Walking setup;
+  setup.drive_until(0.8);
+  {
+    Peer another(setup.config);
+    another.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc);
+    ASSERT_TRUE(wait_until([&] {
+      drive(setup.twist, 0.8);
+      return setup.robot.speed_mps() == 0.0;
+    }));
+    EXPECT_GT(setup.desk.counts().objected, 0u);
+    EXPECT_EQ(setup.robot.mode(), Mode::kWalk);
+  }
+  setup.drive_until(0.8);
+}
+
 TEST(CommandInboxTest, WhatIsNotFiniteOrAbsurdIsCountedAndChangesNothing) {
   Walking setup;
   drive(setup.twist, std::numeric_limits<double>::quiet_NaN());
