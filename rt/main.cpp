@@ -253,6 +253,11 @@ int run(int argc, char** argv) {
                     "held to a narrow envelope (sandrunner-policy envelope)\n",
                     policy.spec().name));
   }
+  if (config.controller.gate.hanging) {
+    to_standard_error(
+        "sandrunner: hardware.hanging: tilt and free fall are not judged, nor would a fall on the "
+        "ground be\n");
+  }
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");
 

@@ -31,8 +31,8 @@ class SerialPort {
   /// a real-time thread.
   void wait_readable(int timeout_ms) const noexcept;
 
-  /// Sends all of it, waiting where the line is full. InputError if that takes longer than 0.5 s or
-  /// the line is gone. Not for a real-time thread.
+  /// Sends all of it, waiting where the line is full. InputError if it takes nothing for 0.5 s or
+  /// is gone. Not for a real-time thread.
   void write(std::span<const std::uint8_t> bytes);
 
   const std::string& device() const noexcept { return device_; }

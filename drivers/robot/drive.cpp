@@ -87,10 +87,13 @@ bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
   } else if (phase_ == Phase::kLost) {
     return false;
   } else if (phase_ == Phase::kOn) {
-    if ((trouble_ & static_cast<std::uint64_t>(DriveTrouble::kSwitchedOff)) != 0) {
-      off_frame(frame);
-    } else {
+    if ((trouble_ & static_cast<std::uint64_t>(DriveTrouble::kSwitchedOff)) == 0) {
       command_frame(*set_point, frame);
+    } else if (timed_out_) {
+      // It damps by itself, as it should until all are off; told to be off it would be limp.
+      encode_moteus_query(config_.moteus, kMoteusState, frame);
+    } else {
+      off_frame(frame);
     }
   } else {
     if (phase_ == Phase::kOff) {
@@ -148,6 +151,7 @@ bool Drive::take_moteus(const CanFrame& frame) noexcept {
   temperature_degc_ = std::fmax(reply.temperature_degc, reply.motor_temperature_degc);
   voltage_v_ = reply.voltage_v;
   maker_fault_ = reply.mode == MoteusMode::kFault ? reply.code : 0;
+  timed_out_ = reply.mode == MoteusMode::kTimeout;
   ++replies_;
   judge_power(true, reply.mode == MoteusMode::kPosition || reply.mode == MoteusMode::kEnabling);
   return true;

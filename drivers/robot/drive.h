@@ -85,6 +85,7 @@ class Drive {
   bool torque_only_ = false;
   double temperature_limit_degc_ = 0.0, voltage_low_v_ = 0.0, voltage_high_v_ = 0.0;
   double timeout_s_ = 0.0;
+  bool timed_out_ = false;  // moteus: as it said last
 
   Phase phase_ = Phase::kOff;
   std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0;

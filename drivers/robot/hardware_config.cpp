@@ -260,6 +260,13 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
                     h.rate_hz, kControlHz));
   }
   h.drive_timeout_s = config.number("hardware.drive_timeout_s", h.drive_timeout_s, 0.005, 0.1);
+  const double stall_s = kControlPeriod_s * static_cast<double>(gate.stall_fault_ticks);
+  if (h.drive_timeout_s <= stall_s) {
+    throw InputError(
+        fmt::format("hardware.drive_timeout_s: {}, expected more than the {} s that the loop may "
+                    "miss (controller.gate.stall_fault_ticks)",
+                    h.drive_timeout_s, stall_s));
+  }
   h.timeout_unverified = config.flag("hardware.timeout_unverified", false);
   h.temperature_limit_degc =
       config.number("hardware.temperature_limit_degc", h.temperature_limit_degc, 0.0, 150.0);

@@ -18,7 +18,8 @@ namespace sandrunner {
 
 // What a robot or a policy gives is 0 here: without them nothing moves. The other values are
 // choices of this project, tried in simulation. Settings of the same names override both,
-// but for postures and `skip_fold_rad` (rt/README.md).
+// but for postures, `skip_fold_rad` and `latency_ticks`, which is policy.latency_ticks
+// (rt/README.md).
 
 /// Walk: joint targets of the policy with the policy's gains.
 struct WalkConfig {
@@ -44,14 +45,17 @@ struct StandConfig {
   /// less. For the first tests of a robot: a wrong sign or scale shows before the drives are
   /// strong.
   double gain_ramp_s = 0.0;
-  /// Posture of Stand, and of Walk until the first policy output. From the robot's file.
+  /// Posture of Stand, also at the end of its blend from Walk. From the robot's file.
   JointArray<double> nominal_rad{};
   /// Posture of each leg before it extends. From the robot's file.
   std::array<double, kJointsPerLeg> fold_rad{};
   double fold_s = 1.0;         ///< time to fold the legs
   double extend_s = 1.5;       ///< time to extend them to the nominal posture
   double skip_fold_rad = 0.3;  ///< no folding if all joints are nearer than this to nominal
-  double blend_s = 0.5;        ///< time from the posture in Walk to that of Stand
+  /// Time from the posture in Walk to that of Stand. The body may have come to rest 0.15 m from
+  /// where Stand wants it, on feet that lie in sand: in 0.5 s it is moved at up to 0.65 m/s, and
+  /// topples there.
+  double blend_s = 1.5;
   /// Of the targets; where they would be faster, the times above become longer.
   double max_speed_radps = 4.0;
   // Stand is reached when no joint is farther than this from its target; a fault if that is not so
@@ -162,6 +166,7 @@ class Controller {
   Mode after_time(Mode mode, const ControllerInput& input) noexcept;
   void begin_stop(std::uint64_t tick) noexcept;
   void pause_motion(std::uint64_t tick) noexcept;
+  void yield_to_heat(const JointState& joints) noexcept;
   bool drives_on(std::uint64_t tick) const noexcept;
   bool standing(const SensorFrame& sensors) const noexcept;
   std::uint64_t lost_ticks(const OperatorCommand& command, std::uint64_t tick) const noexcept;

@@ -11,8 +11,8 @@
 
 namespace sandrunner {
 
-/// Reasons for a fault, as bits. Where several arise in one tick, the lowest is reported as the
-/// first.
+/// Reasons for a fault, as bits. Where several arise in one tick, kLoopStalled is reported as the
+/// first if it is among them, else the lowest.
 enum class Fault : std::uint64_t {
   kNone = 0,
   kNonFiniteJoint = 1u << 0,
@@ -109,7 +109,7 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "a joint's position changed by more than its speed explains", "drives", kMoving, "1 tick"},
     {Fault::kEncoderFrozen, "encoder_frozen",
      "a joint's values stay the same to the bit while it moves or is told to", "drives",
-     kStandUpOnly | kWalkOnly | mode_set(Mode::kDamping),
+     kCarrying | mode_set(Mode::kDamping),
      "0.005 rad by its speed, or 0.2 rad by its target and 50 ms"},
     {Fault::kPolicyFrozen, "policy_frozen", "the policy gives the same targets to the bit",
      "policy", kWalkOnly, "0.2 s"},

@@ -36,7 +36,7 @@ struct GateConfig {
   JointArray<double> torque_limit_nm{};
   /// Fault: measured torque over this times its limit (drives regulate to a few percent) ...
   double torque_fault_ratio = 1.2;
-  double torque_fault_s = 0.005;  ///< ... in all samples of a joint for this long
+  double torque_fault_s = 0.005;  ///< ... in every tick that is judged, for this long
   /// Largest gains that a joint command may have. From the robot's map.
   double kp_limit_nmprad = 0.0;
   double kd_limit_nmsprad = 0.0;

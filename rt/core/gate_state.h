@@ -64,7 +64,7 @@ struct GateState {
   std::uint64_t tilted_ticks = 0;   ///< how long tilted past the limit
   std::uint64_t falling_ticks = 0;  ///< how long without weight
 
-  JointArray<std::uint64_t> torque_over_ticks{};  ///< samples in a row above the fault torque
+  JointArray<std::uint64_t> torque_over_ticks{};  ///< judged ticks in a row above the fault torque
   JointArray<double> heat_n2m2{};                 ///< squared torque, averaged over thermal_time_s
   std::uint64_t encoders_seen = 0;  ///< 1: the next three are those of the last judgement
   JointArray<std::uint64_t> sample_tick{};

@@ -278,7 +278,7 @@ std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, Ga
       const std::uint64_t frozen_ticks = tick - state.changed_tick[j];
       const double speed_radps = std::fabs(joints.velocity_radps[j]);
       const bool moves = speed_radps * seconds(frozen_ticks) > config_.frozen_moved_rad &&
-                         !(braked && speed_radps <= kRest_radps);
+                         !((braked || mode == Mode::kStand) && speed_radps <= kRest_radps);
       if (judged_in(mode, Fault::kEncoderFrozen)) {
         const double told_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
         const bool deaf =

@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "rt/core/gate_config.h"
 #include "rt/core/log_histogram.h"
 #include "rt/core/messages.h"
 #include "rt/core/slot_grid.h"
@@ -133,8 +134,9 @@ void print_sample() {
       "");
   row("missed",
       fmt::format("{} of {} slots, at most {} in a row", skipped, kSample_s * kControlHz, longest),
-      longest > 8   ? "more than 8 in a row are a fault with real drives (controller.gate."
-                      "joints_fault_ticks): this machine is for simulation"
+      longest > GateConfig{}.stall_fault_ticks
+          ? "so many in a row end a run (loop_stalled, controller.gate.stall_fault_ticks): "
+            "this machine is for simulation"
       : skipped > 0 ? "counted and bridged by the drives' own last command"
                     : "");
 }

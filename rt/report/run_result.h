@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "rt/core/messages.h"
 #include "rt/loop/lockstep.h"
 #include "rt/realtime/realtime_run.h"
 #include "rt/report/run_record.h"
@@ -23,6 +24,7 @@ struct RunInfo {
 struct RunResult {
   bool survived = true;  ///< on its feet: no base or thigh contact since the first Walk, no fault
   std::optional<double> fall_time_s;  ///< since the start of Walk
+  std::optional<Mode> fall_mode;      ///< in which it fell, or that a fault ended
   std::string
       fall_reason;  ///< "base_contact", "thigh_contact", "did_not_stand", or the name of a fault
   bool interrupted = false;

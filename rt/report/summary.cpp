@@ -8,6 +8,7 @@
 
 #include "rt/base/build.h"
 #include "rt/base/fixed_text.h"
+#include "rt/core/mode_machine.h"
 
 namespace sandrunner {
 
@@ -98,6 +99,7 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
     end = "FAILED: " + r.fall_reason;
     const std::vector<std::string> joints = joints_in(r.end.gate.fault_joints, r.record.scene);
     if (!joints.empty()) end += fmt::format(" ({})", fmt::join(joints, ", "));
+    if (r.fall_mode) end += fmt::format(" in {},", mode_name(*r.fall_mode));
     if (r.fall_time_s) end += fmt::format(" after {:.2f} s of Walk", *r.fall_time_s);
   }
   t += end + "\n";
@@ -160,6 +162,7 @@ std::string summary_json(const RunResult& r, const RunInfo& info) {
   j["survived"] = r.survived;
   j["fall_time_s"] = r.fall_time_s ? Json(*r.fall_time_s) : Json();
   j["fall_reason"] = r.survived ? Json() : Json(r.fall_reason);
+  j["fall_mode"] = r.fall_mode ? Json(mode_name(*r.fall_mode)) : Json();
   j["fault_joints"] = joints_in(r.end.gate.fault_joints, r.record.scene);
   j["interrupted"] = r.interrupted;
   j["duration_s"] = r.walked_s;

@@ -30,8 +30,8 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   number("walk.stop_deceleration_mps2", c.walk.stop_deceleration_mps2, 0.1, 10.0);
   number("walk.stop_yaw_deceleration_radps2", c.walk.stop_yaw_deceleration_radps2, 0.1, 10.0);
   number("walk.stop_speed_radps", c.walk.stop_speed_radps, 0.0, 1e3);
-  number("walk.stop_calm_s", c.walk.stop_calm_s, 0.0, 60.0);
-  number("walk.stop_time_s", c.walk.stop_time_s, 0.0, 60.0);
+  number("walk.stop_calm_s", c.walk.stop_calm_s, 0.1, 60.0);
+  number("walk.stop_time_s", c.walk.stop_time_s, 0.5, 60.0);
   c.walk.latency_ticks = static_cast<std::uint64_t>(
       config.integer("policy.latency_ticks", static_cast<std::int64_t>(c.walk.latency_ticks), 1,
                      kTicksPerPolicyStep - 1));
@@ -43,7 +43,8 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   number("stand.max_speed_radps", c.stand.max_speed_radps, 0.1, 20.0);
   number("stand.reached_rad", c.stand.reached_rad, 0.01, 1.0);
   number("stand.reach_s", c.stand.reach_s, 0.0, 10.0);
-  number("damping.kd_nmsprad", c.damping.kd_nmsprad, 0.0, g.kd_limit_nmsprad);
+  // With none a robot that is let down falls.
+  number("damping.kd_nmsprad", c.damping.kd_nmsprad, 0.1 * g.kd_limit_nmsprad, g.kd_limit_nmsprad);
   number("damping.fault_s", c.damping.fault_s, 0.0, 60.0);
   CommandEnvelope& e = c.shaping.envelope;
   number("shaping.forward_mps", e.forward_mps, 0.0, 100.0);

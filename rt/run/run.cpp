@@ -29,6 +29,7 @@ RunResult run(const RunParts& parts, const Loop& loop) {
     if (!result.survived) {
       result.fall_reason = script.fall_reason();
       result.fall_time_s = script.fall_time_s();
+      result.fall_mode = script.fall_mode();
     }
     result.interrupted = script.interrupted();
     result.walked_s = script.walked_s();

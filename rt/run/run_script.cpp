@@ -14,7 +14,8 @@ RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool has
       has_policy_(has_policy),
       walk_ticks_(ticks_from_s(plan.walk_s)),
       phase_(plan.start_walking ? Phase::kWalk : Phase::kArm),
-      has_walked_(plan.start_walking) {
+      has_walked_(plan.start_walking),
+      fall_mode_(plan.start_walking ? Mode::kWalk : Mode::kPassive) {
   if (phase_ == Phase::kArm) request(ModeRequest::kArm);
 }
 
@@ -27,13 +28,16 @@ OperatorCommand RunScript::command(std::uint64_t tick) noexcept {
 OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   OperatorVerdict verdict;
   const Phase at_start = phase_;
+  if (!fall_reason_ && facts.mode != Mode::kFault) fall_mode_ = facts.mode;
   has_walked_ = has_walked_ || facts.mode == Mode::kWalk;
   verdict.counts = phase_ == Phase::kWalk && facts.mode == Mode::kWalk;
   if (facts.faults != 0) fail(fault_name(facts.first_fault));
   // Lying and standing up, base and thighs only carry; once the robot has walked, touching the
   // ground is a fall.
-  if (has_walked_ && facts.base_contact) fail("base_contact");
-  if (has_walked_ && facts.thigh_contact) fail("thigh_contact");
+  // But not while it is let down.
+  const bool carries = has_walked_ && phase_ != Phase::kDamp;
+  if (carries && facts.base_contact) fail("base_contact");
+  if (carries && facts.thigh_contact) fail("thigh_contact");
   if (facts.interrupted) {
     interrupted_ = true;
     damp();
@@ -41,7 +45,7 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   const Phase before = phase_;
   // What was skipped lies before the damping that this tick begins: a stall does not shorten it.
   verdict.running = next_phase(facts.mode, phase_ == at_start ? facts.ticks : 1);
-  const bool stood_up = before == Phase::kStandUp && (!verdict.running || phase_ == Phase::kWalk);
+  const bool stood_up = before == Phase::kStandUp && phase_ != Phase::kStandUp;
   if (stood_up && facts.base_contact) fail("did_not_stand");
   return verdict;
 }
@@ -58,9 +62,12 @@ bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
     case Phase::kStandUp:
       if (mode != Mode::kStand) standing_ = 0;
       if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {
-        if (!has_policy_) return false;
-        request(ModeRequest::kWalk);
-        enter(Phase::kWalk);
+        if (has_policy_) {
+          request(ModeRequest::kWalk);
+          enter(Phase::kWalk);
+        } else {
+          damp();
+        }
       }
       return true;
     case Phase::kWalk:
@@ -71,7 +78,8 @@ bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
       }
       return true;
     case Phase::kStop:
-      return !(mode == Mode::kStand && (standing_ += ticks) >= 2 * kSettle_ticks);
+      if (mode == Mode::kStand && (standing_ += ticks) >= 2 * kSettle_ticks) damp();
+      return true;
     case Phase::kDamp:
       return in_phase_ < kDampingEnd_ticks;
   }
@@ -95,7 +103,7 @@ void RunScript::damp() noexcept {
 }
 
 void RunScript::fail(const char* reason) noexcept {
-  // Who interrupts a run lets the robot down: what it touches then is no fall.
+  // Who interrupts a run lets the robot down: a fault on the way is no fall.
   if (fall_reason_ || interrupted_) return;
   fall_reason_ = reason;
   fall_time_s_ = walked_s();

@@ -11,13 +11,12 @@ namespace sandrunner {
 /// What the run is to be.
 struct RunPlan {
   double walk_s = 20.0;
-  bool start_walking =
-      false;  ///< at once in Walk from the nominal pose; ends when the time is over
+  bool start_walking = false;  ///< at once in Walk from the nominal pose; ends in Walk
 };
 
 /// The operator of a run from the command line: stands the robot up, lets it settle and walk, stops
-/// it, waits; or just walks. Ends in damping after a fall, a fault or an interrupt. Without a
-/// policy it only stands up.
+/// it, waits, and lets it down in damping, as after a fall, a fault or an interrupt; or just walks.
+/// Without a policy it only stands up, and is let down.
 class RunScript final : public OperatorInput {
  public:
   /// `command` must outlive the script.
@@ -30,6 +29,7 @@ class RunScript final : public OperatorInput {
   /// "base_contact", "thigh_contact", "did_not_stand" or the name of a fault; null: none.
   const char* fall_reason() const noexcept { return fall_reason_; }
   double fall_time_s() const noexcept { return fall_time_s_; }  ///< since the start of Walk
+  Mode fall_mode() const noexcept { return fall_mode_; }        ///< in which it fell or faulted
   bool interrupted() const noexcept { return interrupted_; }
   /// Time in Walk under the command.
   double walked_s() const noexcept { return static_cast<double>(walked_) * kControlPeriod_s; }
@@ -52,6 +52,7 @@ class RunScript final : public OperatorInput {
   bool has_walked_, interrupted_ = false;
   const char* fall_reason_ = nullptr;
   double fall_time_s_ = 0.0;
+  Mode fall_mode_;  // until it falls: the last mode that was not Fault
 };
 
 }  // namespace sandrunner

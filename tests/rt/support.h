@@ -36,6 +36,15 @@ inline Policy random_policy(std::uint64_t seed = 1) {
   return {file.spec, Network(file.parameters)};
 }
 
+/// The last sample of a run in `mode`: what follows Stand is letting it down.
+inline RunSample last_in(const RunRecord& record, Mode mode) {
+  for (auto sample = record.samples.rbegin(); sample != record.samples.rend(); ++sample) {
+    if (sample->mode == mode) return *sample;
+  }
+  ADD_FAILURE() << "never in " << mode_name(mode);
+  return record.samples.back();
+}
+
 /// A run of the simulated robot.
 struct SimulatedRun {
   const ProcessConfig& config;

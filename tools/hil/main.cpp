@@ -115,7 +115,8 @@ int run(int argc, char** argv) {
       ->type_name("DEVICE")
       ->always_capture_default(false);
   app.add_option("--fault", a.faults,
-                 "\"T KIND ...\", T in s since the drives were enabled, or start; may be repeated")
+                 "\"T KIND ...\", T in s since the drives were enabled, or start, or start+S; may "
+                 "be repeated")
       ->allow_extra_args(false)
       ->always_capture_default(false);
   app.add_option("--walk", a.walk_s, "s of the walk whose speed is measured; 0: all")

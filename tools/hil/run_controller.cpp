@@ -38,7 +38,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// What it printed of the end: "FAILED: joints_stale (LF_KFE) after 0.00 s of Walk".
+/// What it printed of the end: "FAILED: joints_stale (LF_KFE) in walk, after 0.00 s of Walk".
 struct Diagnosis {
   std::string fault;
   std::set<std::string> joints;

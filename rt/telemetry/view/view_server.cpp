@@ -221,6 +221,7 @@ class Page : public std::enable_shared_from_this<Page> {
         return "another operator drives the robot";
       case CommandVerdict::kNotFinite:
       case CommandVerdict::kAbsurd:
+      case CommandVerdict::kObjection:  // a page speaks to one robot: nothing is objected
         break;
     }
     return fmt::format("a velocity of {}, {} m/s, {} rad/s is absurd", vx_mps, vy_mps, wz_radps);

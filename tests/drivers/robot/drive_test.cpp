@@ -248,14 +248,17 @@ TEST(DriveTest, MoteusDampsByItsOwnGainAloneWithoutAPosition) {
   EXPECT_NEAR(request.kd_scale * 26.0 / (2.0 * M_PI), 2.0, 0.01);
 }
 
-TEST(DriveTest, MoteusThatTimedOutIsAFaultAndStopped) {
+TEST(DriveTest, MoteusThatTimedOutIsAFaultAndDampsByItselfUntilAllAreOff) {
   MoteusPair pair;
   pair.state.mode = MoteusMode::kPosition;
   for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
   pair.state.mode = MoteusMode::kTimeout;
   for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
   EXPECT_NE(pair.drive.fault(), 0u);
-  EXPECT_EQ(pair.exchange(&kPoint).mode, MoteusMode::kStopped);
+  const MoteusRequest asked = pair.exchange(&kPoint);
+  EXPECT_FALSE(asked.has_mode);
+  EXPECT_GT(asked.num_reads, 0);
+  EXPECT_EQ(pair.exchange(nullptr).mode, MoteusMode::kStopped);
 }
 
 TEST(DriveTest, MoteusGetsTorqueAndATimeOutAloneWhereTheHostClosesTheLoop) {

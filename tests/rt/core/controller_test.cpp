@@ -182,7 +182,7 @@ TEST(ControllerTest, StopSlowsDownWaitsForRestThenStands) {
   }
   loop.run_s(0.02);
   EXPECT_EQ(loop.output.mode, Mode::kStand);
-  loop.run_s(0.51);
+  loop.run_s(1.51);
   EXPECT_EQ(loop.output.command.joints().position_rad, loop.config.stand.nominal_rad);
 }
 
@@ -254,12 +254,52 @@ TEST(ControllerTest, TorqueIsContinuousFromWalkToStand) {
   EXPECT_NEAR(before_nm, 50.0 * 0.1, 1e-6);
   while (loop.output.mode == Mode::kWalk) loop.tick();
   EXPECT_NEAR(torque_nm(), before_nm, 0.01);
-  for (int n = 0; n < 2100; ++n) {
+  for (int n = 0; n < 6100; ++n) {
     before_nm = torque_nm();
     loop.tick();
     ASSERT_NEAR(torque_nm(), before_nm, 0.05);
   }
   EXPECT_NEAR(torque_nm(), 100.0 * 0.1, 1e-6);
+}
+
+TEST(ControllerTest, WalkThatIsAskedForDuringTheBlendBeginsWhereStandHoldsTheJoints) {
+  FakeLoop loop;
+  loop.action_rad[4] += 0.3;
+  loop.reach(Mode::kWalk);
+  loop.request(ModeRequest::kStand);
+  while (loop.output.mode == Mode::kWalk) loop.tick();
+  loop.run_s(0.3);
+  const JointArray<double> held_rad = loop.output.command.joints().position_rad;
+  ASSERT_GT(std::fabs(held_rad[4] - loop.config.stand.nominal_rad[4]), 0.1);
+  loop.policy_hangs = true;  // no answer yet
+  loop.request(ModeRequest::kWalk);
+  EXPECT_EQ(loop.output.mode, Mode::kWalk);
+  for (int j = 0; j < kNumJoints; ++j) {
+    EXPECT_NEAR(loop.output.command.joints().position_rad[j], held_rad[j], 1e-3);
+  }
+}
+
+TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
+  FakeLoop loop;
+  loop.reach(Mode::kStand);
+  ASSERT_EQ(loop.output.mode, Mode::kStand);
+  const double continuous_nm = loop.config.gate.continuous_torque_nm;
+  double torque_nm = 0.0, away_rad = 0.0;
+  loop.spoil = [&](ControllerInput& seen) {  // its foot lies in sand
+    away_rad = std::min(away_rad + 0.001, 0.35);
+    const double held_rad = loop.config.stand.nominal_rad[3] - away_rad;
+    const JointCommand& c = loop.output.command.joints();
+    torque_nm = c.kp_nmprad[3] * (c.position_rad[3] - held_rad);
+    seen.sensors.joints.position_rad[3] = held_rad;
+    seen.sensors.joints.velocity_radps[3] = 0.0;
+    seen.sensors.joints.torque_nm[3] = torque_nm;
+  };
+  loop.run_s(9.0);
+  EXPECT_NEAR(torque_nm, 35.0, 1e-9);  // the whole stiffness, until the joint is warm
+  loop.run_s(110.0);
+  EXPECT_EQ(loop.output.faults, 0u);
+  EXPECT_NEAR(torque_nm, 0.7 * continuous_nm, 0.01);
+  EXPECT_EQ(loop.output.command.joints().position_rad[4], loop.config.stand.nominal_rad[4]);
 }
 
 std::uint64_t hash_of(const ControllerOutput& output, const ControllerState& state) {

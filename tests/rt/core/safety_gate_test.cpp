@@ -102,6 +102,23 @@ TEST_F(SafetyGateTest, AJointInDampingWhoseEncoderFreezesIsAFaultUnlessItRests) 
   EXPECT_EQ(pass(wanted).blind_joints(), 1u << 4);
 }
 
+TEST_F(SafetyGateTest, AnEncoderThatFreezesInStandIsAFaultOnceTheJointIsToldToMove) {
+  sensors.joints.velocity_radps.fill(0.02);  // at rest, by a coarse drive
+  const auto stand_at = [&](double target_rad) {
+    const std::uint64_t found = judge(Mode::kStand);
+    wanted.position_rad[4] = target_rad;
+    pass(wanted);
+    return found;
+  };
+  wanted.kp_nmprad.fill(100.0);
+  for (int n = 0; n < 4000; ++n) ASSERT_EQ(stand_at(0.6), 0u);
+  double target_rad = 0.6;
+  std::uint64_t found = 0;
+  while (found == 0 && target_rad < 1.0) found = stand_at(target_rad += 1e-3);
+  EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kEncoderFrozen));
+  EXPECT_NEAR(target_rad, 0.6 + config.frozen_told_rad, 0.01);
+}
+
 TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
   judge(Mode::kWalk);
   stall(config.stall_fault_ticks + 1);
@@ -377,6 +394,7 @@ TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
   sensors.joints.velocity_radps[4] = 11.0;
   judge(other, Mode::kStand);
   EXPECT_EQ(state.counters.joint_too_fast, 1u);
+  sensors.joints.velocity_radps = {};  // a joint that moves and has the same bits is another fault
   sensors.joints.torque_nm[1] = sensors.joints.torque_nm[3] = 40.0;
   for (int n = 0; n < 40; ++n) {
     EXPECT_EQ(judge(other, Mode::kStand), 0u);

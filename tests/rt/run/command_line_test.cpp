@@ -127,11 +127,11 @@ TEST_F(CommandLineTest, SummaryHasEveryKey) {
                                          "seed",
                                          "joint_limit_steps",
                                          "speed_limit_steps"};
-  std::set<std::string> keys = {"survived",  "fall_time_s", "fall_reason",       "command",
-                                "policy",    "terrain",     "version",           "commit",
-                                "clock",     "interrupted", "mean_velocity_mps", "sinkage_mm",
-                                "estimator", "state_hash",  "cost_of_transport", "fault_joints",
-                                "gate_ticks"};
+  std::set<std::string> keys = {"survived",   "fall_time_s", "fall_reason",       "command",
+                                "policy",     "terrain",     "version",           "commit",
+                                "clock",      "interrupted", "mean_velocity_mps", "sinkage_mm",
+                                "estimator",  "state_hash",  "cost_of_transport", "fault_joints",
+                                "gate_ticks", "fall_mode"};
   keys.insert(numbers.begin(), numbers.end());
   std::set<std::string> found;
   for (const auto& [key, value] : j.items()) found.insert(key);
@@ -149,6 +149,7 @@ TEST_F(CommandLineTest, SummaryHasEveryKey) {
   EXPECT_EQ(j.at("survived"), code == 0);
   EXPECT_EQ(j.at("fall_reason").is_null(), code == 0);
   EXPECT_EQ(j.at("fall_time_s").is_null(), code == 0);
+  EXPECT_EQ(j.at("fall_mode").is_null(), code == 0);
   EXPECT_LE(j.at("duration_s").get<double>(), 0.4);
   ASSERT_EQ(j.at("mean_velocity_mps").size(), 2u);
   for (const Json& v : j.at("mean_velocity_mps")) EXPECT_LT(std::abs(v.get<double>()), 5.0);
@@ -199,10 +200,12 @@ TEST_F(CommandLineTest, LaterSettingsWin) {
 
 TEST_F(CommandLineTest, FallIsExitCodeOne) {
   EXPECT_EQ(run("--policy policy --start walk --set controller.walk.kp_nmprad=0 --out results"), 1);
-  EXPECT_NE(output().find("FAILED: thigh_contact after 0."), std::string::npos) << output();
+  EXPECT_NE(output().find("FAILED: thigh_contact in walk, after 0."), std::string::npos)
+      << output();
   const Json j = summary("results");
   EXPECT_EQ(j.at("survived"), false);
   EXPECT_EQ(j.at("fall_reason"), "thigh_contact");
+  EXPECT_EQ(j.at("fall_mode"), "walk");
   EXPECT_EQ(j.at("fall_time_s"), j.at("duration_s"));
 }
 

@@ -131,6 +131,9 @@ TEST(ProcessConfigTest, InvalidValueIsRefused) {
       {"policy.latency_ticks=0", "found 0"},
       {"policy.latency_ticks=40", "found 40"},
       {"controller.walk.kp_nmprad=-1", "found -1"},
+      {"controller.walk.stop_calm_s=0", "found 0"},    // Stand would take over at full speed
+      {"controller.walk.stop_time_s=0", "found 0"},    // likewise
+      {"controller.damping.kd_nmsprad=0", "found 0"},  // nothing would let the robot down
       {"controller.gate.tilt_fault_deg=nan", "found nan"},
       {"controller.gate.policy_fault_ticks=1", "found 1"},
       {"controller.gate.joints_fault_ticks=-1", "found -1"},

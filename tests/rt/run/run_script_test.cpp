@@ -7,7 +7,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::uint64_t kSettle_ticks = 4000, kDamping_ticks = 2000;
+constexpr std::uint64_t kSettle_ticks = 4000, kDamping_ticks = 4000;
 
 class RunScriptTest : public testing::Test {
  protected:
@@ -46,7 +46,7 @@ class RunScriptTest : public testing::Test {
   const CommandSource source_{"1,0.5,-0.25"};
 };
 
-TEST_F(RunScriptTest, StandsUpSettlesWalksStopsAndWaits) {
+TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndIsLetDown) {
   RunScript script = walk_from_lying();
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   for (int i = 0; i < 9000; ++i) ASSERT_TRUE(in(script, Mode::kStandUp).running);
@@ -58,19 +58,36 @@ TEST_F(RunScriptTest, StandsUpSettlesWalksStopsAndWaits) {
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   EXPECT_FALSE(in(script, Mode::kWalk).counts);  // the stop is no part of the walk
   EXPECT_EQ(ticks_in(script, Mode::kStand), 2 * kSettle_ticks);
-  EXPECT_FALSE(in(script, Mode::kStand).running);
+  EXPECT_EQ(asked(script), ModeRequest::kDamp);
+  const TickFacts down{.mode = Mode::kDamping, .base_contact = true, .thigh_contact = true};
+  std::uint64_t ticks = 1;
+  while (script.advance(down).running) ++ticks;
+  EXPECT_EQ(ticks, kDamping_ticks);
   EXPECT_TRUE(script.survived());
   EXPECT_FALSE(script.interrupted());
   EXPECT_DOUBLE_EQ(script.walked_s(), 2.0);
 }
 
-TEST_F(RunScriptTest, WithoutPolicyEndsWhenItHasStood) {
+TEST_F(RunScriptTest, WithoutPolicyIsLetDownWhenItHasStood) {
   RunScript script(source_, {}, false);
   arm(script);
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   EXPECT_EQ(ticks_in(script, Mode::kStand), kSettle_ticks);
-  EXPECT_EQ(asked(script), ModeRequest::kStand);
+  EXPECT_EQ(asked(script), ModeRequest::kDamp);
+  EXPECT_EQ(ticks_in(script, Mode::kDamping), kDamping_ticks);
   EXPECT_TRUE(script.survived());
+}
+
+TEST_F(RunScriptTest, AFaultWhileItIsLetDownAtTheEndCounts) {
+  RunScript script = walk_from_lying();
+  stand_up(script);
+  ticks_in(script, Mode::kWalk);
+  ticks_in(script, Mode::kStand);
+  script.advance({.mode = Mode::kFault,
+                  .faults = static_cast<std::uint64_t>(Fault::kDriveFault),
+                  .first_fault = Fault::kDriveFault});
+  EXPECT_STREQ(script.fall_reason(), "drive_fault");
+  EXPECT_EQ(script.fall_mode(), Mode::kStand);
 }
 
 TEST_F(RunScriptTest, StartInWalkAsksForNothingAndEndsWithTheTime) {
@@ -112,9 +129,10 @@ TEST_F(RunScriptTest, SkippedSlotsCountAsTime) {
   in(script, Mode::kWalk, 4000);
   EXPECT_DOUBLE_EQ(script.walked_s(), 1.0);
   EXPECT_EQ(ticks_in(script, Mode::kWalk), 4000u);
-  in(script, Mode::kStand, 2 * kSettle_ticks - 2);
-  EXPECT_TRUE(in(script, Mode::kStand).running);
-  EXPECT_FALSE(in(script, Mode::kStand).running);
+  in(script, Mode::kStand, 2 * kSettle_ticks - 1);
+  EXPECT_EQ(asked(script), ModeRequest::kStand);
+  in(script, Mode::kStand);
+  EXPECT_EQ(asked(script), ModeRequest::kDamp);
 }
 
 TEST_F(RunScriptTest, TouchingTheGroundAfterTheFirstStepIsAFall) {
@@ -142,6 +160,7 @@ TEST_F(RunScriptTest, FallWhileItStopsCounts) {
   ticks_in(script, Mode::kWalk);
   script.advance({.mode = Mode::kStand, .thigh_contact = true});
   EXPECT_STREQ(script.fall_reason(), "thigh_contact");
+  EXPECT_EQ(script.fall_mode(), Mode::kStand);
   EXPECT_DOUBLE_EQ(script.fall_time_s(), 2.0);
 }
 
@@ -151,9 +170,8 @@ TEST_F(RunScriptTest, BaseOnTheGroundAfterStandingUpDidNotStand) {
     arm(script);
     in(script, Mode::kStand, kSettle_ticks - 1);
     EXPECT_TRUE(script.survived());
-    const OperatorVerdict verdict = script.advance({.mode = Mode::kStand, .base_contact = true});
+    EXPECT_TRUE(script.advance({.mode = Mode::kStand, .base_contact = true}).running);
     EXPECT_STREQ(script.fall_reason(), "did_not_stand");
-    EXPECT_EQ(verdict.running, has_policy);  // still to be damped, or over
     EXPECT_EQ(asked(script), ModeRequest::kDamp);
   }
 }
@@ -170,8 +188,17 @@ TEST_F(RunScriptTest, FirstReasonStaysWhateverFollows) {
   script.advance({.mode = Mode::kFault, .thigh_contact = true, .interrupted = true});
   EXPECT_STREQ(script.fall_reason(), "tilt");
   EXPECT_DOUBLE_EQ(script.fall_time_s(), 0.1);
+  EXPECT_EQ(script.fall_mode(), Mode::kWalk);  // the one that the fault ended
   EXPECT_TRUE(script.interrupted());
   EXPECT_EQ(script.command(0).request_id, id);  // damping was asked for once
+}
+
+TEST_F(RunScriptTest, FaultInTheFirstTickEndsTheModeInWhichTheRunBegan) {
+  RunScript script = walk_at_once();
+  script.advance({.mode = Mode::kFault,
+                  .faults = static_cast<std::uint64_t>(Fault::kTilt),
+                  .first_fault = Fault::kTilt});
+  EXPECT_EQ(script.fall_mode(), Mode::kWalk);
 }
 
 TEST_F(RunScriptTest, InterruptDampsInAnyPhaseAndIsNoFall) {

@@ -3,6 +3,7 @@
 // it is good for with a margin, not what it reached once.
 #include <gtest/gtest.h>
 
+#include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
 
 namespace sandrunner {
@@ -32,6 +33,35 @@ TEST(ShippedPolicyTest, StandsUpWalksAndStandsAgainOnDrySand) {
   EXPECT_TRUE(result.survived) << result.fall_reason;
   EXPECT_EQ(result.walked_s, 8.0);
   EXPECT_GT(result.figures.motion->mean_velocity_mps[0], 1.35);
+}
+
+TEST(ShippedPolicyTest, StandsAgainWhereItWentBackwardsOnTheSoftestSand) {
+  // It leans on feet that lie in sand: pulled into Stand's posture in 0.5 s, it topples.
+  const RunResult result = run("dry-sand", "-0.8,0,0", {.walk_s = 5.0},
+                               {"terrain.sigma_flat_npm3=1e6", "terrain.sigma_cone_npm3=0.15e6"});
+  EXPECT_TRUE(result.survived) << result.fall_reason;
+}
+
+TEST(ShippedPolicyTest, StandsForAMinuteAfterAWalkThatLeftItsFeetInTheSand) {
+  // By 30 N m of hip abduction at first, where 28 for long are an overload.
+  Policy policy = load_shipped_policy();
+  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  LiveOperator op;
+  Mode last = Mode::kPassive;
+  const RunResult result = simulate({.config = config,
+                                     .policy = &policy,
+                                     .plan = {.start_walking = true},
+                                     .tap =
+                                         [&](const TickRecord& tick) {
+                                           last = tick.output.mode;
+                                           const std::uint64_t n = tick.input.sensors.tick;
+                                           if (n == 1) op.want(VelocityCommand{1.5, 0.0, 0.0});
+                                           if (n == 3 * kControlHz) op.want(ModeRequest::kStand);
+                                           if (n == 65 * kControlHz) op.end();
+                                         },
+                                     .live = &op});
+  EXPECT_TRUE(result.survived) << result.fall_reason;
+  EXPECT_EQ(last, Mode::kStand);
 }
 
 TEST(ShippedPolicyTest, TurnsInPlaceAndStandsStill) {

@@ -4,12 +4,13 @@
 import { isForPage } from './keys.js';
 import { Stick } from './stick.js';
 
-const kEvery_ms = 50, kZeros = 3, kDeadZone = 0.12;
+const kEvery_ms = 50, kZeros = 3, kDeadZone = 0.1;
 const kFull = { vx: 1, vy: 0.5, wz: 1 };
 const kKeys = { w: ['vx', 1], s: ['vx', -1], a: ['vy', 1], d: ['vy', -1], q: ['wz', 1], e: ['wz', -1] };
 const kRequestKeys = { ' ': 'stop', r: 'arm', g: 'stand', f: 'walk', x: 'damp' };
 const kRequests = ['arm', 'stand', 'walk', 'stop', 'damp', 'reset_fault'];
 const element = (id) => document.getElementById(id);
+const beyondDeadZone = (way) => Math.sign(way) * Math.max(Math.abs(way) - kDeadZone, 0) / (1 - kDeadZone);
 
 export class Drive {
   constructor(live) {
@@ -83,7 +84,7 @@ export class Drive {
     if (this.held.size === 0 && this.stick.held) {
       Object.assign(wanted, { vx: this.stick.y, wz: -this.stick.x });
     } else if (this.held.size === 0) {
-      const axis = (i) => (Math.abs(pad.axes[i] ?? 0) > kDeadZone ? -pad.axes[i] : 0);
+      const axis = (i) => -beyondDeadZone(pad.axes[i] ?? 0);
       Object.assign(wanted, { vx: axis(1), vy: axis(0), wz: axis(2) });
     }
     return wanted;

@@ -105,6 +105,15 @@ async function drives() {
   await asked(0.5);
   await page.keyboard.up("w");
   await asked(0);
+  await page.evaluate(() => {
+    const held = Array.from({ length: 8 }, (_, i) => ({ pressed: i === 4 }));
+    navigator.getGamepads = () => [{ buttons: held, axes: [0.1, -0.55, 0, 0] }];
+  });
+  // Half of the speed that is left beyond the dead zone, at half of the full speed; what lies in the dead zone is rest.
+  await until(page, "Math.abs(sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) - 0.25) < 1e-3");
+  assert.equal(await page.evaluate("sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 1)"), 0);
+  await page.evaluate("navigator.getGamepads = () => []");
+  await asked(0);
   await page.keyboard.down("w");
   await asked(0.5);
   // A page that is gone says nothing more: the age of its last word stops the robot.
