@@ -190,9 +190,9 @@ void Training::run(const std::atomic<bool>& interrupted) {
   const double before = transitions(), all = config_.run.transitions;
   while (transitions() < all && !interrupted) {
     const double t0_s = wall_seconds();
+    settle();
     step_window();
     const double t1_s = wall_seconds();
-    settle();
     const learner::UpdateStats update = learner_.update();
     const double t2_s = wall_seconds();
     if (!update.finite) {

@@ -16,11 +16,14 @@
 namespace sandrunner {
 namespace {
 
-// 64 robots, 25 windows of 8 steps; what comes late in a training comes at once.
+// 64 robots, 25 windows of 8 steps; what comes late in a training comes at once, the settling too,
+// and every window has episodes that end in time.
 const std::vector<std::string> kShort = {"--set", "run.envs=64",
                                          "--set", "run.transitions=12800",
                                          "--set", "learner.window=8",
                                          "--set", "learner.minibatches=1",
+                                         "--set", "run.settle_share=1",
+                                         "--set", "episode.length_s=0.2",
                                          "--set", "reward.cost_end_start_transitions=0",
                                          "--set", "reward.cost_end_transitions=6400"};
 // With a checkpoint after every window.
