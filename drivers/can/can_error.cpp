@@ -8,7 +8,6 @@ namespace sandrunner {
 namespace {
 
 // Newer than the kernel headers of Debian 12 in some releases.
-constexpr std::uint32_t kCountersValid = 0x200;
 
 }  // namespace
 
@@ -32,11 +31,6 @@ CanError decode_can_error(const CanFrame& frame) noexcept {
     error.error_warning = (detail & (CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING)) != 0;
     error.error_passive = (detail & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0;
     error.error_active = (detail & CAN_ERR_CRTL_ACTIVE) != 0;
-  }
-  error.has_counters = says(kCountersValid);
-  if (error.has_counters) {
-    error.send_errors = frame.data[6];
-    error.receive_errors = frame.data[7];
   }
   return error;
 }

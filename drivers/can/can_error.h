@@ -23,9 +23,6 @@ struct CanError {
   bool protocol_violation = false;  ///< bit, form or stuff error
   bool transceiver = false;
   bool bus_error = false;
-  bool has_counters = false;     ///< the next two are known
-  std::uint8_t send_errors = 0;  ///< the controller's error counters
-  std::uint8_t receive_errors = 0;
 };
 
 /// Reads an error frame; says nothing (all false) for a frame that is none.

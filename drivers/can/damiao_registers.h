@@ -24,13 +24,14 @@ enum class DamiaoRegister : std::uint8_t {
   kReplyId = 7,
   kMotorId = 8,
   kTimeout = 9,  ///< in kDamiaoTimeoutUnit_s, 0: never; without a command for so long: no torque
-  kControlMode = 10,  ///< 1: MIT, the mode of mit.h
+  kControlMode = 10,  ///< kDamiaoMitMode: the mode of mit.h
   kPositionMax = 21,  ///< MitLimits::position_rad
   kVelocityMax = 22,
   kTorqueMax = 23,
   kBitRate = 35,
 };
 inline constexpr double kDamiaoTimeoutUnit_s = 50e-6;
+inline constexpr double kDamiaoMitMode = 1.0;
 
 enum class DamiaoOperation : std::uint8_t {
   kRead = 0x33,

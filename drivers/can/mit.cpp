@@ -119,7 +119,7 @@ const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept {
       return "over-temperature of the board";
     case 0xC:
       return "over-temperature of the motor";
-    case 0xD:
+    case kDamiaoLostHost:
       return "no commands in time";
     case 0xE:
       return "overload";

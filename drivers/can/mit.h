@@ -95,6 +95,9 @@ struct MitReply {
   MitPower power = MitPower::kUnknown;
 };
 
+/// A Damiao's fault code after its time-out: off, and not to be enabled until that is cleared.
+inline constexpr std::uint8_t kDamiaoLostHost = 0xD;
+
 /// What a fault code means, "" for 0. CubeMars' manuals number theirs differently from version to
 /// version, so that no more is said than that there is one.
 const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept;

@@ -45,33 +45,33 @@ std::optional<double> damiao_register(const MitDrive& drive, CanSocket& socket, 
 /// The protection against a drive whose numbers mean something else: what it can tell, it is asked.
 /// What is wrong, empty if nothing is.
 std::string damiao_problem(const HardwareConfig& config, const MitDrive& drive, CanSocket& socket) {
-  const auto problem = [&](DamiaoRegister reg, const char* what, double configured,
-                           std::optional<double> value) -> std::string {
-    const std::optional<double> told = damiao_register(drive, socket, reg, value);
-    if (!told) {
-      return fmt::format("does not tell its {} (register {})", what, static_cast<int>(reg));
-    }
-    if (std::fabs(*told - configured) <= 1e-3 * configured) return "";
-    return fmt::format("its {} is {:.6g}, configured is {:.6g}", what, *told, configured);
-  };
   const double timeout = std::round(config.drive_timeout_s / kDamiaoTimeoutUnit_s);
-  std::string found =
-      problem(DamiaoRegister::kPositionMax, "position range (PMAX)", drive.limits.position_rad, {});
-  if (found.empty()) {
-    found = problem(DamiaoRegister::kVelocityMax, "velocity range (VMAX)",
-                    drive.limits.velocity_radps, {});
+  const struct {
+    DamiaoRegister reg;
+    const char* what;
+    double configured;
+    bool write;
+  } settings[] = {
+      // In another mode it lets itself be enabled, and follows a target of its own.
+      {DamiaoRegister::kControlMode, "control mode (1: MIT)", kDamiaoMitMode, false},
+      {DamiaoRegister::kPositionMax, "position range (PMAX)", drive.limits.position_rad, false},
+      {DamiaoRegister::kVelocityMax, "velocity range (VMAX)", drive.limits.velocity_radps, false},
+      {DamiaoRegister::kTorqueMax, "torque range (TMAX)", drive.limits.torque_nm, false},
+      {DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, true},
+      // The answer to a write may be an echo.
+      {DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, false},
+  };
+  for (const auto& s : settings) {
+    const std::optional<double> told =
+        damiao_register(drive, socket, s.reg, s.write ? std::optional(s.configured) : std::nullopt);
+    if (!told) {
+      return fmt::format("does not tell its {} (register {})", s.what, static_cast<int>(s.reg));
+    }
+    if (std::fabs(*told - s.configured) > 1e-3 * s.configured) {
+      return fmt::format("its {} is {:.6g}, configured is {:.6g}", s.what, *told, s.configured);
+    }
   }
-  if (found.empty()) {
-    found = problem(DamiaoRegister::kTorqueMax, "torque range (TMAX)", drive.limits.torque_nm, {});
-  }
-  if (found.empty()) {
-    found = problem(DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, timeout);
-  }
-  // The answer to a write may be an echo.
-  if (found.empty()) {
-    found = problem(DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, {});
-  }
-  return found;
+  return "";
 }
 
 /// What is wrong with the drive of joint `j`, empty if nothing is.

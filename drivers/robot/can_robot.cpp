@@ -219,6 +219,9 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
   lines += fmt::format("{}: {} samples", config.imu.device, imu.samples);
   if (imu.repeated > 0) lines += fmt::format(", {} REPEATED", imu.repeated);
   if (imu.incomplete > 0) lines += fmt::format(", {} incomplete", imu.incomplete);
+  if (imu.wrong_length > 0) lines += fmt::format(", {} of a wrong length", imu.wrong_length);
+  if (imu.clock_restarts > 0)
+    lines += fmt::format(", {} RESTARTS of its clock", imu.clock_restarts);
   if (imu.bad_checksums > 0) lines += fmt::format(", {} bad checksums", imu.bad_checksums);
   if (imu.skipped_bytes > 0) lines += fmt::format(", {} bytes skipped", imu.skipped_bytes);
   return lines + '\n';

@@ -13,6 +13,9 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kEnable_ticks = static_cast<std::uint64_t>(kEnable_s * kControlHz);
 /// A drive that does not say whether it is enabled is taken to be after so many replies.
 constexpr std::uint64_t kRepliesToEnable = 3;
+/// A Damiao that did not answer so many requests for so long may have been without its supply. Of a
+/// stall of this program alone it is not told by the first.
+constexpr std::uint64_t kRebootRequests = 10, kReboot_ticks = kControlHz / 20;
 
 /// MIT codes have none for zero: a drive at rest says half a step. Left as it is, a joint that
 /// stands would seem to creep for ever.
@@ -33,9 +36,12 @@ Drive::Drive(const DriveConfig& config, const HardwareConfig& hardware) noexcept
       temperature_degc_(kUnknown),
       voltage_v_(kUnknown) {}
 
-void Drive::off_frame(CanFrame& frame) const noexcept {
+void Drive::off_frame(CanFrame& frame) noexcept {
   if (config_.protocol == Protocol::kMit) {
-    encode_mit_special(config_.mit, MitSpecial::kDisable, frame);
+    // A Damiao that has timed out stays so until that is cleared: every other frame does.
+    cleared_ = is_damiao() && maker_fault_ == kDamiaoLostHost && !cleared_;
+    encode_mit_special(config_.mit, cleared_ ? MitSpecial::kClearFault : MitSpecial::kDisable,
+                       frame);
   } else {
     encode_moteus_stop(config_.moteus, kMoteusState, frame);
   }
@@ -77,7 +83,7 @@ void Drive::command_frame(const JointSetPoint& joint, CanFrame& frame) const noe
 
 bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
                        CanFrame& frame) noexcept {
-  if (set_point == nullptr) {
+  if (set_point == nullptr || has(DriveTrouble::kForgotTimeout)) {
     if (phase_ != Phase::kOff) replies_off_ = 0;
     phase_ = Phase::kOff;
     set(DriveTrouble::kNotEnabled, false);
@@ -87,7 +93,7 @@ bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
   } else if (phase_ == Phase::kLost) {
     return false;
   } else if (phase_ == Phase::kOn) {
-    if ((trouble_ & static_cast<std::uint64_t>(DriveTrouble::kSwitchedOff)) == 0) {
+    if (!has(DriveTrouble::kSwitchedOff)) {
       command_frame(*set_point, frame);
     } else if (timed_out_) {
       // It damps by itself, as it should until all are off; told to be off it would be limp.
@@ -105,12 +111,17 @@ bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
     enable_frame(frame);
   }
   ++sent_;
+  if (unanswered_++ == 0) asked_tick_ = tick;
   return true;
 }
 
 bool Drive::take(const CanFrame& frame, std::uint64_t tick) noexcept {
   const bool taken = config_.protocol == Protocol::kMit ? take_mit(frame) : take_moteus(frame);
   if (!taken) return false;
+  if (is_damiao() && unanswered_ > kRebootRequests && tick > asked_tick_ + kReboot_ticks) {
+    set(DriveTrouble::kForgotTimeout, true);
+  }
+  unanswered_ = 0;
   tick_ = tick;
   judge_supply();
   return true;
@@ -164,7 +175,10 @@ void Drive::judge_power(bool known, bool enabled) noexcept {
     if (!known || !enabled) ++replies_off_;
   } else if (phase_ == Phase::kOn && known) {
     // Answers come in their order: since one has said "enabled", none of before is on its way.
-    if (!enabled) set(DriveTrouble::kSwitchedOff, true);
+    if (enabled) return;
+    set(DriveTrouble::kSwitchedOff, true);
+    // Off without a reason of its own: it has just started, or somebody else switched it off.
+    if (is_damiao() && maker_fault_ == 0) set(DriveTrouble::kForgotTimeout, true);
   }
 }
 
@@ -202,6 +216,9 @@ std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault) {
   trouble(DriveTrouble::kHot, "too hot");
   trouble(DriveTrouble::kVoltage, "supply voltage out of range");
   trouble(DriveTrouble::kBusOff, "its bus was off");
+  trouble(DriveTrouble::kForgotTimeout,
+          "was without its supply, or silent for as long: it has no time-out now, start the "
+          "program again");
   return words;
 }
 

@@ -12,12 +12,15 @@ namespace sandrunner {
 /// own code, which has the low 8 bits.
 enum class DriveTrouble : std::uint64_t {
   kNone = 0,
-  kNotEnabled = 1u << 8,   ///< told to enable, it did not within kEnable_s
-  kSwitchedOff = 1u << 9,  ///< it is off though nobody told it to: reboot, its time-out, its
-                           ///< maker's tool
-  kHot = 1u << 10,         ///< above HardwareConfig::temperature_limit_degc
-  kVoltage = 1u << 11,     ///< its supply is outside the range
-  kBusOff = 1u << 12,      ///< its bus was off since the drives were enabled
+  kNotEnabled = 1u << 8,      ///< told to enable, it did not within kEnable_s
+  kSwitchedOff = 1u << 9,     ///< it is off though nobody told it to: reboot, its time-out, its
+                              ///< maker's tool
+  kHot = 1u << 10,            ///< above HardwareConfig::temperature_limit_degc
+  kVoltage = 1u << 11,        ///< its supply is outside the range
+  kBusOff = 1u << 12,         ///< its bus was off since the drives were enabled
+  kForgotTimeout = 1u << 13,  ///< a Damiao whose supply was off, or that was silent for so long
+                              ///< that it may have been: it has no time-out any more. Until the
+                              ///< next start, which tells it one
 };
 inline constexpr double kEnable_s = 0.1;
 
@@ -39,7 +42,7 @@ class Drive {
   Drive(const DriveConfig& config, const HardwareConfig& hardware) noexcept;
 
   /// The frame that keeps the drive off; it answers with its state.
-  void off_frame(CanFrame& frame) const noexcept;
+  void off_frame(CanFrame& frame) noexcept;
   /// The frame that a drive which is on is sent.
   void command_frame(const JointSetPoint& set_point, CanFrame& frame) const noexcept;
   /// The frame of this exchange. `set_point` null: the drive is to be off. False: none may be sent,
@@ -75,6 +78,12 @@ class Drive {
   enum class Phase : std::uint8_t { kOff, kEnabling, kOn, kLost };
 
   void enable_frame(CanFrame& frame) const noexcept;
+  bool has(DriveTrouble trouble) const noexcept {
+    return (trouble_ & static_cast<std::uint64_t>(trouble)) != 0;
+  }
+  bool is_damiao() const noexcept {
+    return config_.protocol == Protocol::kMit && config_.mit.variant == MitVariant::kDamiao;
+  }
   bool take_mit(const CanFrame& frame) noexcept;
   bool take_moteus(const CanFrame& frame) noexcept;
   void judge_power(bool known, bool enabled) noexcept;
@@ -89,6 +98,8 @@ class Drive {
 
   Phase phase_ = Phase::kOff;
   std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0;
+  std::uint64_t unanswered_ = 0, asked_tick_ = 0;  // requests since its last reply, and their first
+  bool cleared_ = false;                           // a Damiao's fault, with the frame before
   double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
   double temperature_degc_, voltage_v_;
   std::uint64_t maker_fault_ = 0, trouble_ = 0, last_fault_ = 0, tick_ = 0;

@@ -197,9 +197,6 @@ void read_drives(ConfigTree& config, const RobotDescription& robot, const GateCo
     seen[j] = true;
     h.drives[j] = read_drive(t, joint, h);
     require_range(h.drives[j], j, joint, h.torque_scale, gate);
-    // Of a moteus: the drive itself holds the joint's limit too, whatever becomes of this computer.
-    h.drives[j].max_torque_nm = std::min(
-        h.drives[j].max_torque_nm, h.torque_scale * gate.torque_limit_nm[j] / h.drives[j].gear);
   }
   for (int j = 0; j < kNumJoints; ++j) {
     if (seen[j]) continue;
@@ -260,13 +257,6 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
                     h.rate_hz, kControlHz));
   }
   h.drive_timeout_s = config.number("hardware.drive_timeout_s", h.drive_timeout_s, 0.005, 0.1);
-  const double stall_s = kControlPeriod_s * static_cast<double>(gate.stall_fault_ticks);
-  if (h.drive_timeout_s <= stall_s) {
-    throw InputError(
-        fmt::format("hardware.drive_timeout_s: {}, expected more than the {} s that the loop may "
-                    "miss (controller.gate.stall_fault_ticks)",
-                    h.drive_timeout_s, stall_s));
-  }
   h.timeout_unverified = config.flag("hardware.timeout_unverified", false);
   h.temperature_limit_degc =
       config.number("hardware.temperature_limit_degc", h.temperature_limit_degc, 0.0, 150.0);
@@ -291,11 +281,17 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
   return h;
 }
 
+namespace {
+
+/// Joint speed that every drive's replies can tell, with some to spare: a threshold above it would
+/// never be passed.
 double told_speed_radps(const HardwareConfig& h) noexcept {
   double most = std::numeric_limits<double>::infinity();
   for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
   return most;
 }
+
+}  // namespace
 
 void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
   const auto ticks = static_cast<std::uint64_t>(h.ticks_per_exchange());
@@ -309,6 +305,27 @@ void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
   gate.speed_fault_radps = std::min(gate.speed_fault_radps, told_speed_radps(h));
   gate.hanging = h.hanging;
+}
+
+void match_gate(const GateConfig& gate, HardwareConfig& h) {
+  const double stall_s = kControlPeriod_s * static_cast<double>(gate.stall_fault_ticks);
+  if (h.drive_timeout_s <= stall_s) {
+    throw InputError(
+        fmt::format("hardware.drive_timeout_s: {}, expected more than the {} s that the loop may "
+                    "miss (controller.gate.stall_fault_ticks)",
+                    h.drive_timeout_s, stall_s));
+  }
+  const double told_radps = told_speed_radps(h);
+  if (gate.speed_fault_radps > told_radps) {
+    throw InputError(
+        fmt::format("controller.gate.speed_fault_radps: {} rad/s is more than the drives' replies "
+                    "can tell, {:.1f}; it would never be a fault",
+                    gate.speed_fault_radps, told_radps));
+  }
+  for (int j = 0; j < kNumJoints; ++j) {
+    DriveConfig& drive = h.drives[j];
+    drive.max_torque_nm = std::min(drive.max_torque_nm, gate.torque_limit_nm[j] / drive.gear);
+  }
 }
 
 }  // namespace sandrunner

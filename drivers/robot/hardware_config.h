@@ -78,13 +78,15 @@ struct HardwareConfig {
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
 
-/// Joint speed that every drive's replies can tell, with some to spare, rad/s: a threshold above it
-/// would never be passed.
-double told_speed_radps(const HardwareConfig& hardware) noexcept;
-
 /// What hardware changes of the gate's thresholds: ages follow the rate of the exchange, the speed
 /// fault is one that can be told, torque limits are scaled by `torque_scale`, and whether the robot
 /// hangs.
 void adapt_gate(const HardwareConfig& hardware, GateConfig& gate) noexcept;
+
+/// What the gate's own settings, which come after that, ask of the drives. A moteus is told the
+/// joint's torque limit and holds it itself, whatever becomes of this computer. Throws InputError
+/// for a time-out that is no longer than the stall that the gate lets pass (drives would let go
+/// without a fault), and for a speed fault above what replies can tell.
+void match_gate(const GateConfig& gate, HardwareConfig& hardware);
 
 }  // namespace sandrunner

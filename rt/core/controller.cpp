@@ -51,10 +51,8 @@ Controller::Controller(const ControllerConfig& config, Mode start)
       gate_(config.gate, config.damping.kd_nmsprad),
       max_step_mps_(config.shaping.envelope.acceleration_mps2 * kControlPeriod_s),
       max_step_radps_(config.shaping.envelope.yaw_acceleration_radps2 * kControlPeriod_s),
-      stop_step_mps_(
-          std::min(max_step_mps_, config.walk.stop_deceleration_mps2 * kControlPeriod_s)),
-      stop_step_radps_(
-          std::min(max_step_radps_, config.walk.stop_yaw_deceleration_radps2 * kControlPeriod_s)) {
+      stop_step_mps_(config.walk.stop_deceleration_mps2 * kControlPeriod_s),
+      stop_step_radps_(config.walk.stop_yaw_deceleration_radps2 * kControlPeriod_s) {
   for (int j = 0; j < kNumJoints; ++j) fold_rad_[j] = config.stand.fold_rad[j % kJointsPerLeg];
   state_.mode = start;
 }
@@ -151,14 +149,18 @@ void Controller::pause_motion(std::uint64_t tick) noexcept {
 /// Feet that lie in sand stay where they are, and legs that Stand pulls to its posture then press
 /// against each other for as long as it stands: by 30 N m of hip abduction after a walk on dry
 /// sand. A joint that is halfway to its overload gives way until it has a torque that it can bear
-/// for ever; a push, which is over soon, still meets the whole stiffness.
+/// for ever; a push, which is over soon, still meets the whole stiffness. No further than counts as
+/// standing: a load that does not end is an overload.
 void Controller::yield_to_heat(const JointState& joints) noexcept {
   const double continuous_nm = config_.gate.continuous_torque_nm;
   for (int j = 0; j < kNumJoints; ++j) {
     const double torque_nm = joints.torque_nm[j];
     const bool warm = state_.gate.heat_n2m2[j] > 0.5 * continuous_nm * continuous_nm;
     if (!warm || std::fabs(torque_nm) < 0.7 * continuous_nm) continue;
-    state_.to_rad[j] -= std::copysign(kYield_radps * kControlPeriod_s, torque_nm);
+    const double yielded_rad =
+        state_.to_rad[j] - std::copysign(kYield_radps * kControlPeriod_s, torque_nm);
+    if (std::fabs(yielded_rad - config_.stand.nominal_rad[j]) > config_.stand.reached_rad) continue;
+    state_.to_rad[j] = yielded_rad;
   }
 }
 

@@ -30,8 +30,8 @@ struct WalkConfig {
   std::uint64_t latency_ticks = 1;
   // When Stand is requested, the command slows down to zero, the policy comes to rest, and then
   // Stand takes over.
-  double stop_deceleration_mps2 = 1.0;        ///< of vx and of vy
-  double stop_yaw_deceleration_radps2 = 1.0;  ///< of the yaw rate
+  double stop_deceleration_mps2 = 1.0;        ///< of vx and of vy; the policy's at most
+  double stop_yaw_deceleration_radps2 = 1.0;  ///< of the yaw rate; likewise
   double stop_speed_radps = 1.0;  ///< at rest: no joint and no body axis turns faster ...
   double stop_calm_s = 0.25;      ///< ... for this long
   double stop_time_s = 3.0;       ///< at zero command: longest wait for that rest

@@ -39,13 +39,13 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   number("stand.gain_ramp_s", c.stand.gain_ramp_s, 0.0, 2.0);
   number("stand.fold_s", c.stand.fold_s, 0.0, 60.0);
   number("stand.extend_s", c.stand.extend_s, 0.0, 60.0);
-  number("stand.blend_s", c.stand.blend_s, 0.0, 60.0);
+  number("stand.blend_s", c.stand.blend_s, 1.0, 60.0);  // in half of that it topples on sand
   number("stand.max_speed_radps", c.stand.max_speed_radps, 0.1, 20.0);
   number("stand.reached_rad", c.stand.reached_rad, 0.01, 1.0);
   number("stand.reach_s", c.stand.reach_s, 0.0, 10.0);
   // With none a robot that is let down falls.
   number("damping.kd_nmsprad", c.damping.kd_nmsprad, 0.1 * g.kd_limit_nmsprad, g.kd_limit_nmsprad);
-  number("damping.fault_s", c.damping.fault_s, 0.0, 60.0);
+  number("damping.fault_s", c.damping.fault_s, 0.5, 60.0);  // with less it is dropped
   CommandEnvelope& e = c.shaping.envelope;
   number("shaping.forward_mps", e.forward_mps, 0.0, 100.0);
   number("shaping.backward_mps", e.backward_mps, 0.0, 100.0);
@@ -136,13 +136,17 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
     p.hardware = read_hardware_config(config, p.robot.description, c.gate);
     adapt_gate(*p.hardware, c.gate);
   }
+  const CommandEnvelope trained = c.shaping.envelope;
   read_controller(config, c);
-  if (p.hardware && c.gate.speed_fault_radps > told_speed_radps(*p.hardware)) {
-    throw InputError(
-        fmt::format("controller.gate.speed_fault_radps: {} rad/s is more than the drives' replies "
-                    "can tell, {:.1f}; it would never be a fault",
-                    c.gate.speed_fault_radps, told_speed_radps(*p.hardware)));
-  }
+  // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
+  const CommandEnvelope& set = c.shaping.envelope;
+  const auto at_most = [](double& value, double a, double b) {
+    value = std::min(value, std::max(a, b));
+  };
+  at_most(c.walk.stop_deceleration_mps2, trained.acceleration_mps2, set.acceleration_mps2);
+  at_most(c.walk.stop_yaw_deceleration_radps2, trained.yaw_acceleration_radps2,
+          set.yaw_acceleration_radps2);
+  if (p.hardware) match_gate(c.gate, *p.hardware);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   p.recording.bytes = static_cast<std::uint64_t>(

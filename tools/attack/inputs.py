@@ -237,7 +237,7 @@ class Inputs:
         """One that operators command; it stands up in no time, so that they get it to walk."""
         settings = {'dds.enabled': 'true', 'dds.domain': DOMAIN, 'controller.stand.fold_s': 0.02,
                     'controller.stand.extend_s': 0.02, 'controller.stand.max_speed_radps': 20,
-                    'controller.damping.fault_s': 0.05, **{f'controller.{key}': BOUNDS[key] for key in BOUNDS}}
+                    'controller.damping.fault_s': 0.5, **{f'controller.{key}': BOUNDS[key] for key in BOUNDS}}
         if rng.random() < 0.2:
             settings['dds.cmd_vel'] = '"twist_stamped"'
         if rng.random() < 0.2:

@@ -180,6 +180,9 @@ void Bench::make(const TimedFault& fault, double now_s) {
     case BenchFault::kScaled:
       drives_[fault.first].scale_ranges(fault.value);
       break;
+    case BenchFault::kMode:
+      faults.control_mode = fault.value;
+      break;
     case BenchFault::kJumps:
       faults.offset_rad += fault.value;
       break;

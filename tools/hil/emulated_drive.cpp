@@ -13,11 +13,9 @@ namespace {
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kSupply_v = 48.0;
-constexpr std::uint8_t kDamiaoCommunicationLost = 0xD;
 /// Settings of moteus' firmware as it ships: servo.default_timeout_s, servo.timeout_max_torque_Nm.
 constexpr double kMoteusTimeout_s = 0.1;
 constexpr double kMoteusTimeoutTorque_nm = 5.0;
-constexpr double kMitControlMode = 1.0;
 
 }  // namespace
 
@@ -87,12 +85,16 @@ bool EmulatedDrive::answer_mit(const CanFrame& request, double now_s, CanFrame& 
           }
           break;
         case MitSpecial::kDisable:
+          if (!(damiao && state_ == State::kTimedOut)) state_ = State::kOff;
+          break;
         case MitSpecial::kClearFault:
           state_ = State::kOff;
           break;
         case MitSpecial::kSetZero:
           break;  // nobody should
       }
+    } else if (faults.control_mode != kDamiaoMitMode) {
+      return false;
     } else if (state_ == State::kOn || (state_ == State::kTimedOut && !damiao)) {
       const MitCommand& c = wanted.command;
       command({c.position_rad, c.velocity_radps, c.kp_nmprad, c.kd_nmsprad, c.torque_nm,
@@ -107,7 +109,7 @@ bool EmulatedDrive::answer_mit(const CanFrame& request, double now_s, CanFrame& 
                        .bus_voltage_v = kSupply_v,
                        .temperature_degc = faults.temperature_degc,
                        .rotor_temperature_degc = faults.temperature_degc,
-                       .fault = lost_host ? kDamiaoCommunicationLost : faults.code,
+                       .fault = lost_host ? kDamiaoLostHost : faults.code,
                        .power = state_ == State::kOn ? MitPower::kEnabled : MitPower::kDisabled};
   return encode_mit_reply(drive, state, reply) == MitStatus::kOk && deliver();
 }
@@ -130,7 +132,7 @@ bool EmulatedDrive::answer_register(const DamiaoAccess& access, CanFrame& reply)
         told.value = std::round(timeout_setting_s_ / kDamiaoTimeoutUnit_s);
         break;
       case DamiaoRegister::kControlMode:
-        told.value = kMitControlMode;
+        told.value = faults.control_mode;
         break;
       case DamiaoRegister::kPositionMax:
         told.value = range_factor_ * config_.mit.limits.position_rad;

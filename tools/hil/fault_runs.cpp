@@ -13,13 +13,16 @@ constexpr const char* kNotStarted = "nothing is enabled";
 
 // A drive that hears nothing any more lets go by its own time-out, 50 ms in the examples. The robot
 // stands up when the fault comes, but where another time is given: 6 s after, it walks.
-constexpr std::array<FaultRun, 20> kRuns = {{
+constexpr std::array<FaultRun, 23> kRuns = {{
     {"drive-silent", "a drive says nothing, in Walk", "moteus", "6 silent LF_KFE", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-reboots", "a drive reboots in 0.3 s", "moteus", "1 reboot LF_KFE 0.3", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-resets", "a drive is off at once, and answers", "moteus", "1 reboot RF_HFE 0",
      "drive_fault", "RF_HFE", "switched off by itself", kDamping, 1, 0.006, 0.006},
+    {"damiao-reboots", "a Damiao reboots in 0.3 s, and with it forgets its time-out", "damiao",
+     "1 reboot LF_KFE 0.3", "joints_stale", "LF_KFE", "it has no time-out now", kDamping, 1, 0.005,
+     0.052},
     {"replies-lost", "every tenth reply of a drive is lost", "moteus", "0 loses RH_HFE 10", "", "",
      "", "walks on; counted", 0, 0.0, 0.0},
     {"bus-off", "a bus goes off (error frame), back after 0.1 s", "moteus", "1 bus-off can1",
@@ -36,6 +39,8 @@ constexpr std::array<FaultRun, 20> kRuns = {{
      "", "cannot be", kNotStarted, 2, 0.0, 0.0},
     {"wrong-scale", "a drive's numbers span what another model's do", "mit",
      "start scaled LF_KFE 0.131", "", "", "cannot be", kNotStarted, 2, 0.0, 0.0},
+    {"wrong-mode", "a Damiao is in another control mode", "damiao", "start mode LF_KFE 2", "", "",
+     "its control mode (1: MIT) is 2", kNotStarted, 2, 0.0, 0.0},
     {"encoder-jump", "an encoder jumps by 0.5 rad", "moteus", "1 jumps RH_HFE 0.5", "encoder_jump",
      "RH_HFE", "", kDamping, 1, 0.004, 0.004},
     {"drive-fault", "a drive reports a fault of its own", "moteus", "1 code LH_KFE 33",
@@ -56,6 +61,7 @@ constexpr std::array<FaultRun, 20> kRuns = {{
      "LF_HAA LF_HFE LF_KFE RF_HAA RF_HFE RF_KFE LH_HAA LH_HFE LH_KFE RH_HAA RH_HFE RH_KFE", "",
      "the drives' time-out damps", 1, 0.0, 0.052},
     {"walks-mit", "nothing", "mit", "", "", "", "", "walks", 0, 0.0, 0.0},
+    {"walks-damiao", "nothing", "damiao", "", "", "", "", "walks", 0, 0.0, 0.0},
     {"walks-moteus", "nothing", "moteus", "", "", "", "", "walks", 0, 0.0, 0.0},
 }};
 

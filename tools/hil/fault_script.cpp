@@ -24,13 +24,14 @@ struct Kind {
   const char* help;
 };
 
-constexpr std::array<Kind, 18> kKinds = {{
+constexpr std::array<Kind, 19> kKinds = {{
     {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive hears and says nothing"},
     {BenchFault::kReboot, "reboot", Takes::kJointAndNumber, "JOINT S: off, and back after S s"},
     {BenchFault::kLoses, "loses", Takes::kJointAndNumber, "JOINT N: one of N replies is lost"},
     {BenchFault::kSwapped, "swapped", Takes::kTwoJoints, "JOINT JOINT: each has the other's id"},
     {BenchFault::kScaled, "scaled", Takes::kJointAndNumber,
      "JOINT X: its numbers span X times what is configured (MIT layout)"},
+    {BenchFault::kMode, "mode", Takes::kJointAndNumber, "JOINT N: its control mode (Damiao)"},
     {BenchFault::kJumps, "jumps", Takes::kJointAndNumber, "JOINT RAD: its encoder jumps"},
     {BenchFault::kTurns, "turns", Takes::kJointAndNumber, "JOINT RAD: a hand turns it, on a stand"},
     {BenchFault::kCode, "code", Takes::kJointAndNumber, "JOINT N: a fault of its own"},

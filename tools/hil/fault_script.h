@@ -16,6 +16,7 @@ enum class BenchFault : std::uint8_t {
   kLoses,      ///< one of so many of a drive's replies is lost
   kSwapped,    ///< two drives have each other's identifier
   kScaled,     ///< a drive's numbers span so many times what is configured
+  kMode,       ///< a Damiao is in this control mode
   kJumps,      ///< a drive's encoder jumps by so much, rad
   kTurns,      ///< on a stand, where nothing else moves: a hand turns a joint by so much, rad
   kCode,       ///< a drive reports this fault of its own

@@ -126,7 +126,8 @@ int run(int argc, char** argv) {
       app.add_subcommand("runs", "the list of fault runs, each with a controller of its own");
   RunPlace& p = a.place;
   runs->add_option("--controller", p.controller, "the program")->type_name("FILE");
-  runs->add_option("--hardware-dir", p.hardware_dir, "folder with mit.toml and moteus.toml");
+  runs->add_option("--hardware-dir", p.hardware_dir,
+                   "folder with mit.toml, damiao.toml, moteus.toml");
   runs->add_option("--imu-link", p.imu_link, "hardware.imu.device of the runs");
   runs->add_option("--out", p.out_dir, "folder for a folder of each run")->required();
   runs->add_option("--terrain", p.terrain, "ground");

@@ -12,7 +12,7 @@ namespace sandrunner::hil {
 
 struct RunPlace {
   std::string controller = "sandrunner";
-  std::string hardware_dir = ".";  ///< where mit.toml and moteus.toml lie
+  std::string hardware_dir = ".";  ///< where mit.toml, damiao.toml and moteus.toml lie
   std::string imu_link = "/tmp/imu";
   std::string out_dir;  ///< gets a folder for each run: log.txt, bench.json, black boxes
   std::string terrain = "dry-sand";

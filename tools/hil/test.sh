@@ -36,10 +36,10 @@ case $lane in
 short)
   guest short 600 "can_test --gtest_brief=1 --gtest_filter='CanSocket*' &&
     sandrunner-hil runs --only walks-mit,walks-moteus --walk 2 --speed $(speed 2) --out /out &&
-    sandrunner-hil runs --only drive-resets,bus-off,imu-silent $faults"
+    sandrunner-hil runs --only drive-resets,damiao-reboots,wrong-mode,bus-off,imu-silent $faults"
   ;;
 walk)
-  walk="sandrunner-hil runs --only walks-mit,walks-moteus --walk 10 --speed $(speed 10) --set hardware.rate_hz=1000"
+  walk="sandrunner-hil runs --only walks-mit,walks-damiao,walks-moteus --walk 10 --speed $(speed 10) --set hardware.rate_hz=1000"
   guest walk 1800 "$walk --out /out && $walk --set hardware.mode=torque --out /out/torque"
   ;;
 faults) guest faults 3600 "sandrunner-hil runs $faults" ;;

@@ -44,17 +44,6 @@ TEST(CanErrorTest, TheGravestIsSaidInWords) {
   EXPECT_STREQ(words(CanError{}), "");
 }
 
-TEST(CanErrorTest, CountersAreReadWhereTheyAreValid) {
-  CanFrame frame = error_frame(CAN_ERR_CRTL | 0x200);
-  frame.data[6] = 128;
-  frame.data[7] = 3;
-  const CanError error = decode_can_error(frame);
-  EXPECT_TRUE(error.has_counters);
-  EXPECT_EQ(error.send_errors, 128);
-  EXPECT_EQ(error.receive_errors, 3);
-  EXPECT_FALSE(decode_can_error(error_frame(CAN_ERR_CRTL)).has_counters);
-}
-
 TEST(CanErrorTest, AnOrdinaryFrameSaysNothingAndAShortOneOnlyItsClass) {
   CanFrame frame = error_frame(CAN_ERR_BUSOFF | CAN_ERR_CRTL, 0xFF);
   frame.length = 1;

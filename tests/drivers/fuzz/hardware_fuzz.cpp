@@ -73,8 +73,12 @@ void check_plan(const HardwareConfig& hardware) {
 }
 
 HardwareConfig read(ConfigTree& tree) {
-  HardwareConfig hardware = read_hardware_config(tree, example_robot(), example_gate());
+  GateConfig gate = example_gate();
+  HardwareConfig hardware = read_hardware_config(tree, example_robot(), gate);
   tree.reject_unknown();
+  adapt_gate(hardware, gate);
+  for (const double limit_nm : gate.torque_limit_nm) require(limit_nm >= 0.0 && limit_nm <= 63.45);
+  match_gate(gate, hardware);
   return hardware;
 }
 
@@ -82,9 +86,6 @@ void check(ConfigTree& tree) {
   const HardwareConfig hardware = read(tree);
   check_drives(hardware);
   check_plan(hardware);
-  GateConfig gate = example_gate();
-  adapt_gate(hardware, gate);
-  for (const double limit_nm : gate.torque_limit_nm) require(limit_nm >= 0.0 && limit_nm <= 63.45);
   // What a recording keeps of it is read back as the same.
   ConfigTree again;
   again.add_text(tree.effective(), "effective");

@@ -65,7 +65,7 @@ TEST(ImuMountingTest, LevelDeviceGivesLevelBodyWithGravityUp) {
   expect_near(attitude(flat, {1.0F, 0.0F, 0.0F, 0.0F}, kNoTurn), kNoTurn);
 }
 
-TEST(ImuMountingTest, DeviceTurnedAQuarterAboutEachOfItsAxes) {
+TEST(ImuMountingTest, AQuarterTurnAboutEachDeviceAxisGivesThatAttitude) {
   const ImuMounting flat;
   const auto f = static_cast<float>(kSqrtHalf);
   // FRD and NED: roll to the right, nose up, clockwise from above. In FLU, world z up: about x the

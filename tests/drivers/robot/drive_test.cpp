@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/robot/drive.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,18 +100,70 @@ TEST(DriveTest, ThatDoesNotLetItselfBeEnabledIsAFault) {
             "does not let itself be enabled");
 }
 
-TEST(DriveTest, ThatSwitchesItselfOffIsAFaultAndIsNotEnabledAgainUntilTheRobotWasOff) {
+TEST(DriveTest, ADamiaoThatSwitchedItselfOffForAReasonIsEnabledAgainOnceTheRobotWasOff) {
   MitPair pair("Damiao");
   pair.state.power = MitPower::kEnabled;
   for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
   EXPECT_FALSE(pair.exchange(&kPoint).is_special);
-  pair.state.power = MitPower::kDisabled;  // it was rebooted
+  pair.state.power = MitPower::kDisabled;
+  pair.state.fault = 0xA;  // over-current
   for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
   EXPECT_TRUE(pair.said(DriveTrouble::kSwitchedOff));
   pair.state.power = MitPower::kEnabled;
+  pair.state.fault = 0;
   for (int i = 0; i < 5; ++i) expect_special(pair.exchange(&kPoint), MitSpecial::kDisable);
   pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.fault(), 0u);
   expect_special(pair.exchange(&kPoint), MitSpecial::kEnable);
+}
+
+void expect_never_enabled_again(MitPair& pair) {
+  EXPECT_TRUE(pair.said(DriveTrouble::kForgotTimeout));
+  for (int i = 0; i < 5; ++i) pair.exchange(nullptr);
+  for (int i = 0; i < 5; ++i) expect_special(pair.exchange(&kPoint), MitSpecial::kDisable);
+  EXPECT_THAT(drive_fault_words(pair.config(), pair.drive.fault()),
+              testing::HasSubstr("it has no time-out now, start the program again"));
+}
+
+TEST(DriveTest, ADamiaoThatRebootedHasNoTimeOutAndIsNotEnabledAgain) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kEnabled;
+  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  pair.state.power = MitPower::kDisabled;
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  expect_never_enabled_again(pair);
+}
+
+TEST(DriveTest, ADamiaoWithoutItsSupplyWhileItWasOffIsNotEnabledAgain) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kDisabled;
+  for (int i = 0; i < 4; ++i) pair.exchange(nullptr);
+  for (int i = 0; i < 60; ++i) pair.exchange(nullptr, false);
+  pair.exchange(nullptr);
+  expect_never_enabled_again(pair);
+}
+
+TEST(DriveTest, AFewLostRepliesOfADamiaoAreNoLossOfItsSupply) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kDisabled;
+  for (int round = 0; round < 20; ++round) {
+    for (int i = 0; i < 5; ++i) pair.exchange(nullptr, false);
+    pair.exchange(nullptr);
+  }
+  EXPECT_EQ(pair.drive.fault(), 0u);
+}
+
+TEST(DriveTest, ADamiaoThatTimedOutIsCleared) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kDisabled;
+  pair.state.fault = kDamiaoLostHost;
+  expect_special(pair.exchange(nullptr), MitSpecial::kDisable);  // nothing is known of it yet
+  expect_special(pair.exchange(nullptr), MitSpecial::kClearFault);
+  expect_special(pair.exchange(nullptr), MitSpecial::kDisable);  // even if it does not help
+  expect_special(pair.exchange(nullptr), MitSpecial::kClearFault);
+  pair.state.fault = 0;
+  pair.exchange(nullptr);
+  for (int i = 0; i < 3; ++i) expect_special(pair.exchange(nullptr), MitSpecial::kDisable);
 }
 
 TEST(DriveTest, WhoseBusWasOffIsSentNothingUntilTheRobotWasOff) {
@@ -259,6 +312,19 @@ TEST(DriveTest, MoteusThatTimedOutIsAFaultAndDampsByItselfUntilAllAreOff) {
   EXPECT_FALSE(asked.has_mode);
   EXPECT_GT(asked.num_reads, 0);
   EXPECT_EQ(pair.exchange(nullptr).mode, MoteusMode::kStopped);
+}
+
+TEST(DriveTest, MoteusThatRebootedIsNotEnabledAgainUntilTheRobotWasOff) {
+  MoteusPair pair;
+  pair.state.mode = MoteusMode::kPosition;
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  pair.state.mode = MoteusMode::kStopped;
+  for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
+  EXPECT_NE(pair.drive.fault(), 0u);
+  EXPECT_EQ(pair.exchange(&kPoint).mode, MoteusMode::kStopped);
+  pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.fault(), 0u);
+  EXPECT_EQ(pair.exchange(&kPoint).mode, MoteusMode::kPosition);
 }
 
 TEST(DriveTest, MoteusGetsTorqueAndATimeOutAloneWhereTheHostClosesTheLoop) {

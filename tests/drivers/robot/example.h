@@ -34,8 +34,11 @@ inline HardwareConfig example_hardware(const std::string& name,
   tree.add_file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + name + ".toml");
   if (!more.empty()) tree.add_text(more, "test");
   for (const std::string& assignment : assignments) tree.set(assignment);
-  HardwareConfig config = read_hardware_config(tree, example_robot(), example_gate());
+  GateConfig gate = example_gate();
+  HardwareConfig config = read_hardware_config(tree, example_robot(), gate);
   tree.reject_unknown();
+  adapt_gate(config, gate);
+  match_gate(gate, config);
   return config;
 }
 

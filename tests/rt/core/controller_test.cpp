@@ -209,7 +209,7 @@ TEST(ControllerTest, StopEndsAfterItsLongestWaitIfTheRobotNeverRests) {
 
 TEST(ControllerTest, StopWaitsForTheSlewToReachZero) {
   ControllerConfig config = test_robot();
-  config.shaping.envelope.acceleration_mps2 = 0.5;  // slower than the stop's own
+  config.walk.stop_deceleration_mps2 = 0.5;
   FakeLoop loop(Mode::kPassive, config);
   loop.reach(Mode::kWalk);
   loop.run_s(2.0);
@@ -300,6 +300,22 @@ TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
   EXPECT_EQ(loop.output.faults, 0u);
   EXPECT_NEAR(torque_nm, 0.7 * continuous_nm, 0.01);
   EXPECT_EQ(loop.output.command.joints().position_rad[4], loop.config.stand.nominal_rad[4]);
+}
+
+TEST(ControllerTest, AJointThatBearsTooMuchForEverIsAnOverloadAndDoesNotSinkWithoutEnd) {
+  FakeLoop loop;
+  loop.reach(Mode::kStand);
+  const double continuous_nm = loop.config.gate.continuous_torque_nm;
+  double farthest_rad = 0.0;
+  loop.spoil = [&](ControllerInput& seen) {  // a load, which giving way does not relieve
+    seen.sensors.joints.torque_nm[5] = 1.1 * continuous_nm;
+    if (loop.output.mode != Mode::kStand) return;
+    farthest_rad = std::max(farthest_rad, std::fabs(loop.output.command.joints().position_rad[5] -
+                                                    loop.config.stand.nominal_rad[5]));
+  };
+  loop.run_s(200.0);
+  EXPECT_EQ(loop.output.first_fault, Fault::kOverload);
+  EXPECT_LE(farthest_rad, loop.config.stand.reached_rad + 1e-9);
 }
 
 std::uint64_t hash_of(const ControllerOutput& output, const ControllerState& state) {

@@ -59,6 +59,10 @@ constexpr Refusal kRefusals[] = {
      "hardware.emergency_stop: /dev/nosuch line 3: the chip cannot be opened"},
     {"mit.toml", "[hardware]", "[controller.gate]\nspeed_fault_radps = 99\n[hardware]",
      "speed_fault_radps: 99 rad/s is more than the drives' replies can tell"},
+    {"mit.toml", "drive_timeout_s = 0.05", "drive_timeout_s = 0.03",
+     "0.03, expected more than the 0.03 s that the loop may miss"},
+    {"mit.toml", "[hardware]", "[controller.gate]\nstall_fault_ticks = 400\n[hardware]",
+     "0.05, expected more than the 0.1 s that the loop may miss"},
     {"moteus.toml", "kp_nmprev = 1300.0", "", "hardware.drive of LF_HAA: found no kp_nmprev"},
     {"moteus.toml", "max_torque_nm = 65.0", "", "found no max_torque_nm"},
     {"moteus.toml", "max_torque_nm = 65.0", "max_torque_nm = 40.0", "torque up to 63.45 N m"},
@@ -118,6 +122,31 @@ TEST_F(HardwareTest, CheckRefusesWhatDoesNotGoTogether) {
   expect_refused("check hardware.toml --plan --move", "--move");
   expect_refused("check hardware.toml --zero standing", "standing");
   expect_refused("check hardware.toml --arm", "expected no --hardware, --arm or --dry-run");
+}
+
+HardwareConfig settings_of(const std::string& example,
+                           const std::vector<std::string>& assignments) {
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, "dry-sand");
+  tree.add_file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + example);
+  for (const std::string& assignment : assignments) tree.set(assignment);
+  return *read_process_config(tree, nullptr).hardware;
+}
+
+TEST_F(HardwareTest, ADriveMayLetGoSoonWhereTheLoopMayMissLittle) {
+  EXPECT_EQ(settings_of("mit.toml",
+                        {"hardware.drive_timeout_s=0.02", "controller.gate.stall_fault_ticks=40"})
+                .drive_timeout_s,
+            0.02);
+}
+
+TEST_F(HardwareTest, ALowerTorqueLimitOfTheGateIsTheDrivesToo) {
+  const HardwareConfig h = settings_of(
+      "moteus.toml", {"controller.gate.torque_limit_nm=20", "hardware.torque_scale=0.5"});
+  for (const DriveConfig& drive : h.drives) EXPECT_DOUBLE_EQ(drive.max_torque_nm, 20.0);
+  for (const DriveConfig& drive : settings_of("moteus.toml", {}).drives) {
+    EXPECT_DOUBLE_EQ(drive.max_torque_nm, 63.45);
+  }
 }
 
 TEST_F(HardwareTest, EffectiveSettingsReadBackToTheSame) {

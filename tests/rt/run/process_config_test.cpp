@@ -82,6 +82,18 @@ TEST(ProcessConfigTest, PolicyGivesTheDefaultsOfTheWalk) {
   }
 }
 
+TEST(ProcessConfigTest, ARobotThatIsDrivenGentlyStopsAsSoonAsOthers) {
+  PolicySpec spec = random_policy_file().spec;
+  spec.envelope.acceleration_mps2 = spec.envelope.yaw_acceleration_radps2 = 0.8;
+  const auto stop_of = [&](const std::vector<std::string>& assignments) {
+    return config_of("rigid", assignments, &spec).controller.walk.stop_deceleration_mps2;
+  };
+  EXPECT_EQ(stop_of({}), 0.8);  // not more than it was trained for
+  EXPECT_EQ(stop_of({"controller.shaping.acceleration_mps2=0.05"}), 0.8);
+  EXPECT_EQ(stop_of({"controller.shaping.acceleration_mps2=5"}), 1.0);
+  EXPECT_EQ(stop_of({"controller.walk.stop_deceleration_mps2=0.5"}), 0.5);
+}
+
 TEST(ProcessConfigTest, RobotGivesTheLimitsOfTheGate) {
   const GateConfig raibo = config_of("rigid").controller.gate;
   EXPECT_EQ(raibo.joint_lower_rad[0], -1.5708);
@@ -131,9 +143,11 @@ TEST(ProcessConfigTest, InvalidValueIsRefused) {
       {"policy.latency_ticks=0", "found 0"},
       {"policy.latency_ticks=40", "found 40"},
       {"controller.walk.kp_nmprad=-1", "found -1"},
-      {"controller.walk.stop_calm_s=0", "found 0"},    // Stand would take over at full speed
-      {"controller.walk.stop_time_s=0", "found 0"},    // likewise
-      {"controller.damping.kd_nmsprad=0", "found 0"},  // nothing would let the robot down
+      {"controller.walk.stop_calm_s=0", "found 0"},     // Stand would take over at full speed
+      {"controller.walk.stop_time_s=0", "found 0"},     // likewise
+      {"controller.damping.kd_nmsprad=0", "found 0"},   // nothing would let the robot down
+      {"controller.damping.fault_s=0.1", "found 0.1"},  // not for long enough
+      {"controller.stand.blend_s=0.5", "found 0.5"},    // it would topple on sand
       {"controller.gate.tilt_fault_deg=nan", "found nan"},
       {"controller.gate.policy_fault_ticks=1", "found 1"},
       {"controller.gate.joints_fault_ticks=-1", "found -1"},

@@ -177,6 +177,17 @@ TEST(EmulatedDamiaoTest, TellsItsRangesAndHasTheTimeOutThatItWasTold) {
   pair.exchange(&kPoint);
   EXPECT_EQ(pair.host.fault() & 0xFF, 0xDu) << "communication lost";
   EXPECT_EQ(pair.torque_nm(), 0.0);
+  for (int i = 0; i < 3; ++i) pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.state(), State::kOff) << "the host has cleared it";
+}
+
+TEST(EmulatedDamiaoTest, HeedsNoSetPointsInAnotherControlMode) {
+  Pair pair("mit", MitVariant::kDamiao);
+  pair.drive.faults.control_mode = 2.0;
+  pair.enable();
+  EXPECT_EQ(pair.drive.state(), State::kOn);
+  EXPECT_FALSE(pair.exchange(&kPoint));
+  EXPECT_EQ(pair.torque_nm(), 0.0);
 }
 
 TEST(EmulatedDriveSwapTest, AnswersToTheOthersId) {

@@ -89,7 +89,7 @@ class BlackBoxTest : public RecordingProgramTest {
 
   Policy policy_ = load_shipped_policy();
   const ProcessConfig config_ = config_of(
-      "dry-sand", {"sim.noise.joint_position_rad=0.005", "controller.damping.fault_s=0.02"},
+      "dry-sand", {"sim.noise.joint_position_rad=0.005", "controller.damping.fault_s=0.5"},
       &policy_.spec());
   RecordingInfo info_;
   OperatorCommand command_;
@@ -206,10 +206,10 @@ TEST_F(BlackBoxTest, EachFaultHasItsFile) {
 TEST_F(BlackBoxTest, RunHasTenFilesAtMost) {
   open(dir());
   for (std::uint64_t fault = 1; fault <= 12; ++fault) {
-    walk_to(fault * 200 + 150, {fault * 200});
+    walk_to(fault * 2200 + 2100, {fault * 2200});  // the drives are on for 0.5 s after a fault
     request(ModeRequest::kResetFault);
   }
-  walk_to(3000);
+  walk_to(29000);
   const BlackBoxResult result = box_->close();
   EXPECT_EQ(result.files.size(), 10u);
   EXPECT_EQ(result.left_out, 2u);
