@@ -236,22 +236,26 @@ int run(int argc, char** argv) {
   }
   if (options->check.asked) return check(*options);
   const CommandSource command(options->live ? "0,0,0" : options->command);
-  const std::string policy_text = options->policy_path.empty()
-                                      ? std::string(shipped_policy_text())
-                                      : read_input_file(options->policy_path, "a policy file");
-  Policy policy =
-      load_policy_text(policy_text, options->policy_path.empty() ? "raibo.safetensors (built in)"
-                                                                 : options->policy_path);
-  const ProcessConfig config = read_config(*options, &policy.spec());
+  std::string policy_text;
+  std::optional<Policy> policy;
+  if (options->policy_path.empty()) {
+    policy_text = shipped_policy_text();
+    policy = load_policy_text(policy_text, "raibo.safetensors (built in)");
+  } else if (options->policy_path != kNoPolicy) {
+    policy_text = read_input_file(options->policy_path, "a policy file");
+    policy = load_policy_text(policy_text, options->policy_path);
+  }
+  const std::string policy_name = policy ? policy->spec().name : "";
+  const ProcessConfig config = read_config(*options, policy ? &policy->spec() : nullptr);
   if (options->dry_run) {
     fmt::print("{}", dry_run(config));
     return kExitOk;
   }
-  if (!policy.spec().has_envelope) {
+  if (policy && !policy->spec().has_envelope) {
     to_standard_error(
         fmt::format("sandrunner: policy '{}' does not say which commands it can follow: they are "
                     "held to a narrow envelope (sandrunner-policy envelope)\n",
-                    policy.spec().name));
+                    policy_name));
   }
   if (config.controller.gate.hanging) {
     to_standard_error(
@@ -267,19 +271,20 @@ int run(int argc, char** argv) {
   std::optional<OperatorDesk> desk;
   if (options->live) {
     remote.emplace(config.dds.stale_ticks());
-    desk.emplace(*remote, config.dds.stale_s, true);
+    desk.emplace(*remote, config.dds.stale_s, policy.has_value());
   }
   OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   std::optional<StandAgain> stand_again;
   if (remote && options->view && !options->realtime) stand_again.emplace(*remote);
   Listeners listeners;
   if (config.dds.enabled) listeners.dds.emplace(config, open_desk, !options->realtime);
-  listeners.recorder = make_recorder(*options, config, policy_text, policy);
-  listeners.black_box = make_black_box(*options, config, policy_text, policy);
+  Policy* const brain = policy ? &*policy : nullptr;
+  listeners.recorder = make_recorder(*options, config, policy_text, brain);
+  listeners.black_box = make_black_box(*options, config, policy_text, brain);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
 
-  const RunScene scene = scene_of(config, policy.spec().name);
+  const RunScene scene = scene_of(config, policy_name);
   if (out) listeners.page.emplace(scene, config.robot.description);
   if (options->view) {
     listeners.view.emplace(scene, config, !options->realtime, signals.interrupted(), open_desk,
@@ -290,7 +295,7 @@ int run(int argc, char** argv) {
   const RunParts parts{
       .robot = robot.io(),
       .controller = config.controller,
-      .policy = &policy,
+      .policy = brain,
       .command = command,
       .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
       .live = stand_again ? static_cast<OperatorInput*>(&*stand_again)
@@ -314,7 +319,7 @@ int run(int argc, char** argv) {
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
-  const RunInfo info{options->live ? options->command : command.text(), policy.spec().name,
+  const RunInfo info{options->live ? options->command : command.text(), policy_name,
                      robot.hardware ? "real" : options->terrain,
                      options->realtime ? "realtime" : "lockstep", options->seed};
   std::string written;

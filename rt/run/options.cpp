@@ -60,7 +60,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "sandrunner"};
   app.option_defaults()->always_capture_default();
   std::string start = "stand";
-  app.add_option("--policy", o.policy_path, "policy file (default: the one that ships)")
+  app.add_option("--policy", o.policy_path,
+                 "policy file (default: the one that ships); none: the robot only stands up")
       ->type_name("FILE")
       ->capture_default_str();
   app.add_option("--robot", o.robot_path,
@@ -90,7 +91,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--duration", o.duration_s, "time in Walk, s")->type_name("S");
   app.add_option(
          "--start", start,
-         "stand: lies, stands up, walks, stands again; walk: walks at once from the nominal pose")
+         "stand: lies, stands up, walks, stands again, is let down; walk: walks at once from the "
+         "nominal pose")
       ->check(CLI::IsMember({"stand", "walk"}))
       ->type_name("stand|walk");
   std::string clock = "lockstep";
@@ -164,6 +166,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   if (!std::isfinite(o.duration_s) || o.duration_s <= 0.0 || o.duration_s > 86400.0) {
     throw InputError(
         fmt::format("--duration: {}, expected seconds above 0 and up to 86400", o.duration_s));
+  }
+  if (o.policy_path == kNoPolicy && o.start_walking) {
+    throw InputError("--start walk: there is nothing to walk with (--policy none)");
   }
   if (o.dry_run && !hardware) throw InputError("--dry-run: expected --hardware with it");
   if (hardware && !o.live && !o.arm && !o.dry_run) {

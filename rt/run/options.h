@@ -8,9 +8,12 @@
 
 namespace sandrunner {
 
+/// As `--policy`: the robot stands up and no more.
+inline constexpr const char* kNoPolicy = "none";
+
 /// The command line of `sandrunner`, as typed; files are not looked at here.
 struct Options {
-  std::string policy_path;    ///< empty: the policy that ships
+  std::string policy_path;    ///< empty: the policy that ships; kNoPolicy: none
   std::string robot_path;     ///< map of a robot; empty: the robot that ships
   std::string hardware_path;  ///< TOML of its drives and IMU; empty: the simulator
   bool arm = false;           ///< the script may move the real robot

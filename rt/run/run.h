@@ -16,7 +16,7 @@ namespace sandrunner {
 struct RunParts {
   RobotIo& robot;
   const ControllerConfig& controller;
-  Policy* policy = nullptr;  ///< null: the robot only stands up
+  Policy* policy = nullptr;  ///< null: the robot only stands up, and is let down
   const CommandSource& command;
   RunPlan plan = {};
   /// Operator in place of the script that `command` and `plan` make; null: that script.
@@ -30,8 +30,8 @@ struct RunParts {
   const std::atomic<bool>& interrupt;                   ///< ends the run in damping
 };
 
-/// Runs the robot in one thread, as fast as it goes: from lying to standing, the walk, and standing
-/// again (or just the walk).
+/// Runs the robot in one thread, as fast as it goes: from lying to standing, the walk, standing
+/// again and being let down (or just the walk).
 RunResult run_in_lockstep(const RunParts& parts);
 
 /// The same run in real time. Throws InputError if a required part of the set-up is not to be had.

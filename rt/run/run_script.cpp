@@ -4,7 +4,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::uint64_t kSettle_ticks = kControlHz;  // in Stand, before Walk and at the end
+constexpr std::uint64_t kSettle_ticks = kControlHz;  // in Stand before Walk; twice that at the end
 
 }  // namespace
 
@@ -33,8 +33,7 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   verdict.counts = phase_ == Phase::kWalk && facts.mode == Mode::kWalk;
   if (facts.faults != 0) fail(fault_name(facts.first_fault));
   // Lying and standing up, base and thighs only carry; once the robot has walked, touching the
-  // ground is a fall.
-  // But not while it is let down.
+  // ground is a fall, but not while it is let down.
   const bool carries = has_walked_ && phase_ != Phase::kDamp;
   if (carries && facts.base_contact) fail("base_contact");
   if (carries && facts.thigh_contact) fail("thigh_contact");

@@ -91,6 +91,17 @@ TEST_F(CommandLineTest, WithoutArgumentsTheRobotEndsOnItsFeet) {
   EXPECT_EQ(files_in(""), std::set<std::string>{"policy"});
 }
 
+TEST_F(CommandLineTest, WithoutAPolicyARobotOfAnyJointsStandsUpAndIsLetDown) {
+  const std::string robot = "--robot " + write_small_robot(folder_);
+  EXPECT_EQ(run("--policy none --out o " + robot), 0) << error();
+  EXPECT_EQ(error(), "");
+  EXPECT_TRUE(summary("o").at("policy").is_null());
+  const std::string csv = read_file(folder_.path("o/run.csv"));
+  EXPECT_NE(csv.find(",stand,"), std::string::npos);
+  EXPECT_EQ(csv.find(",walk,"), std::string::npos);
+  expect_refused("--policy none --start walk", "--start walk");
+}
+
 TEST_F(CommandLineTest, RunWritesItsResults) {
   const int code = run("--policy policy --start walk --duration 0.5 --seed 3 --out deep/results");
   ASSERT_TRUE(code == 0 || code == 1) << error();
