@@ -50,7 +50,7 @@ def corners(forward, back, lateral, yaw):
             'left cw': (0, lateral, -yaw)}
 
 
-def run(programs, policy, job, commands, folder):
+def run(programs, policy, robot, job, commands, folder):
     """Exit code of one run, how it ended, and how to repeat it."""
     ground, start, first, second = job
     a, b, zero = commands[first], commands[second], (0, 0, 0)
@@ -63,7 +63,7 @@ def run(programs, policy, job, commands, folder):
         part.write_text('t_s,vx,vy,wz\n' + ''.join(lines))
         part.replace(file)
     words = [str(programs / 'sandrunner'), '--policy', str(policy), '--command', str(file), '--duration', '8',
-             *GROUNDS[ground], *STARTS[start]]
+             *GROUNDS[ground], *STARTS[start], *(['--robot', str(robot)] if robot else [])]
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return done.returncode, done.stdout.partition('\n')[0], shlex.join(words)
 
@@ -72,6 +72,7 @@ def main():
     parser = argparse.ArgumentParser(prog='tools/evaluate/corners.py', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('policy', type=pathlib.Path)
+    parser.add_argument('--robot', type=pathlib.Path, help='map of the robot (default: the one that ships)')
     parser.add_argument('--bin', type=pathlib.Path, default=TREE / 'build/release/bin', help='folder of the programs')
     parser.add_argument('--runs', type=int, help='so many of them, drawn by chance (default: all 3,822)')
     options = parser.parse_args()
@@ -83,7 +84,8 @@ def main():
     runs, falls = collections.Counter(), collections.Counter()
     folder = pathlib.Path(tempfile.mkdtemp(prefix='corners-'))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        done = pool.map(lambda job: (job, *run(options.bin, options.policy, job, commands, folder)), jobs)
+        done = pool.map(lambda job: (job, *run(options.bin, options.policy, options.robot, job, commands, folder)),
+                        jobs)
         for job, code, end, words in done:
             if code not in (0, 1):
                 sys.exit(f'corners.py: exit {code}: {words}')

@@ -7,14 +7,14 @@
 
 #include "estimator/heading.h"
 #include "rt/base/quantile.h"
+#include "tools/train/task/step_outcome.h"
 
 namespace sandrunner::evaluate {
 namespace {
 
 constexpr double kStep_s = 1.0 / kPolicyHz;
-// A foot is loaded when it carried more than this on average over 10 ms; a lift-off takes two
-// periods without, as in the training: on sand the normal force comes in pulses.
-constexpr float kLoaded_n = 3.0f;
+// A foot is loaded as in the training; a lift-off takes two periods without.
+using train::kLoaded_n;
 constexpr std::size_t kSettled = kPolicyHz;  // periods before the tracking errors count
 constexpr double kUsualGaitCycle_s = 0.5;    // where no stride is seen
 constexpr double kShortestGaitCycle_s = 0.2, kLongestGaitCycle_s = 1.0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sandrunner-policy: imports policies that others published and describes policy files.
+// sandrunner-policy: imports policies that others published, describes policy files, and writes the
+// commands that they may be given into them.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -122,7 +123,8 @@ void print_info(const std::string& path) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Imports and describes the policy files of sandrunner.", "sandrunner-policy");
+  CLI::App app("Imports and describes the policy files of sandrunner, and writes their envelope.",
+               "sandrunner-policy");
   app.require_subcommand(1);
 
   std::string input;

@@ -15,9 +15,6 @@ namespace sandrunner::train {
 namespace {
 
 constexpr float kStep_s = 1.0f / kPolicyHz;
-// A foot is loaded when it carried more than this in the last two policy steps: on sand the normal
-// force comes in pulses.
-constexpr float kLoaded_n = 3.0f;
 
 sim::StepSettings batch_settings() {
   sim::StepSettings s;

@@ -9,7 +9,7 @@
 namespace sandrunner::train {
 namespace {
 
-TEST(LegModesTest, AreOrthogonal) {
+TEST(LegModesTest, ModesAreOrthogonal) {
   for (int a = 0; a < kNumLegs; ++a) {
     for (int b = 0; b < kNumLegs; ++b) {
       float product = 0.0f;
@@ -52,7 +52,7 @@ TEST(LegModesTest, FoldedIntoALayerGiveTheActionsOfTheLayerInModes) {
   for (int j = 0; j < kNumJoints; ++j) EXPECT_NEAR(folded[j], expected[j], 1e-6) << j;
 }
 
-TEST(LegModesTest, ModesOfJointsOfModesAreThese) {
+TEST(LegModesTest, JointsAndBackGivesTheSameModes) {
   constexpr std::array<double, kNumLegs> kGain{0.6, 0.7, 0.9, 1.6};
   JointArray<float> modes, joints, again;
   for (int k = 0; k < kNumJoints; ++k) modes[k] = std::sin(1.0f + 3.0f * float(k));
