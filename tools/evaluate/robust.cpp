@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Straight runs of 10 s on dry sand with one thing changed at a time.
+#include <numbers>
+
 #include "tools/evaluate/study.h"
 
 namespace sandrunner::evaluate {
@@ -36,45 +38,55 @@ Part Study::robust() {
   struct Case {
     const char* name;
     Trial trial;
+    double imu_turn_rad = 0.0;
   };
   const sim::Terrain<float>* const plain = add(sand);
-  const auto on = [](const sim::Terrain<float>* terrain) {
+  const auto on = [](const sim::Terrain<float>* terrain, auto... change) {
     Trial t;
     t.terrain = terrain;
+    (change(t), ...);
     return t;
   };
-  std::vector<Case> cases = {
+  const auto late = [&](int ticks) {
+    return on(plain, [&](Trial& t) { t.latency_ticks = ticks; });
+  };
+  const auto one_foot = [&](const sim::TerrainDescription& terrain) {
+    return on(add(terrain), [](Trial& t) { t.loose_step.from_m = kLooseFrom_m; });
+  };
+  const auto changing = [&](const sim::TerrainDescription& terrain, double at_m) {
+    return on(add(terrain), [&](Trial& t) { t.ground_changes_at_m = at_m; });
+  };
+  const Case cases[] = {
       {"plain", on(plain)},
-      {"action delay 10 ms", on(plain)},
+      {"action delay 10 ms", late(kTicksPerPolicyStep)},
+      {"action delay 20 ms", late(2 * kTicksPerPolicyStep)},
+      {"IMU turned by 2 deg", on(plain), 2.0 / 180.0 * std::numbers::pi},
+      {"3 x training noise", on(plain, [](Trial& t) { t.noise_scale = 3.0; })},
+      {"pushes 0.6 m/s", on(plain, [](Trial& t) { t.push_speed_mps = 0.6; })},
       {"no inertial soil terms",
        on(changed([](sim::GroundParameters& g) { g.inertial_drag = g.added_mass = false; }))},
-      {"3 x training noise", on(plain)},
-      {"pushes 0.6 m/s", on(plain)},
-      {"sigma/4 under one foot", on(add(quarter))},
-      {"sigma/2 under one foot", on(add(half))},
-      {"sigma/4 from 3 to 3.6 m", on(add(strip))},
-      {"rigid-sand-rigid-sand-rigid", on(add(alternating))},
+      {"sigma/4 under one foot", one_foot(quarter)},
+      {"sigma/2 under one foot", one_foot(half)},
+      {"sigma/4 from 3 to 3.6 m", changing(strip, kLooseFrom_m)},
+      {"rigid-sand-rigid-sand-rigid", changing(alternating, kHardTo_m)},
       {"friction 0.4", on(changed([](sim::GroundParameters& g) { g.friction = 0.4; }))},
       {"softest: 1/0.15 MN/m3", on(changed([](sim::GroundParameters& g) {
          g.sigma_flat_npm3 = 1e6;
          g.sigma_cone_npm3 = 0.15e6;
        }))},
   };
-  cases[1].trial.latency_ticks = 40;
-  cases[3].trial.noise_scale = 3.0;
-  cases[4].trial.push_speed_mps = 0.6;
-  cases[7].trial.ground_changes_at_m = kLooseFrom_m;
-  cases[8].trial.ground_changes_at_m = kHardTo_m;
-  cases[5].trial.loose_step.from_m = cases[6].trial.loose_step.from_m = kLooseFrom_m;
   for (const Case& c : cases) {
     for (const double speed : {1.0, 2.0, 3.0}) {
       Trial trial = c.trial;
       trial.command.target.vx_mps = speed;
       trial.duration_s = 10.0;
       Group g = group("dry-sand", c.name, trial);
-      // Each leg in a quarter of the runs.
+      // Each leg in a quarter of the runs, and the IMU turned to another side.
       for (std::size_t i = 0; i < g.trials.size(); ++i) {
-        g.trials[i].loose_step.leg = static_cast<int>(i % kNumLegs);
+        Trial& t = g.trials[i];
+        t.loose_step.leg = static_cast<int>(i % kNumLegs);
+        const double turn_rad = i % 4 < 2 ? c.imu_turn_rad : -c.imu_turn_rad;
+        (i % 2 == 0 ? t.imu_pitch_rad : t.imu_roll_rad) = turn_rad;
       }
       part.groups.push_back(g);
     }

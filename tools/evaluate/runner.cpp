@@ -62,9 +62,10 @@ class PackRun {
         batch_.set_drive(i, drive);
         continue;
       }
-      drive.switch_tick = static_cast<float>(trial.latency_ticks);
+      const int late_ticks = trial.latency_ticks > kTicksPerPolicyStep ? kTicksPerPolicyStep : 0;
+      drive.switch_tick = static_cast<float>(trial.latency_ticks - late_ticks);
       lanes_[i].drive = drive;
-      lanes_[i].target_rad = robot.nominal_rad;
+      lanes_[i].target_rad = lanes_[i].answer_rad = robot.nominal_rad;
     }
   }
 
@@ -98,7 +99,7 @@ class PackRun {
   struct Lane {
     bool done = false;
     NetworkState memory;
-    JointArray<double> target_rad{};
+    JointArray<double> target_rad{}, answer_rad{};  // the drives', the network's
     sim::BatchDrive<float> drive;
     TrialRecorder recorder;
     bool in_air = false;  // the foot of the LooseStep
@@ -136,15 +137,26 @@ class PackRun {
     policy_.set_state(lane.memory);
     const PolicyStep answer = policy_.step(observe(trial, step, command, state));
     lane.memory = policy_.state();
+    // What reaches the drives in this period: this answer, or, later than that, the one before.
+    const JointArray<double> target_rad =
+        trial.latency_ticks > kTicksPerPolicyStep ? lane.answer_rad : answer.target_rad;
     lane.recorder.begin_period(state, sim::ground_truth(robot_.model, state, *trial.terrain),
-                               answer.estimate, asked, lane.target_rad, answer.target_rad,
+                               answer.estimate, asked, lane.target_rad, target_rad,
                                policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);
     for (int j = 0; j < kNumJoints; ++j) {
       lane.drive.target_before[j] = static_cast<float>(lane.target_rad[j]);
-      lane.drive.target[j] = static_cast<float>(answer.target_rad[j]);
+      lane.drive.target[j] = static_cast<float>(target_rad[j]);
     }
-    lane.target_rad = answer.target_rad;
+    lane.target_rad = target_rad;
+    lane.answer_rad = answer.target_rad;
     batch_.set_drive(i, lane.drive);
+  }
+
+  // A vector of the body in the frame of its IMU, to the first order of the angles.
+  static std::array<float, 3> as_seen(const Trial& trial, const std::array<float, 3>& v) {
+    const auto roll = static_cast<float>(trial.imu_roll_rad),
+               pitch = static_cast<float>(trial.imu_pitch_rad);
+    return {v[0] - pitch * v[2], v[1] + roll * v[2], v[2] + pitch * v[0] - roll * v[1]};
   }
 
   std::array<float, kObservationSize> observe(const Trial& trial, std::uint64_t step,
@@ -155,6 +167,7 @@ class PackRun {
     std::array<float, 3> up{r.r2.x, r.r2.y, r.r2.z};
     std::array<float, 3> rate{x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
     JointArray<float> q = x.q, qd = x.qd;
+    for (std::array<float, 3>* v : {&up, &rate}) *v = as_seen(trial, *v);
     if (trial.noise_scale > 0.0) {
       std::uint64_t counter = step * kDrawsPerStep;
       const auto noise = [&](double sigma) {
