@@ -144,9 +144,12 @@ FootProfile<double> make_foot_profile(const TerrainDescription& terrain,
   const FootShape shape = terrain.foot_shape == FootShape::kTyre && !(model.foot_width_m > 0.0)
                               ? FootShape::kSphere
                               : terrain.foot_shape;
+  // 4 is that of the authors' code, with whose tyre the published stresses go. On it, buried, pi
+  // r_h^2 is 2.63 times the patch; with 2 sqrt(2.63) it is as much of a disc, so that the same
+  // ground carries both alike.
   const double factor = terrain.hydraulic_factor > 0.0 ? terrain.hydraulic_factor
                         : shape == FootShape::kTyre    ? 4.0
-                                                       : 2.0;
+                                                       : 3.24;
   return fit_foot_profile(shape, model.foot_radius_m, model.foot_width_m, factor);
 }
 

@@ -20,7 +20,7 @@ struct TerrainDescription {
   std::string name;
   std::vector<TerrainPatch> patches;  ///< ascending in from_x_m; at least one, at most kMaxRegions
   FootShape foot_shape = FootShape::kTyre;
-  double hydraulic_factor = 0.0;  ///< c_h of r_h = c_h A/P; 0: 4 for a tyre, 2 otherwise
+  double hydraulic_factor = 0.0;  ///< c_h of r_h = c_h A/P; 0: 4 for a tyre, else 3.24
 };
 
 /// "granular", "rigid", "linear": as in `terrain.kind`.

@@ -101,6 +101,20 @@ TEST(TerrainTest, PatchesTakeTheFirstGroundOrAPresetWithDifferences) {
   EXPECT_EQ(terrain.region_at(1e6), 2.0);
 }
 
+TEST(TerrainTest, ABallFootStandsOnTheSameGroundAsTheTyre) {
+  // What carries, over the area of the buried foot seen from above.
+  const RobotModel<double> tyre = load_raibo().model;
+  RobotModel<double> ball = tyre;
+  ball.foot_width_m = 0.0;
+  ball.foot_radius_m = 0.022;
+  const auto carrying = [](const RobotModel<double>& model, double area_m2) {
+    const double r_h = make_foot_profile(TerrainDescription{}, model).hydraulic_radius(0.1);
+    return std::numbers::pi * r_h * r_h / area_m2;
+  };
+  EXPECT_NEAR(carrying(ball, std::numbers::pi * 0.022 * 0.022),
+              carrying(tyre, 2.0 * tyre.foot_radius_m * tyre.foot_width_m), 0.01);
+}
+
 TEST(TerrainTest, RefusesBadValuesInOneLine) {
   expect_names("[terrain]\nstifness_npm = 3.0", "stifness_npm");
   expect_names("[terrain]\nkind = \"linear\"\nstiffness_npm = -5.0", "stiffness_npm");
