@@ -89,11 +89,11 @@ void print_info(const std::string& path) {
       fmt::format("limited to {} m/s^2 of centripetal acceleration", spec.yaw_command_clip_mps2));
 
   const CommandEnvelope& e = spec.envelope;
-  row("commands",
-      fmt::format("vx -{} to {}, vy +-{} m/s, yaw rate +-{} rad/s; changes {} m/s^2, {} rad/s^2{}",
-                  e.backward_mps, e.forward_mps, e.lateral_mps, e.yaw_radps, e.acceleration_mps2,
-                  e.yaw_acceleration_radps2,
-                  spec.has_envelope ? "" : " (the file does not say: narrow)"));
+  row("commands", fmt::format("vx -{:.4g} to {:.4g}, vy +-{:.4g} m/s, yaw rate +-{:.4g} rad/s; "
+                              "changes {} m/s^2, {} rad/s^2{}",
+                              e.backward_mps, e.forward_mps, e.lateral_mps, e.yaw_radps,
+                              e.acceleration_mps2, e.yaw_acceleration_radps2,
+                              spec.has_envelope ? "" : " (the file does not say: narrow)"));
 
   fmt::print("\n{:<20}{:>10}{:>12}{:>12}\n", "nominal pose, rad", "HAA", "HFE", "KFE");
   for (int leg = 0; leg < kNumLegs; ++leg) {
