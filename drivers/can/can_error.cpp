@@ -5,11 +5,6 @@
 #include <linux/can/error.h>
 
 namespace sandrunner {
-namespace {
-
-// Newer than the kernel headers of Debian 12 in some releases.
-
-}  // namespace
 
 CanError decode_can_error(const CanFrame& frame) noexcept {
   CanError error;

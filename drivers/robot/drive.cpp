@@ -91,6 +91,7 @@ bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
     set(DriveTrouble::kBusOff, false);
     off_frame(frame);
   } else if (phase_ == Phase::kLost) {
+    if (unanswered_++ == 0) asked_tick_ = tick;  // its supply may be gone as well
     return false;
   } else if (phase_ == Phase::kOn) {
     if (!has(DriveTrouble::kSwitchedOff)) {
@@ -116,18 +117,17 @@ bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
 }
 
 bool Drive::take(const CanFrame& frame, std::uint64_t tick) noexcept {
-  const bool taken = config_.protocol == Protocol::kMit ? take_mit(frame) : take_moteus(frame);
+  const bool was_silent = unanswered_ > kRebootRequests && tick > asked_tick_ + kReboot_ticks;
+  const bool taken =
+      config_.protocol == Protocol::kMit ? take_mit(frame, was_silent) : take_moteus(frame);
   if (!taken) return false;
-  if (is_damiao() && unanswered_ > kRebootRequests && tick > asked_tick_ + kReboot_ticks) {
-    set(DriveTrouble::kForgotTimeout, true);
-  }
   unanswered_ = 0;
   tick_ = tick;
   judge_supply();
   return true;
 }
 
-bool Drive::take_mit(const CanFrame& frame) noexcept {
+bool Drive::take_mit(const CanFrame& frame, bool was_silent) noexcept {
   MitReply reply;
   const MitStatus status = decode_mit_reply(config_.mit, frame, reply);
   if (status != MitStatus::kOk && status != MitStatus::kUnknownState) {
@@ -144,7 +144,7 @@ bool Drive::take_mit(const CanFrame& frame) noexcept {
   maker_fault_ = reply.fault;
   if (status == MitStatus::kUnknownState) maker_fault_ = 0xFF;
   ++replies_;
-  judge_power(reply.power != MitPower::kUnknown, reply.power == MitPower::kEnabled);
+  judge_power(reply.power != MitPower::kUnknown, reply.power == MitPower::kEnabled, was_silent);
   return true;
 }
 
@@ -164,11 +164,19 @@ bool Drive::take_moteus(const CanFrame& frame) noexcept {
   maker_fault_ = reply.mode == MoteusMode::kFault ? reply.code : 0;
   timed_out_ = reply.mode == MoteusMode::kTimeout;
   ++replies_;
-  judge_power(true, reply.mode == MoteusMode::kPosition || reply.mode == MoteusMode::kEnabling);
+  judge_power(true, reply.mode == MoteusMode::kPosition || reply.mode == MoteusMode::kEnabling,
+              false);
   return true;
 }
 
-void Drive::judge_power(bool known, bool enabled) noexcept {
+void Drive::judge_power(bool known, bool enabled, bool was_silent) noexcept {
+  // Off without a reason of its own: it has just started, or somebody else switched it off. What
+  // was cleared after a fault says so too, but not in its first answer.
+  const bool plainly_off = known && !enabled && maker_fault_ == 0;
+  const bool at_once = phase_ == Phase::kOn && !has(DriveTrouble::kSwitchedOff);
+  if (is_damiao() && plainly_off && (was_silent || at_once)) {
+    set(DriveTrouble::kForgotTimeout, true);
+  }
   if (phase_ == Phase::kEnabling) {
     if (known ? enabled : replies_ >= replies_at_enable_ + kRepliesToEnable) phase_ = Phase::kOn;
   } else if (phase_ == Phase::kOff) {
@@ -177,8 +185,6 @@ void Drive::judge_power(bool known, bool enabled) noexcept {
     // Answers come in their order: since one has said "enabled", none of before is on its way.
     if (enabled) return;
     set(DriveTrouble::kSwitchedOff, true);
-    // Off without a reason of its own: it has just started, or somebody else switched it off.
-    if (is_damiao() && maker_fault_ == 0) set(DriveTrouble::kForgotTimeout, true);
   }
 }
 

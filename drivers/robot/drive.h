@@ -84,9 +84,9 @@ class Drive {
   bool is_damiao() const noexcept {
     return config_.protocol == Protocol::kMit && config_.mit.variant == MitVariant::kDamiao;
   }
-  bool take_mit(const CanFrame& frame) noexcept;
+  bool take_mit(const CanFrame& frame, bool was_silent) noexcept;
   bool take_moteus(const CanFrame& frame) noexcept;
-  void judge_power(bool known, bool enabled) noexcept;
+  void judge_power(bool known, bool enabled, bool was_silent) noexcept;
   void judge_supply() noexcept;
   void set(DriveTrouble trouble, bool on) noexcept;
 

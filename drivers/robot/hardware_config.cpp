@@ -308,11 +308,13 @@ void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
 }
 
 void match_gate(const GateConfig& gate, HardwareConfig& h) {
-  const double stall_s = kControlPeriod_s * static_cast<double>(gate.stall_fault_ticks);
+  // Between two commands lie what the loop may miss and the rest of an exchange.
+  const double stall_s = kControlPeriod_s * (static_cast<double>(gate.stall_fault_ticks) +
+                                             static_cast<double>(h.ticks_per_exchange()));
   if (h.drive_timeout_s <= stall_s) {
     throw InputError(
         fmt::format("hardware.drive_timeout_s: {}, expected more than the {} s that the loop may "
-                    "miss (controller.gate.stall_fault_ticks)",
+                    "miss and an exchange takes (controller.gate.stall_fault_ticks)",
                     h.drive_timeout_s, stall_s));
   }
   const double told_radps = told_speed_radps(h);

@@ -8,6 +8,9 @@
 
 namespace sandrunner {
 
+/// A robot that is let down falls where damping has less than this share of the largest gain.
+inline constexpr double kLeastDamping = 0.1;
+
 /// Thresholds. A value that equals its threshold passes. The robot's figures come from its file and
 /// are 0 without one: every movement is then a fault, every torque is bounded to nothing.
 struct GateConfig {

@@ -10,7 +10,9 @@
 namespace sandrunner {
 namespace {
 
-void read_controller(ConfigTree& config, ControllerConfig& c) {
+/// `recorded`: what was run once may be read that no run is to have any more.
+void read_controller(ConfigTree& config, ControllerConfig& c, bool recorded) {
+  const auto least = [&](double value) { return recorded ? 0.0 : value; };
   const auto number = [&](const char* key, double& value, double min, double max) {
     value = config.number(std::string("controller.") + key, value, min, max);
   };
@@ -30,8 +32,8 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   number("walk.stop_deceleration_mps2", c.walk.stop_deceleration_mps2, 0.1, 10.0);
   number("walk.stop_yaw_deceleration_radps2", c.walk.stop_yaw_deceleration_radps2, 0.1, 10.0);
   number("walk.stop_speed_radps", c.walk.stop_speed_radps, 0.0, 1e3);
-  number("walk.stop_calm_s", c.walk.stop_calm_s, 0.1, 60.0);
-  number("walk.stop_time_s", c.walk.stop_time_s, 0.5, 60.0);
+  number("walk.stop_calm_s", c.walk.stop_calm_s, least(0.1), 60.0);
+  number("walk.stop_time_s", c.walk.stop_time_s, least(0.5), 60.0);
   c.walk.latency_ticks = static_cast<std::uint64_t>(
       config.integer("policy.latency_ticks", static_cast<std::int64_t>(c.walk.latency_ticks), 1,
                      kTicksPerPolicyStep - 1));
@@ -39,13 +41,14 @@ void read_controller(ConfigTree& config, ControllerConfig& c) {
   number("stand.gain_ramp_s", c.stand.gain_ramp_s, 0.0, 2.0);
   number("stand.fold_s", c.stand.fold_s, 0.0, 60.0);
   number("stand.extend_s", c.stand.extend_s, 0.0, 60.0);
-  number("stand.blend_s", c.stand.blend_s, 1.0, 60.0);  // in half of that it topples on sand
+  number("stand.blend_s", c.stand.blend_s, least(1.0), 60.0);  // in half of that it topples on sand
   number("stand.max_speed_radps", c.stand.max_speed_radps, 0.1, 20.0);
   number("stand.reached_rad", c.stand.reached_rad, 0.01, 1.0);
   number("stand.reach_s", c.stand.reach_s, 0.0, 10.0);
   // With none a robot that is let down falls.
-  number("damping.kd_nmsprad", c.damping.kd_nmsprad, 0.1 * g.kd_limit_nmsprad, g.kd_limit_nmsprad);
-  number("damping.fault_s", c.damping.fault_s, 0.5, 60.0);  // with less it is dropped
+  number("damping.kd_nmsprad", c.damping.kd_nmsprad, least(kLeastDamping * g.kd_limit_nmsprad),
+         g.kd_limit_nmsprad);
+  number("damping.fault_s", c.damping.fault_s, least(0.5), 60.0);  // with less it is dropped
   CommandEnvelope& e = c.shaping.envelope;
   number("shaping.forward_mps", e.forward_mps, 0.0, 100.0);
   number("shaping.backward_mps", e.backward_mps, 0.0, 100.0);
@@ -137,7 +140,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
     adapt_gate(*p.hardware, c.gate);
   }
   const CommandEnvelope trained = c.shaping.envelope;
-  read_controller(config, c);
+  read_controller(config, c, robot != nullptr);
   // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
   const CommandEnvelope& set = c.shaping.envelope;
   const auto at_most = [](double& value, double a, double b) {

@@ -99,7 +99,6 @@ void read_figures(Map& map, Robot& robot) {
   robot.fold_rad = map.pose("pose.fold_rad");
   robot.stand_kp_nmprad = map.number("gains.stand_kp_nmprad", 0.0, 1e4);
   robot.stand_kd_nmsprad = map.number("gains.stand_kd_nmsprad", 0.0, 1e3);
-  robot.damping_kd_nmsprad = map.number("gains.damping_kd_nmsprad", 0.0, 1e3);
   const auto limit = [&](const char* key, const GateThreshold<double>& threshold) {
     return map.number(key, threshold.least, threshold.ceiling);
   };
@@ -107,6 +106,9 @@ void read_figures(Map& map, Robot& robot) {
       limit("gains.kp_limit_nmprad", gate_threshold(&GateConfig::kp_limit_nmprad));
   robot.kd_limit_nmsprad =
       limit("gains.kd_limit_nmsprad", gate_threshold(&GateConfig::kd_limit_nmsprad));
+  // With less a robot that is let down falls.
+  robot.damping_kd_nmsprad = map.number(
+      "gains.damping_kd_nmsprad", kLeastDamping * robot.kd_limit_nmsprad, robot.kd_limit_nmsprad);
   robot.speed_fault_radps =
       limit("limits.speed_fault_radps", gate_threshold(&GateConfig::speed_fault_radps));
   robot.power_limit_w = limit("limits.power_w", gate_threshold(&GateConfig::power_limit_w));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rt/core/mode_machine.h"
+#include "rt/operator/mode_requests.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/sandrunner.h"
 
@@ -19,6 +20,7 @@ namespace sandrunner {
 namespace {
 
 constexpr int kRequestDepth = 32;
+constexpr std::size_t kMostCalmed = 64;
 // Enough for all that publishers send before the thread gets to it: if only the newest were kept, a
 // publisher that sends right after the holder of the command would silence it and take over.
 constexpr int kVelocityDepth = 100;
@@ -106,8 +108,7 @@ void CommandInbox::take_velocity() {
 void CommandInbox::take_requests() {
   take(requests_, [this](const void* message, const dds_sample_info_t& info) {
     const auto& request = *static_cast<const sandrunner_ModeRequest*>(message);
-    const RequestOutcome outcome =
-        answer(request.request, participant_of(requests_, info.publication_handle));
+    const RequestOutcome outcome = answer(request.request, requests_, info);
     sandrunner_ModeReply reply{};
     reply.id = request.id;
     reply.accepted = outcome.accepted;
@@ -118,7 +119,7 @@ void CommandInbox::take_requests() {
   });
   take(texts_, [this](const void* message, const dds_sample_info_t& info) {
     const auto& text = *static_cast<const std_msgs_msg_dds__String_*>(message);
-    answer(text.data, participant_of(texts_, info.publication_handle));
+    answer(text.data, texts_, info);
   });
   services_.answer(
       [this](std::string_view request, const dds_guid_t& asker) { return answer(request, asker); });
@@ -126,6 +127,20 @@ void CommandInbox::take_requests() {
 
 RequestOutcome CommandInbox::answer(std::string_view request, const dds_guid_t& asker) {
   return desk_.request(request, operator_of(asker), [this] { return objection(); });
+}
+
+RequestOutcome CommandInbox::answer(std::string_view request, dds_entity_t reader,
+                                    const dds_sample_info_t& info) {
+  const OperatorId asker = operator_of(participant_of(reader, info.publication_handle));
+  const auto calmed = calmed_.find(asker);
+  const bool late = calmed != calmed_.end() && info.source_timestamp < calmed->second;
+  if (!late && decide(request, Mode::kPassive, true).calms) {  // the same in every mode
+    if (calmed_.size() >= kMostCalmed) calmed_.clear();
+    calmed_[asker] = info.source_timestamp;
+  }
+  return desk_.request(request, asker, [&] {
+    return late ? "was asked for before the latest stop or damp, and came after it" : objection();
+  });
 }
 
 std::string CommandInbox::objection() const {

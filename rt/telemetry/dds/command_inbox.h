@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -18,7 +19,9 @@ namespace sandrunner {
 /// what it accepts. Requests come on sandrunner/mode_request and are answered on
 /// sandrunner/mode_reply, as calls of ROS 2's services, or as a std_msgs/String on
 /// rt/sandrunner/request, which is not answered; the desk decides about them all. While another
-/// robot would obey as well, stop and damp are all that is accepted.
+/// robot would obey as well, stop and damp are all that is accepted. A message that was lost is
+/// sent again, and what it asks for is refused if its sender has meanwhile asked for a stop or
+/// damp.
 class CommandInbox {
  public:
   /// `participant` and `desk` must outlive the inbox. `robot`: who answers. Throws InputError.
@@ -33,6 +36,8 @@ class CommandInbox {
   void take_velocity();
   void take_requests();
   RequestOutcome answer(std::string_view request, const dds_guid_t& asker);
+  RequestOutcome answer(std::string_view request, dds_entity_t reader,
+                        const dds_sample_info_t& info);
   std::string objection() const;
 
   OperatorDesk& desk_;
@@ -41,6 +46,7 @@ class CommandInbox {
   dds_entity_t cmd_vel_, requests_, replies_, texts_, wake_, waitset_;
   TriggerServices services_;
   NeighbourWatch neighbours_;
+  std::map<OperatorId, dds_time_t> calmed_;  // the latest stop or damp of each, by its own clock
   std::atomic<bool> end_{false};
   std::thread thread_;
 };

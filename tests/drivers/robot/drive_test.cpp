@@ -44,6 +44,8 @@ class MitPair {
     }
     return request;
   }
+  /// Time in which nothing is asked.
+  void pass(std::uint64_t ticks) { tick_ += ticks; }
   bool said(DriveTrouble trouble) const {
     return (drive.fault() & static_cast<std::uint64_t>(trouble)) != 0;
   }
@@ -141,6 +143,47 @@ TEST(DriveTest, ADamiaoWithoutItsSupplyWhileItWasOffIsNotEnabledAgain) {
   for (int i = 0; i < 60; ++i) pair.exchange(nullptr, false);
   pair.exchange(nullptr);
   expect_never_enabled_again(pair);
+}
+
+TEST(DriveTest, ADamiaoWithoutItsSupplyWhileItsBusWasOffIsNotEnabledAgain) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kEnabled;
+  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  pair.drive.lose_bus();
+  CanFrame frame;
+  for (std::uint64_t tick = 20; tick < 1000; tick += 4) {
+    EXPECT_FALSE(pair.drive.next_frame(&kPoint, tick, frame));
+  }
+  pair.state.power = MitPower::kDisabled;
+  pair.pass(1000);
+  pair.exchange(nullptr);
+  expect_never_enabled_again(pair);
+}
+
+TEST(DriveTest, ADamiaoThatTimedOutInAStallIsEnabledAgainOnceTheRobotWasOff) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kEnabled;
+  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  pair.pass(400);  // one request, and none in the meantime
+  pair.state.power = MitPower::kDisabled;
+  pair.state.fault = kDamiaoLostHost;
+  pair.exchange(&kPoint);
+  EXPECT_TRUE(pair.said(DriveTrouble::kSwitchedOff));
+  expect_special(pair.exchange(&kPoint), MitSpecial::kClearFault);
+  pair.state.fault = 0;
+  for (int i = 0; i < 5; ++i) pair.exchange(&kPoint);
+  pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.fault(), 0u);
+  expect_special(pair.exchange(&kPoint), MitSpecial::kEnable);
+}
+
+TEST(DriveTest, ADamiaoThatStillRunsAfterAPauseKeptItsSupply) {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kEnabled;
+  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  for (int i = 0; i < 60; ++i) pair.exchange(&kPoint, false);
+  EXPECT_FALSE(pair.exchange(&kPoint).is_special);
+  EXPECT_EQ(pair.drive.fault(), 0u);
 }
 
 TEST(DriveTest, AFewLostRepliesOfADamiaoAreNoLossOfItsSupply) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <thread>
 
+#include "tests/support/wait_until.h"
+
 namespace sandrunner {
 namespace {
 
@@ -22,6 +24,7 @@ class WillingController {
           Mode mode = Mode::kStand;
           for (std::uint64_t tick = 0; !end_; ++tick) {
             const OperatorCommand command = op.command(tick);
+            vx_mps_ = command.velocity.vx_mps;
             if (command.request == ModeRequest::kWalk) mode = Mode::kWalk;
             if (command.request == ModeRequest::kDamp) mode = Mode::kDamping;
             op.advance({.mode = mode});
@@ -31,6 +34,11 @@ class WillingController {
         }) {
     while (ticks_ < 2) std::this_thread::yield();
   }
+  double vx_mps() const { return vx_mps_; }  ///< asked for last
+  bool go_on() const {
+    const std::uint64_t end = ticks_ + 2;
+    return wait_until([&] { return ticks_ >= end; });
+  }
   ~WillingController() {
     end_ = true;
     thread_.join();
@@ -39,12 +47,14 @@ class WillingController {
  private:
   std::atomic<bool> end_{false};
   std::atomic<std::uint64_t> ticks_{0};
+  std::atomic<double> vx_mps_{0.0};
   std::thread thread_;
 };
 
 struct OperatorDeskTest : testing::Test {
-  RemoteOperator op{1200};
-  OperatorDesk desk{op, 60.0, true};  // a velocity holds for longer than any test takes
+  // A velocity holds for longer than any test takes.
+  RemoteOperator op{1'000'000'000'000};
+  OperatorDesk desk{op, 60.0, true};
   WillingController controller{op};
 };
 
@@ -79,6 +89,17 @@ TEST_F(OperatorDeskTest, AnObjectionHoldsForWhatDoesNotEndTheMotion) {
             "unknown, expected arm, stand, walk, stop, damp or reset_fault");
   EXPECT_EQ(desk.counts().requests_refused, 2u);
   EXPECT_EQ(desk.counts().objected, 1u);
+}
+
+TEST_F(OperatorDeskTest, AnObjectionToTheHoldersVelocityEndsTheOneBefore) {
+  const auto objection = [] { return std::string("two robots"); };
+  desk.drive(forward(0.5), 1, kPage);
+  ASSERT_TRUE(wait_until([&] { return controller.vx_mps() == 0.5; }));
+  desk.drive(forward(0.5), 2, kPeer, objection);  // not the holder
+  ASSERT_TRUE(controller.go_on());
+  EXPECT_EQ(controller.vx_mps(), 0.5);
+  desk.drive(forward(0.0), 1, kPage, objection);
+  EXPECT_TRUE(wait_until([&] { return controller.vx_mps() == 0.0; }));
 }
 
 TEST_F(OperatorDeskTest, OperatorsInManyThreadsLeaveOneHolder) {

@@ -177,6 +177,20 @@ TEST(ProcessConfigTest, UnknownKeyIsRefusedWithItsPlace) {
                  {folder.path("my.toml") + ":2: unknown key 'sim.seed'"});
 }
 
+TEST(ProcessConfigTest, ARecordingMayHaveSettingsThatNoRunMayHaveAnyMore) {
+  const sim::Robot raibo = sim::load_raibo();
+  for (const auto& [setting, value_of] :
+       {std::pair{"controller.stand.blend_s=0.5",
+                  +[](const ControllerConfig& c) { return c.stand.blend_s; }},
+        std::pair{"controller.damping.fault_s=0.5",
+                  +[](const ControllerConfig& c) { return c.damping.fault_s; }}}) {
+    ConfigTree tree;
+    sim::add_terrain_layer(tree, "rigid");
+    tree.set(setting);
+    EXPECT_EQ(value_of(read_process_config(tree, nullptr, &raibo).controller), 0.5) << setting;
+  }
+}
+
 TEST(ProcessConfigTest, EffectiveSettingsReadBackToThemselves) {
   const TemporaryFolder folder;
   write_file(folder.path("terrain.toml"), R"([terrain]

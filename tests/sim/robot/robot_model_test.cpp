@@ -327,6 +327,12 @@ TEST(RobotModelTest, RefusesUnknownAndWrongKeysOfTheMap) {
                   std::string("rotor_inertia_kgm2")},
         std::pair{edited(shipped_map(), "nominal_rad", "[0.0, 0.559836, -1.119672]", "[0.0, 0.5]"),
                   std::string("nominal_rad")},
+        // Let down with as little, it would fall; with more, the drives would get more than they
+        // may.
+        std::pair{edited(shipped_map(), "damping", "2.0", "0.3"),
+                  std::string("damping_kd_nmsprad")},
+        std::pair{edited(shipped_map(), "damping", "2.0", "4.1"),
+                  std::string("damping_kd_nmsprad")},
         std::pair{edited(shipped_map(), "rotor", "0.005741839", "nan"),
                   std::string("rotor_inertia_kgm2")}}) {
     EXPECT_NE(what(map).find("my.toml"), std::string::npos) << what(map);

@@ -129,6 +129,22 @@ TEST(CommandInboxTest, OneThatSendsRightAfterTheHolderDoesNotSilenceIt) {
   EXPECT_EQ(setup.robot.speed_mps(), 0.5);
 }
 
+TEST(CommandInboxTest, WhatWasLostOnTheWayDoesNotOvertakeTheStopAfterIt) {
+  Walking setup;
+  const dds_time_t before = dds_time();
+  EXPECT_TRUE(setup.asker.ask("stop").accepted);
+  ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
+  const auto again = setup.first.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc);
+  sandrunner_ModeRequest walk{};
+  std::string("walk").copy(walk.request, sizeof walk.request - 1);
+  dds_write_ts(again, &walk, before);  // as it comes when it is sent once more
+  ASSERT_TRUE(wait_until([&] { return setup.desk.counts().requests_refused == 1; }));
+  EXPECT_NE(setup.desk.last_request().find("before the latest stop"), std::string::npos);
+  EXPECT_EQ(setup.robot.mode(), Mode::kStand);
+  dds_write_ts(again, &walk, dds_time());
+  EXPECT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kWalk; }));
+}
+
 TEST(CommandInboxTest, StopAndDampAreTakenFromOneThatDoesNotHoldTheCommand) {
   Walking setup;
   Asker bystander(setup.second);
