@@ -33,7 +33,6 @@ struct BatchSums {
   S power{};           ///< signed sum of tau qd, W
   S speed_squared{};   ///< sum over joints of qd^2, rad^2/s^2
   S speed_excess{};    ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
-  S stop_excess{};     ///< sum over joints of the distance past the stop, rad
   S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
   S slip{};                               ///< sum over feet in contact of |v_xy|^2, m^2/s^2
   std::array<S, kNumLegs> foot_load{};    ///< normal force of each foot, N
@@ -43,7 +42,6 @@ struct BatchSums {
 /// The last tick of the period.
 template <typename S>
 struct BatchReport {
-  std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m
   std::array<Vec3<S>, kNumLegs> foot_velocity;  ///< of the contact point, world, m/s
   std::array<S, kNumLegs> penetration{};        ///< m
   std::array<std::array<S, 3>, kNumLegs>

@@ -38,7 +38,6 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
       sums.speed_excess = fma(fast, fast, sums.speed_excess);
       too_fast = max(too_fast, abs(qd) - limit);
       const S past = max(max(r.model.lower_rad[j] - q, q - r.model.upper_rad[j]), zero);
-      sums.stop_excess = sums.stop_excess + past;
       past_stop = max(past_stop, past);
     }
     sums.ticks_too_fast = sums.ticks_too_fast + select(too_fast > zero, one, zero);
@@ -53,7 +52,6 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
     sums.thigh_contact = max(sums.thigh_contact, report.thigh_contact);
   }
   r.sums = sums;
-  r.report.foot_centre = report.foot_centre;
   r.report.foot_velocity = report.foot_velocity;
   r.report.penetration = report.penetration;
   r.report.foot_force = report.foot_force;

@@ -87,7 +87,7 @@ int run(int argc, char** argv) {
     std::fflush(stdout);
     results.parts.push_back(std::move(part));
   }
-  // All at the end, so that no file of this evaluation lies beside one of another.
+  // All at the end: an evaluation that is cut short leaves the files of the one before as they are.
   if (out) {
     for (const PartResults& part : results.parts) {
       write_file(dir + part.part.name + ".csv", part_csv(part, results.policies));

@@ -49,7 +49,6 @@ class Study {
   Study(const Study&) = delete;
   Study& operator=(const Study&) = delete;
 
-  const StudySettings& settings() const noexcept { return settings_; }
   const sim::Robot& robot() const noexcept { return robot_; }
   const sim::FootProfile<double>& foot() const noexcept { return foot_; }
 
@@ -61,7 +60,7 @@ class Study {
   const sim::RobotState<float>& start(int run) const { return starts_.at(run); }
   /// Number of run i for its noise, pushes and random command.
   std::uint64_t run_seed(int run) const noexcept;
-  /// A group of settings().runs trials like this one.
+  /// A group of StudySettings::runs trials like this one.
   Group group(const std::string& ground, const std::string& scenario, const Trial& like) const;
 
   Part straight();

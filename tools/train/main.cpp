@@ -77,6 +77,7 @@ int run(int argc, char** argv) {
   if (!config_file.empty()) tree.add_file(config_file);
   for (const std::string& assignment : assignments) tree.set(assignment);
   const TrainConfig config = read_train_config(tree);
+  check_robot(config.task, robot);
   if (!resume && std::filesystem::exists(Training::checkpoint_path(options.out))) {
     throw InputError(
         fmt::format("--out: '{}' holds a training; give --resume or another folder", options.out));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -175,12 +176,13 @@ std::string Progress::line(const ProgressRow& r, double eta_s) {
 }
 
 const char* Progress::explanation() {
-  return "A line of progress, of the last update's steps, on soil:\n"
+  return "A line of progress, of the last update's steps:\n"
          "  M        transitions so far, millions; a transition is 10 ms of one robot\n"
          "  k/s      transitions a second, thousands\n"
          "  reward   mean of a step\n"
-         "  track    how well the commanded velocity is kept, 0 to 1\n"
-         "  falls    of a robot in 4 s, under noise, pushes and all commands that are open\n"
+         "  track    how well the commanded velocity is kept on soil, 0 to 1\n"
+         "  falls    of a robot on soil in 4 s, under noise, pushes and all commands that are "
+         "open\n"
          "  Hz       strides a second\n"
          "  trot     correlation of diagonal feet in the air: 1 is a trot, below 0 they take "
          "turns\n"
@@ -235,8 +237,9 @@ std::string Progress::page_json(const std::string& title) const {
       add(series.name, "", line("", series.name));
     }
   }
-  return fmt::format(R"({{"title":"{}","x_label":"{}","x":{},"every":{},"charts":[{}]}})", title,
-                     kAbscissa, json_list(millions(rows_), every), every, charts);
+  return fmt::format(R"({{"title":{},"x_label":"{}","x":{},"every":{},"charts":[{}]}})",
+                     nlohmann::json(title).dump(), kAbscissa, json_list(millions(rows_), every),
+                     every, charts);
 }
 
 }  // namespace sandrunner::train

@@ -35,7 +35,7 @@ class Progress {
   /// Writes curve.csv and curve.png into `dir`. Throws InputError.
   void write(const std::string& dir) const;
   /// All columns of curve.csv for a page (ViewPage::html); of long trainings means of rows, so that
-  /// there are at most 1000. `title` holds no quotes.
+  /// there are at most 1000.
   std::string page_json(const std::string& title) const;
 
  private:

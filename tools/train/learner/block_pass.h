@@ -17,7 +17,9 @@ namespace sandrunner::learner {
 /// loss = mean over samples of
 ///   -min(ratio A, clip(ratio, 1 - clip, 1 + clip) A) + value_weight (V - R)^2 / 2
 ///   + estimate_weight mean_8((estimate - target)^2) - entropy_weight entropy
-///   + symmetry_weight |(mean - mirror mean of the policy that acted) / its std|^2 / 2
+///   + symmetry_weight |(mean - symmetric mean) / std of the policy that acted|^2 / 2
+/// with the symmetric mean as Learner makes it: the mean of the policy that acted less what it
+/// differs from its mirror image by, averaged over LearnerConfig::symmetry_steps.
 struct LossConfig {
   double clip = 0.2;
   double value_weight = 1.0;
@@ -39,7 +41,7 @@ struct LossSums {
   std::array<double, kEstimateSize> estimate_square{};
   double kl = 0.0;  ///< of the new policy from the one that acted, exact
   double clipped = 0.0;
-  double asymmetry = 0.0;  ///< |(mean - mirror mean) / std|^2 / 2
+  double asymmetry = 0.0;  ///< |(mean - symmetric mean) / std|^2 / 2
   double samples = 0.0;
 
   void add(const LossSums& other);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "rt/base/errors.h"
 #include "tools/train/task/embedded.h"
 
 namespace sandrunner::train {
@@ -47,6 +48,22 @@ std::string robot_settings(const sim::Robot& robot) {
   set("height_m", 0.475 * length);
   set("height_end_m", 0.495 * length);  // a higher body is cheaper on sand
   return toml;
+}
+
+void check_robot(const TaskConfig& config, const sim::Robot& robot) {
+  const auto at_most = [&](const char* key, double value, double limit) {
+    if (value <= limit) return;
+    throw InputError(fmt::format("training config: {} = {}, the robot '{}' takes at most {}", key,
+                                 value, robot.description.name, limit));
+  };
+  at_most("policy.kp_nmprad", config.policy.kp_nmprad, robot.kp_limit_nmprad);
+  at_most("policy.kd_nmsprad", config.policy.kd_nmsprad, robot.kd_limit_nmsprad);
+  if (robot.nominal_rad[0] != 0.0) {
+    throw InputError(fmt::format(
+        "robot '{}': pose.nominal_rad has an HAA of {}, expected 0 for a training: left "
+        "and right are mirror images",
+        robot.description.name, robot.nominal_rad[0]));
+  }
 }
 
 void add_training_layers(ConfigTree& config, const sim::Robot& robot) {

@@ -5,14 +5,20 @@
 
 #include "rt/base/config_tree.h"
 #include "sim/robot/robot_model.h"
+#include "tools/train/task/task_config.h"
 
 namespace sandrunner::train {
 
 /// The settings that depend on the robot, as TOML: those that are good for Raibo, scaled by what
 /// the robot's own file says. A leg of other length is the same in its own units of length and time
-/// (Froude): speeds as the root of the height, rates as its inverse; torques are priced as shares
-/// of weight times height, power of weight times speed.
+/// (Froude): commanded speeds go as the root of the height; torques are priced as shares of weight
+/// times height, power of weight times speed. Times of the gait and widths of kernels stay as they
+/// are.
 std::string robot_settings(const sim::Robot& robot);
+
+/// Throws InputError for a robot that cannot be trained with these settings: gains beyond its
+/// limits; a nominal pose that is not its own mirror image.
+void check_robot(const TaskConfig& config, const sim::Robot& robot);
 
 /// The settings of a training of `robot`, from the weakest layer up: training.toml, and what is
 /// derived from the robot.

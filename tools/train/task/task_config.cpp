@@ -36,14 +36,15 @@ constexpr NumberSetting<E> kEpisode[] = {
 
 using C = CommandSettings;
 constexpr NumberSetting<C> kCommand[] = {
-    {"speed_start_mps", &C::speed_start_mps, 0.0, kNoLimit},
-    {"speed_max_mps", &C::speed_max_mps, 0.0, kNoLimit},
+    // within what a policy file may allow
+    {"speed_start_mps", &C::speed_start_mps, 0.0, 20.0},
+    {"speed_max_mps", &C::speed_max_mps, 0.0, 20.0},
     {"speed_step_mps", &C::speed_step_mps, 0.0, kNoLimit},
     {"forward_share", &C::forward_share, 0.0, 1.0},
-    {"backward_mps", &C::backward_mps, 0.0, kNoLimit},
-    {"lateral_mps", &C::lateral_mps, 0.0, kNoLimit},
+    {"backward_mps", &C::backward_mps, 0.0, 20.0},
+    {"lateral_mps", &C::lateral_mps, 0.0, 20.0},
     {"lateral_share", &C::lateral_share, 0.0, 1.0},
-    {"yaw_radps", &C::yaw_radps, 0.0, kNoLimit},
+    {"yaw_radps", &C::yaw_radps, 0.0, 20.0},
     {"yaw_share", &C::yaw_share, 0.0, 1.0},
     {"zero_share", &C::zero_share, 0.0, 1.0},
     {"in_place_share", &C::in_place_share, 0.0, 1.0},
@@ -52,9 +53,9 @@ constexpr NumberSetting<C> kCommand[] = {
     {"forward_ramp_share", &C::forward_ramp_share, 0.0, 1.0},
     {"change_s", &C::change_s, 0.1, 1000.0},
     {"start_stand_s", &C::start_stand_s, 0.0, 1000.0},
-    {"acceleration_mps2", &C::acceleration_mps2, 0.1, 1e3},
-    {"yaw_acceleration_radps2", &C::yaw_acceleration_radps2, 0.1, 1e3},
-    {"centripetal_mps2", &C::centripetal_mps2, 0.0, kNoLimit},
+    {"acceleration_mps2", &C::acceleration_mps2, 0.1, 100.0},
+    {"yaw_acceleration_radps2", &C::yaw_acceleration_radps2, 0.1, 100.0},
+    {"centripetal_mps2", &C::centripetal_mps2, 0.01, kNoLimit},
     {"gate_kernel", &C::gate_kernel, 0.0, kNoLimit},
     {"gate_falls", &C::gate_falls, 0.0, kNoLimit},
 };
@@ -162,6 +163,11 @@ TaskConfig read_task_config(ConfigTree& config) {
   read_numbers(config, "command", kCommand, c.command);
   require_order("command.speed_start_mps", c.command.speed_start_mps, "command.speed_max_mps",
                 c.command.speed_max_mps);
+  if (const double shares = c.command.zero_share + c.command.in_place_share; shares > 1.0) {
+    throw InputError(fmt::format(
+        "training config: command.zero_share + command.in_place_share = {}, expected at most 1",
+        shares));
+  }
   c.ground = read_ground_settings(config);
   c.robot = read_robot_settings(config);
   c.noise = read_noise_settings(config);

@@ -190,6 +190,13 @@ TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
   expect_refused("a", {"--set", "ground.friction_low=2", "--set", "ground.friction_high=1"},
                  "ground.friction_low");
   expect_refused("a", {"--set", "run.envs=100"}, "run.envs");
+  // What no policy file may hold, no robot may be given, or nothing can be learnt with.
+  expect_refused("a", {"--set", "command.centripetal_mps2=0"}, "command.centripetal_mps2");
+  expect_refused("a", {"--set", "command.backward_mps=200"}, "command.backward_mps");
+  expect_refused("a", {"--set", "policy.kp_nmprad=201"}, "the robot 'raibo' takes at most 200");
+  expect_refused("a", {"--set", "command.zero_share=0.8"}, "command.in_place_share = 1.05");
+  expect_refused("a", {"--set", "ground.rigid_envs=64", "--set", "ground.patchy_envs=0"},
+                 "ground.rigid_envs = 64");
   expect_refused("a", {"--set", "learner.block_envs=40", "--set", "run.envs=80"},
                  "learner.block_envs = 40");
   expect_refused("a", {"--set", "learner.critic=[128.7]"}, "learner.critic: 128.7");

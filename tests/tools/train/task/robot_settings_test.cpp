@@ -25,6 +25,14 @@ TEST(RobotSettingsTest, TheShippedRobotGetsTheFiguresItsTrainingWasTunedWith) {
   EXPECT_NEAR(config.reward.height_m, 0.475, 1e-9);
 }
 
+TEST(RobotSettingsTest, ARobotThatStandsAskewIsNotTrained) {
+  sim::Robot robot = sim::load_raibo();
+  const TaskConfig config = settings_of(robot);
+  EXPECT_NO_THROW(check_robot(config, robot));
+  robot.nominal_rad[0] = 0.1;
+  EXPECT_THROW(check_robot(config, robot), InputError);
+}
+
 TEST(RobotSettingsTest, ASmallerRobotIsSlowerLowerAndItsTorqueDearer) {
   const TemporaryFolder folder;
   const TaskConfig raibo = settings_of(sim::load_raibo()),
