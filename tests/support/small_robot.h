@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second robot, of the tests' own making (tests/support/small_robot/): half of Raibo's mass, three quarters
-// of its lengths, other names, poses, gains and limits, ball feet. What works with it has no figure of
-// Raibo's.
+// A second robot, of the tests' own making (tests/support/small_robot/): half of Raibo's mass,
+// three quarters of its lengths, other names, poses, gains and limits, ball feet. What works with
+// it has no figure of Raibo's.
 #pragma once
 
 #include <string>
