@@ -98,8 +98,9 @@ class Drive {
 
   Phase phase_ = Phase::kOff;
   std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0;
-  std::uint64_t unanswered_ = 0, asked_tick_ = 0;  // requests since its last reply, and their first
-  bool cleared_ = false;                           // a Damiao's fault, with the frame before
+  std::uint64_t unanswered_ = 0,
+                asked_tick_ = 0;  // exchanges since its last reply, and their first
+  bool cleared_ = false;          // a Damiao's fault, with the frame before
   double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
   double temperature_degc_, voltage_v_;
   std::uint64_t maker_fault_ = 0, trouble_ = 0, last_fault_ = 0, tick_ = 0;

@@ -32,6 +32,8 @@ RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept
   return {.request = ModeRequest::kWalk};
 }
 
+bool calms(std::string_view name) noexcept { return decide(name, Mode::kPassive, true).calms; }
+
 const char* failure(ModeRequest request, Mode after) noexcept {
   switch (request) {
     case ModeRequest::kNone:

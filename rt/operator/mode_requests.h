@@ -26,6 +26,9 @@ struct RequestDecision {
 /// policy.
 RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept;
 
+/// Whether a request of this name ends motion, in whatever mode.
+bool calms(std::string_view name) noexcept;
+
 /// Why a request had no effect, judged by the mode of the controller after it; null: it had.
 const char* failure(ModeRequest request, Mode after) noexcept;
 

@@ -75,8 +75,7 @@ void ModeClient::ask(std::string_view request) {
   sandrunner_ModeRequest message{};
   message.id = id_;
   request.copy(message.request, sizeof message.request - 1);
-  const bool calms = decide(request, Mode::kPassive, true).calms;  // the same in every mode
-  check_dds(dds_write(calms ? calming_ : requests_, &message), "sandrunner/mode_request");
+  check_dds(dds_write(calms(request) ? calming_ : requests_, &message), "sandrunner/mode_request");
 }
 
 std::optional<sandrunner_ModeReply> ModeClient::reply() {

@@ -62,7 +62,7 @@ class PackRun {
         batch_.set_drive(i, drive);
         continue;
       }
-      const int late_ticks = trial.latency_ticks > kTicksPerPolicyStep ? kTicksPerPolicyStep : 0;
+      const int late_ticks = trial.a_step_late() ? kTicksPerPolicyStep : 0;
       drive.switch_tick = static_cast<float>(trial.latency_ticks - late_ticks);
       lanes_[i].drive = drive;
       lanes_[i].target_rad = lanes_[i].answer_rad = robot.nominal_rad;
@@ -138,8 +138,7 @@ class PackRun {
     const PolicyStep answer = policy_.step(observe(trial, step, command, state));
     lane.memory = policy_.state();
     // What reaches the drives in this period: this answer, or, later than that, the one before.
-    const JointArray<double> target_rad =
-        trial.latency_ticks > kTicksPerPolicyStep ? lane.answer_rad : answer.target_rad;
+    const JointArray<double> target_rad = trial.a_step_late() ? lane.answer_rad : answer.target_rad;
     lane.recorder.begin_period(state, sim::ground_truth(robot_.model, state, *trial.terrain),
                                answer.estimate, asked, lane.target_rad, target_rad,
                                policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);

@@ -60,6 +60,8 @@ struct Trial {
 
   /// Whether there is a place where the robot is disturbed, which it may never reach.
   bool has_place() const noexcept { return loose_step.from_m > 0.0 || ground_changes_at_m > 0.0; }
+  /// Whether joint targets arrive a policy step late, besides what is left of the delay.
+  bool a_step_late() const noexcept { return latency_ticks > kTicksPerPolicyStep; }
   bool has_track() const noexcept { return track_end_m > track_begin_m; }
 };
 

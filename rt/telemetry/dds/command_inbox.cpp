@@ -134,7 +134,7 @@ RequestOutcome CommandInbox::answer(std::string_view request, dds_entity_t reade
   const OperatorId asker = operator_of(participant_of(reader, info.publication_handle));
   const auto calmed = calmed_.find(asker);
   const bool late = calmed != calmed_.end() && info.source_timestamp < calmed->second;
-  if (!late && decide(request, Mode::kPassive, true).calms) {  // the same in every mode
+  if (!late && calms(request)) {
     if (calmed_.size() >= kMostCalmed) calmed_.clear();
     calmed_[asker] = info.source_timestamp;
   }

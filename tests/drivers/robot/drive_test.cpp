@@ -63,6 +63,14 @@ void expect_special(const MitRequest& request, MitSpecial special) {
   EXPECT_EQ(static_cast<int>(request.special), static_cast<int>(special));
 }
 
+/// A Damiao that is enabled and follows its set-points.
+MitPair running_damiao() {
+  MitPair pair("Damiao");
+  pair.state.power = MitPower::kEnabled;
+  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  return pair;
+}
+
 TEST(DriveTest, IsToldToBeOffUntilThereIsASetPoint) {
   MitPair pair;
   for (int i = 0; i < 10; ++i) expect_special(pair.exchange(nullptr), MitSpecial::kDisable);
@@ -128,9 +136,7 @@ void expect_never_enabled_again(MitPair& pair) {
 }
 
 TEST(DriveTest, ADamiaoThatRebootedHasNoTimeOutAndIsNotEnabledAgain) {
-  MitPair pair("Damiao");
-  pair.state.power = MitPower::kEnabled;
-  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  MitPair pair = running_damiao();
   pair.state.power = MitPower::kDisabled;
   for (int i = 0; i < 3; ++i) pair.exchange(&kPoint);
   expect_never_enabled_again(pair);
@@ -146,9 +152,7 @@ TEST(DriveTest, ADamiaoWithoutItsSupplyWhileItWasOffIsNotEnabledAgain) {
 }
 
 TEST(DriveTest, ADamiaoWithoutItsSupplyWhileItsBusWasOffIsNotEnabledAgain) {
-  MitPair pair("Damiao");
-  pair.state.power = MitPower::kEnabled;
-  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  MitPair pair = running_damiao();
   pair.drive.lose_bus();
   CanFrame frame;
   for (std::uint64_t tick = 20; tick < 1000; tick += 4) {
@@ -161,9 +165,7 @@ TEST(DriveTest, ADamiaoWithoutItsSupplyWhileItsBusWasOffIsNotEnabledAgain) {
 }
 
 TEST(DriveTest, ADamiaoThatTimedOutInAStallIsEnabledAgainOnceTheRobotWasOff) {
-  MitPair pair("Damiao");
-  pair.state.power = MitPower::kEnabled;
-  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  MitPair pair = running_damiao();
   pair.pass(400);  // one request, and none in the meantime
   pair.state.power = MitPower::kDisabled;
   pair.state.fault = kDamiaoLostHost;
@@ -178,9 +180,7 @@ TEST(DriveTest, ADamiaoThatTimedOutInAStallIsEnabledAgainOnceTheRobotWasOff) {
 }
 
 TEST(DriveTest, ADamiaoThatStillRunsAfterAPauseKeptItsSupply) {
-  MitPair pair("Damiao");
-  pair.state.power = MitPower::kEnabled;
-  for (int i = 0; i < 4; ++i) pair.exchange(&kPoint);
+  MitPair pair = running_damiao();
   for (int i = 0; i < 60; ++i) pair.exchange(&kPoint, false);
   EXPECT_FALSE(pair.exchange(&kPoint).is_special);
   EXPECT_EQ(pair.drive.fault(), 0u);

@@ -182,8 +182,12 @@ TEST(ProcessConfigTest, ARecordingMayHaveSettingsThatNoRunMayHaveAnyMore) {
   for (const auto& [setting, value_of] :
        {std::pair{"controller.stand.blend_s=0.5",
                   +[](const ControllerConfig& c) { return c.stand.blend_s; }},
-        std::pair{"controller.damping.fault_s=0.5",
-                  +[](const ControllerConfig& c) { return c.damping.fault_s; }}}) {
+        std::pair{"controller.walk.stop_calm_s=0.05",
+                  +[](const ControllerConfig& c) { return 10.0 * c.walk.stop_calm_s; }},
+        std::pair{"controller.damping.kd_nmsprad=0.25",
+                  +[](const ControllerConfig& c) { return 2.0 * c.damping.kd_nmsprad; }},
+        std::pair{"controller.damping.fault_s=0.25",
+                  +[](const ControllerConfig& c) { return 2.0 * c.damping.fault_s; }}}) {
     ConfigTree tree;
     sim::add_terrain_layer(tree, "rigid");
     tree.set(setting);
