@@ -103,6 +103,8 @@ TEST(FastDdsTest, ACallInTheBytesOfRmwCycloneddsIsAnsweredAndTheNodeIsListed) {
 TEST(FastDdsTest, RmwFastrtpsUnderRos2LocalhostFindsTheRobotThroughItsDefaultInterface) {
   LiveSetup setup;
   Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
+  // By now the robot has announced itself twice, and does so again in 8 s only.
+  sleep_s(0.3);
   ChildProcess fast({"bash", "-c",
                      "source " SANDRUNNER_ROS2_LOCALHOST " && exec " SANDRUNNER_FASTDDS_PEER " " +
                          std::to_string(setup.config.domain) + " 0.1 4 profile"});

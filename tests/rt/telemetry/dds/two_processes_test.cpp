@@ -39,6 +39,7 @@ TEST(TwoProcessesTest, RmwCycloneddsUnderRos2LocalhostFindsTheRobotThroughItsDef
     const DdsConfig config = test_config();
     DdsParticipant participant(config);
     Telemetry telemetry(participant, config, example_robot(), nullptr);
+    sleep_s(0.3);  // the robot has announced itself twice, and does so again in 8 s only
     ChildProcess peer({"bash", "-c",
                        "source " SANDRUNNER_ROS2_LOCALHOST " && exec " SANDRUNNER_DDS_PEER " " +
                            std::to_string(config.domain) + " '" + added +
