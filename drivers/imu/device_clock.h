@@ -17,7 +17,7 @@ namespace sandrunner {
 ///
 /// What is constant in the latency (the device's own filter, one byte on the wire) cannot be seen
 /// from here: sample times are late by it. Else they are late by what remains of the jitter: with
-/// 500 packets a second that are read up to 0.25 ms late by chance, 0.1 ms at most and 0.025 ms on
+/// 500 packets a second that are read up to 0.25 ms late by chance, 0.08 ms at most and 0.02 ms on
 /// average (device_clock_test.cpp); never later than the packet's first byte, and never backwards.
 class DeviceClock {
  public:

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <thread>
 
 #include "rt/base/clock_ns.h"
@@ -13,16 +12,17 @@
 namespace sandrunner {
 namespace {
 
-// The controller answers within a tick. A busy computer holds a thread that is not real-time up for
-// some tens of ms; what has not answered after this time is not running.
-constexpr auto kAnswerTime = std::chrono::milliseconds(100);
 constexpr auto kLookEvery = std::chrono::microseconds(250);
 constexpr const char* kNoAnswer = "the controller does not answer";
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk)
-    : operator_(op), can_walk_(can_walk), gate_(static_cast<std::int64_t>(stale_s * 1e9)) {}
+OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk,
+                           std::chrono::milliseconds answer)
+    : operator_(op),
+      can_walk_(can_walk),
+      answer_(answer),
+      gate_(static_cast<std::int64_t>(stale_s * 1e9)) {}
 
 CommandVerdict OperatorDesk::drive(const Twist& twist, std::uint64_t publisher,
                                    const OperatorId& who, const Objection& objection) {
@@ -110,7 +110,7 @@ std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
     if (decision.calms) calming_number_ = asked_.request_number;
   }
   operator_.ask(asked_);
-  const auto deadline = std::chrono::steady_clock::now() + kAnswerTime;
+  const auto deadline = std::chrono::steady_clock::now() + answer_;
   while (operator_.considered() != asked_.request_number) {
     if (std::chrono::steady_clock::now() > deadline) {
       // An operator who was refused must not see the robot move later; a stop or damp still holds.

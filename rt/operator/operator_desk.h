@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -40,14 +41,17 @@ class OperatorDesk {
   using Objection = std::function<std::string()>;
 
   /// `op` must outlive the desk. `stale_s`: a velocity older than this holds nothing any more.
-  /// `can_walk`: there is a policy.
-  OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk);
+  /// `can_walk`: there is a policy. `answer`: the controller answers within a tick; a busy computer
+  /// holds a thread that is not real-time up for some tens of ms; what has not answered after this
+  /// time is not running.
+  OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk,
+               std::chrono::milliseconds answer = std::chrono::milliseconds(100));
 
   /// A velocity. `publisher`: what `who` sends it with. One that is objected to holds nothing.
   CommandVerdict drive(const Twist& twist, std::uint64_t publisher, const OperatorId& who,
                        const Objection& objection = {});
 
-  /// A mode request; waits for the controller's answer, up to 100 ms. `objection` is asked about
+  /// A mode request; waits for the controller's answer. `objection` is asked about
   /// what does not end the motion.
   RequestOutcome request(std::string_view name, const OperatorId& who,
                          const Objection& objection = {});
@@ -63,6 +67,7 @@ class OperatorDesk {
 
   RemoteOperator& operator_;
   const bool can_walk_;
+  const std::chrono::milliseconds answer_;
   mutable std::mutex mutex_;  // of all that follows
   CommandGate gate_;
   OperatorId holder_{};  // of the velocity that was accepted last

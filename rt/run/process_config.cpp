@@ -70,7 +70,11 @@ void read_controller(ConfigTree& config, ControllerConfig& c, bool recorded) {
   lowered("gate.speed_limit_radps", g.speed_limit_radps);
   lowered("gate.torque_limit_nm", g.torque_limit_nm);
   for (const auto& t : kGateThresholds) {
-    if (t.key) number(fmt::format("gate.{}", t.key).c_str(), g.*t.value, t.least, t.ceiling);
+    // Limits of the robot itself may be lowered, too.
+    const bool of_robot =
+        t.value == &GateConfig::speed_fault_radps || t.value == &GateConfig::power_limit_w;
+    const double ceiling = of_robot && !recorded ? g.*t.value : t.ceiling;
+    if (t.key) number(fmt::format("gate.{}", t.key).c_str(), g.*t.value, t.least, ceiling);
   }
   for (const auto& t : kGateTickThresholds) {
     ticks(fmt::format("gate.{}", t.key).c_str(), g.*t.value, static_cast<std::int64_t>(t.least),

@@ -12,7 +12,7 @@ namespace sandrunner::hil {
 struct FaultRun {
   const char* name;
   const char* what;      ///< goes wrong
-  const char* hardware;  ///< example file: "mit" or "moteus"
+  const char* hardware;  ///< example file: "damiao", "mit" or "moteus"
   const char* fault;     ///< script of the bench (fault_script.h)
   const char* bit;       ///< the fault that latches; "": none, `says` then tells
   const char* joints;    ///< that are named with it, with blanks between

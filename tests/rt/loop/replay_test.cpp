@@ -5,6 +5,7 @@
 
 #include "rt/loop/tick_fields.h"
 #include "tests/rt/support.h"
+#include "tests/support/unless_stalled.h"
 
 namespace sandrunner {
 namespace {
@@ -12,13 +13,17 @@ namespace {
 /// Ticks of a run of the policy that ships, from lying through a short walk.
 std::vector<TickRecord> recorded_run(const ProcessConfig& config, bool realtime) {
   std::vector<TickRecord> ticks;
-  Policy policy = load_shipped_policy();
-  simulate({.config = config,
-            .policy = &policy,
-            .command = "1,0,0.5",
-            .plan = {.walk_s = 1.0, .start_walking = realtime},
-            .tap = [&](const TickRecord& tick) { ticks.push_back(tick); },
-            .realtime = realtime});
+  unless_stalled([&](std::string& said) {
+    ticks.clear();
+    Policy policy = load_shipped_policy();
+    said = simulate({.config = config,
+                     .policy = &policy,
+                     .command = "1,0,0.5",
+                     .plan = {.walk_s = 1.0, .start_walking = realtime},
+                     .tap = [&](const TickRecord& tick) { ticks.push_back(tick); },
+                     .realtime = realtime})
+               .fall_reason;
+  });
   return ticks;
 }
 

@@ -54,7 +54,7 @@ class WillingController {
 struct OperatorDeskTest : testing::Test {
   // A velocity holds for longer than any test takes.
   RemoteOperator op{1'000'000'000'000};
-  OperatorDesk desk{op, 60.0, true};
+  OperatorDesk desk{op, 60.0, true, std::chrono::seconds(5)};
   WillingController controller{op};
 };
 

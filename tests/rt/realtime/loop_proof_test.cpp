@@ -14,6 +14,7 @@
 #include "tests/rt/realtime/watched_section.h"
 #include "tests/rt/support.h"
 #include "tests/support/not_finite.h"
+#include "tests/support/unless_stalled.h"
 
 namespace sandrunner {
 namespace {
@@ -57,46 +58,49 @@ void expect_clean(const WatchedDeeds& deeds) {
 TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  RemoteOperator op(1200);
-  // Commands all the time, a change of mode, a fault, the end.
-  std::atomic<bool> interrupt{false};
-  OperatorRequests asked;
-  int ticks = 0;
-  bool walked = false, stood = false, faulted = false;
-  const auto at_each_tick = [&](const TickRecord& tick) {
-    ++ticks;
-    walked = walked || tick.output.mode == Mode::kWalk;
-    stood = stood || tick.output.mode == Mode::kStand;
-    faulted = faulted || tick.output.mode == Mode::kFault;
-    if (ticks == 1200) {
-      asked.request = ModeRequest::kStand;
-      ++asked.request_number;
+  unless_stalled([&](std::string& said) {
+    RemoteOperator op(1200);
+    // Commands all the time, a change of mode, a fault, the end.
+    std::atomic<bool> interrupt{false};
+    OperatorRequests asked;
+    int ticks = 0;
+    bool walked = false, stood = false, faulted = false;
+    const auto at_each_tick = [&](const TickRecord& tick) {
+      ++ticks;
+      walked = walked || tick.output.mode == Mode::kWalk;
+      stood = stood || tick.output.mode == Mode::kStand;
+      faulted = faulted || tick.output.mode == Mode::kFault;
+      if (ticks == 1200) {
+        asked.request = ModeRequest::kStand;
+        ++asked.request_number;
+      }
+      asked.velocity = {stood ? kNan : 0.5, 0.0, 0.1 * (ticks % 3)};
+      ++asked.velocity_number;
+      op.ask(asked);
+      interrupt = faulted || ticks > 40000;
+    };
+    WatchingClock clock;
+    const RunResult result = simulate({.config = config,
+                                       .policy = &policy,
+                                       .plan = {.start_walking = true},
+                                       .interrupt = &interrupt,
+                                       .tap = at_each_tick,
+                                       .live = &op,
+                                       .realtime = true,
+                                       .clock = &clock});
+    said = result.fall_reason;
+    EXPECT_EQ(clock.threads(), 3);  // control, policy, watchdog
+    EXPECT_TRUE(walked);
+    EXPECT_TRUE(stood);
+    EXPECT_TRUE(faulted);
+    EXPECT_EQ(result.fall_reason, "non_finite_command");
+    EXPECT_EQ(result.realtime->records_dropped, 0u);
+    for (const WatchedDeeds& deeds : clock.deeds) expect_clean(deeds);
+    ASSERT_FALSE(result.realtime->setup.empty());
+    if (result.realtime->setup.front().obtained) {  // without locked memory pages come and go
+      for (const WatchedDeeds& deeds : clock.deeds) EXPECT_EQ(deeds.page_faults, 0);
     }
-    asked.velocity = {stood ? kNan : 0.5, 0.0, 0.1 * (ticks % 3)};
-    ++asked.velocity_number;
-    op.ask(asked);
-    interrupt = faulted || ticks > 40000;
-  };
-  WatchingClock clock;
-  const RunResult result = simulate({.config = config,
-                                     .policy = &policy,
-                                     .plan = {.start_walking = true},
-                                     .interrupt = &interrupt,
-                                     .tap = at_each_tick,
-                                     .live = &op,
-                                     .realtime = true,
-                                     .clock = &clock});
-  EXPECT_EQ(clock.threads(), 3);  // control, policy, watchdog
-  EXPECT_TRUE(walked);
-  EXPECT_TRUE(stood);
-  EXPECT_TRUE(faulted);
-  EXPECT_EQ(result.fall_reason, "non_finite_command");
-  EXPECT_EQ(result.realtime->records_dropped, 0u);
-  for (const WatchedDeeds& deeds : clock.deeds) expect_clean(deeds);
-  ASSERT_FALSE(result.realtime->setup.empty());
-  if (result.realtime->setup.front().obtained) {  // without locked memory pages come and go
-    for (const WatchedDeeds& deeds : clock.deeds) EXPECT_EQ(deeds.page_faults, 0);
-  }
+  });
 }
 
 // The negative controls: each deed, done on purpose in a watched thread, is seen.

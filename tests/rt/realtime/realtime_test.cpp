@@ -12,15 +12,18 @@
 #include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
 #include "tests/support/not_finite.h"
+#include "tests/support/unless_stalled.h"
 
 namespace sandrunner {
 namespace {
 
-/// The result of `run`, anew where this machine stalled: a stall of 30 ms rightly ends a run. Five
-/// in a row are no chance.
-RunResult unless_stalled(const std::function<RunResult()>& run) {
-  RunResult result = run();
-  for (int again = 0; again < 4 && result.fall_reason == "loop_stalled"; ++again) result = run();
+/// The result of `run`, anew where this computer stalled.
+RunResult run_unless_stalled(const std::function<RunResult()>& run) {
+  RunResult result;
+  unless_stalled([&](std::string& said) {
+    result = run();
+    said = result.fall_reason;
+  });
   return result;
 }
 
@@ -77,7 +80,7 @@ TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFi
 TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  const RunResult result = unless_stalled([&] {
+  const RunResult result = run_unless_stalled([&] {
     return simulate({.config = config,
                      .policy = &policy,
                      .plan = {.walk_s = 2.0, .start_walking = true},
@@ -101,7 +104,7 @@ TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
 
 TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
   int steps_done = 0;
-  const RunResult result = unless_stalled([&] {
+  const RunResult result = run_unless_stalled([&] {
     LiveOperator op;
     Steps steps;
     RunResult run = run_live(op, [&] {
@@ -121,7 +124,7 @@ TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
 
 TEST(RealtimeTest, NonFiniteCommandEndsInDamping) {
   std::uint64_t faults = 0;
-  unless_stalled([&] {
+  run_unless_stalled([&] {
     LiveOperator op;
     Steps steps;
     RunResult run = run_live(op, [&] {
@@ -136,7 +139,7 @@ TEST(RealtimeTest, NonFiniteCommandEndsInDamping) {
 
 TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
   int steps_done = 0;
-  const RunResult result = unless_stalled([&] {
+  const RunResult result = run_unless_stalled([&] {
     LiveOperator op;
     Steps steps;
     RunResult run = run_live(op, [&] {
@@ -170,7 +173,7 @@ RunResult walk_until(const std::function<bool(const TickRecord&)>& interrupts) {
 }
 
 TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
-  const RunResult result = unless_stalled([] {
+  const RunResult result = run_unless_stalled([] {
     return walk_until([](const TickRecord& tick) { return tick.input.sensors.tick > 800; });
   });
   EXPECT_TRUE(result.interrupted);

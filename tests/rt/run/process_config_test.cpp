@@ -150,6 +150,8 @@ TEST(ProcessConfigTest, InvalidValueIsRefused) {
       {"controller.stand.blend_s=0.5", "found 0.5"},    // it would topple on sand
       {"controller.gate.tilt_fault_deg=nan", "found nan"},
       {"controller.gate.policy_fault_ticks=1", "found 1"},
+      {"controller.gate.power_limit_w=5001", "expected a finite number from 0 to 5000"},
+      {"controller.gate.speed_fault_radps=61", "expected a finite number from 0 to 60"},
       {"controller.gate.joints_fault_ticks=-1", "found -1"},
       {"summary.motor_constant=0", "found 0"},
       {"robot=7", "found 7, expected a string"},

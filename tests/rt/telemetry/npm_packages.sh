@@ -12,8 +12,10 @@ npm_packages() {
   # The stamp is written last, so that a broken installation is done again.
   if ! cmp -s "$here/package-lock.json" "$folder/installed.json"; then
     cp "$here/package.json" "$here/package-lock.json" "$folder/"
-    if ! (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=20000 \
-        >npm.log 2>&1); then
+    install() {
+      (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-timeout=20000 >npm.log 2>&1)
+    }
+    if ! install && ! install; then
       npm ping --fetch-retries=0 --fetch-timeout=5000 >/dev/null 2>&1 || skip "the npm registry, which does not answer"
       cat "$folder/npm.log"
       exit 1

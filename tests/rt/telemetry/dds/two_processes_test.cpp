@@ -53,7 +53,7 @@ TEST(TwoProcessesTest, AStoppedSubscriberHoldsUpNobodyAndALiveOneMissesNothing) 
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
   Telemetry telemetry(participant, config, example_robot(), nullptr);
-  ChildProcess live(peer_command(config, {"watch", "6"}));
+  ChildProcess live(peer_command(config, {"watch", "8"}));
   ChildProcess stopped(peer_command(config, {"watch", "60"}));
   ASSERT_TRUE(live.wait_for("watching"));
   ASSERT_TRUE(stopped.wait_for("watching"));
@@ -139,7 +139,7 @@ TEST_F(SecurityTest, AnOperatorsCommandsAreAccepted) {
   LiveSetup setup(our_config());
   ChildProcess peer(
       peer_command(setup.config, {"drive", "0.5", "1000", folder("ours"), "operator"}));
-  EXPECT_TRUE(wait_until([&] { return setup.desk.counts().accepted >= 50; }));
+  EXPECT_TRUE(wait_until([&] { return setup.desk.counts().accepted >= 50; }, 20));
   EXPECT_EQ(setup.desk.counts().other_publisher, 0u);
 }
 
@@ -165,7 +165,14 @@ TEST_F(SecurityTest, AViewerMayNotCommandButSeesTheTelemetry) {
   Telemetry telemetry(participant, config, example_robot(), nullptr);
   ChildProcess viewer(peer_command(config, {"watch", "60", folder("ours"), "viewer"}));
   ASSERT_TRUE(viewer.wait_for("watching"));
-  publish_for(telemetry, 0, 2.0);
+  std::uint64_t tick = 0;
+  EXPECT_TRUE(wait_until(
+      [&] {
+        publish_for(telemetry, tick, 0.5);
+        tick += ticks_from_s(0.5);
+        return viewer.has_printed("matched");
+      },
+      20));
   viewer.signal(SIGINT);
   EXPECT_TRUE(viewer.wait_for("matched"));
 }

@@ -92,14 +92,21 @@ async function drives() {
   const page = await open(url);
   const ask = (name) => page.evaluate((wanted) => [...document.querySelectorAll("#requests button")].find((b) => b.textContent === wanted).click(), name);
   const mode = (name) => until(page, `document.getElementById('mode').textContent === '${name}'`);
+  // Again where the controller was held up for longer than its answer is waited for.
+  const bring = async (request, name) => {
+    for (let tries = 0; tries < 5; tries++) {
+      await page.evaluate("document.getElementById('answer').textContent = ''");
+      await ask(request);
+      await until(page, `document.getElementById('mode').textContent === '${name}' || /does not answer/.test(document.getElementById('answer').textContent)`);
+      if (await page.evaluate(`document.getElementById('mode').textContent === '${name}'`)) return;
+    }
+    await mode(name);
+  };
   await ask("walk");
   await until(page, "/refused, the robot does not stand|refused, the drives are off/.test(document.getElementById('answer').textContent)");
-  await ask("arm");
-  await mode("damping");
-  await ask("stand");
-  await mode("stand");
-  await ask("walk");
-  await mode("walk");
+  await bring("arm", "damping");
+  await bring("stand", "stand");
+  await bring("walk", "walk");
   const asked = (vx) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) === ${vx}`);
   await page.keyboard.down("w");
   await asked(0.5);
