@@ -107,7 +107,8 @@ class Drive {
   std::uint64_t sent_ = 0, replies_ = 0, replies_off_ = 0, bad_ = 0;
 };
 
-/// What a joint's drive_fault means, for a person: "rotor over temperature", "switched off by itself".
+/// What a joint's drive_fault means, for a person: "rotor over temperature", "switched off
+/// by itself".
 std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault);
 
 }  // namespace sandrunner
