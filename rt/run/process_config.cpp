@@ -11,7 +11,8 @@ namespace sandrunner {
 namespace {
 
 /// `recorded`: what was run once may be read that no run is to have any more.
-void read_controller(ConfigTree& config, ControllerConfig& c, bool recorded) {
+void read_controller(ConfigTree& config, const sim::Robot& robot, ControllerConfig& c,
+                     bool recorded) {
   const auto least = [&](double value) { return recorded ? 0.0 : value; };
   const auto number = [&](const char* key, double& value, double min, double max) {
     value = config.number(std::string("controller.") + key, value, min, max);
@@ -70,10 +71,11 @@ void read_controller(ConfigTree& config, ControllerConfig& c, bool recorded) {
   lowered("gate.speed_limit_radps", g.speed_limit_radps);
   lowered("gate.torque_limit_nm", g.torque_limit_nm);
   for (const auto& t : kGateThresholds) {
-    // Limits of the robot itself may be lowered, too.
-    const bool of_robot =
-        t.value == &GateConfig::speed_fault_radps || t.value == &GateConfig::power_limit_w;
-    const double ceiling = of_robot && !recorded ? g.*t.value : t.ceiling;
+    // Those of the robot's file may be lowered, too.
+    const double ceiling = recorded                                    ? t.ceiling
+                           : t.value == &GateConfig::speed_fault_radps ? robot.speed_fault_radps
+                           : t.value == &GateConfig::power_limit_w     ? robot.power_limit_w
+                                                                       : t.ceiling;
     if (t.key) number(fmt::format("gate.{}", t.key).c_str(), g.*t.value, t.least, ceiling);
   }
   for (const auto& t : kGateTickThresholds) {
@@ -144,7 +146,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
     adapt_gate(*p.hardware, c.gate);
   }
   const CommandEnvelope trained = c.shaping.envelope;
-  read_controller(config, c, robot != nullptr);
+  read_controller(config, p.robot, c, robot != nullptr);
   // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
   const CommandEnvelope& set = c.shaping.envelope;
   const auto at_most = [](double& value, double a, double b) {
