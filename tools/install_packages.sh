@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # tools/install_packages.sh [all|sandrunner|deb|checks]: installs the Debian packages that are missing of those that
-# everything needs (all, deb: the package, too); the program sandrunner alone; everything and the checks of .ci/run. If none is missing it only asks dpkg: no
-# network, no rights, a fraction of a second.
+# everything needs (all, deb: the package, too); the program sandrunner alone; everything and the checks of .ci/run. If
+# none is missing it only asks dpkg: no network, no rights, a fraction of a second.
 set -euo pipefail
 
 packages=(

@@ -51,8 +51,8 @@ class OperatorDesk {
   CommandVerdict drive(const Twist& twist, std::uint64_t publisher, const OperatorId& who,
                        const Objection& objection = {});
 
-  /// A mode request; waits for the controller's answer. `objection` is asked about
-  /// what does not end the motion.
+  /// A mode request; waits for the controller's answer. `objection` is asked about what does not
+  /// end the motion.
   RequestOutcome request(std::string_view name, const OperatorId& who,
                          const Objection& objection = {});
 

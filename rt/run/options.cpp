@@ -83,8 +83,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
          "--command", o.command,
          "velocity vx,vy,wz (m/s, m/s, rad/s), held to the policy's envelope, or a CSV file with "
          "header t_s,vx,vy,wz, linear between rows; dds: operators command over DDS "
-         "(sandrunner-ctl, ROS 2), until "
-         "Ctrl-C; live: in the page of --view")
+         "(sandrunner-ctl, ROS 2), until Ctrl-C; live: in the page of --view")
       ->type_name("VX,VY,WZ|FILE|dds|live");
   app.add_option("--dds-security", o.dds_security_dir,
                  "folder made by tools/dds_security.sh: DDS with authentication and encryption")
