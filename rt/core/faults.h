@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <string>
 
@@ -38,8 +39,21 @@ enum class Fault : std::uint64_t {
   kOverload = 1u << 20,
   kFreeFall = 1u << 21,
   kNotStanding = 1u << 22,
+  kImuFrozen = 1u << 23,
+  kImuRange = 1u << 24,
+  kImuAttitude = 1u << 25,
+  kImuGyro = 1u << 26,
+  kTorqueMissing = 1u << 27,
+  kNotFollowing = 1u << 28,
+  kSpeedMismatch = 1u << 29,
+  kJointMisplaced = 1u << 30,
+  kForeignTraffic = 1u << 31,
 };
-inline constexpr int kNumFaults = 23;
+inline constexpr int kNumFaults = 32;
+
+constexpr std::uint64_t fault_bit(Fault fault) noexcept {
+  return static_cast<std::uint64_t>(fault);
+}
 
 /// Sets of modes, bit m for Mode m.
 using ModeSet = std::uint64_t;
@@ -50,8 +64,10 @@ inline constexpr ModeSet kWalkOnly = mode_set(Mode::kWalk);
 inline constexpr ModeSet kStandUpOnly = mode_set(Mode::kStandUp);
 /// In which the robot carries itself.
 inline constexpr ModeSet kCarrying = kStandUpOnly | mode_set(Mode::kStand) | kWalkOnly;
+/// In which drives take commands that are not the answer to a fault.
+inline constexpr ModeSet kDriven = kCarrying | mode_set(Mode::kDamping);
 /// In which drives give torque.
-inline constexpr ModeSet kMoving = kCarrying | mode_set(Mode::kDamping) | mode_set(Mode::kFault);
+inline constexpr ModeSet kMoving = kDriven | mode_set(Mode::kFault);
 inline constexpr ModeSet kAlways = kMoving | mode_set(Mode::kPassive);
 
 /// One fault: what is wrong, who says so, when it is judged, how long that takes at most with the
@@ -86,8 +102,8 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "30.25 ms"},
     {Fault::kJointPosition, "joint_position", "a joint far past its stop", "drives", kMoving,
      "1 tick"},
-    {Fault::kJointSpeed, "joint_speed", "a joint faster than it can be", "drives", kMoving,
-     "1 tick"},
+    {Fault::kJointSpeed, "joint_speed",
+     "a joint faster than it can be; outside walk, a third of that", "drives", kMoving, "1 tick"},
     {Fault::kJointTorque, "joint_torque", "a drive gives more torque than its limit", "drives",
      kMoving, "5 ms"},
     {Fault::kTilt, "tilt",
@@ -108,9 +124,8 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kEncoderJump, "encoder_jump",
      "a joint's position changed by more than its speed explains", "drives", kMoving, "1 tick"},
     {Fault::kEncoderFrozen, "encoder_frozen",
-     "a joint's values stay the same to the bit while it moves or is told to", "drives",
-     kCarrying | mode_set(Mode::kDamping),
-     "0.005 rad by its speed, or 0.2 rad by its target and 50 ms"},
+     "a joint's values stay the same while its speed, its target or the body moves", "drives",
+     kDriven, "0.005 rad by its speed, 0.2 rad by its target and 50 ms, 0.1 rad by the gyroscope"},
     {Fault::kPolicyFrozen, "policy_frozen", "the policy gives the same targets to the bit",
      "policy", kWalkOnly, "0.2 s"},
     {Fault::kOverload, "overload", "a drive gives more torque than it can for long (I2t)", "drives",
@@ -119,6 +134,31 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "0.25 s"},
     {Fault::kNotStanding, "not_standing", "the joints do not reach the posture of Stand", "drives",
      kStandUpOnly, "1 s after the motion"},
+    {Fault::kImuFrozen, "imu_frozen",
+     "attitude, angular velocity or acceleration stays the same to the bit", "IMU", kCarrying,
+     "10 samples"},
+    {Fault::kImuRange, "imu_range", "a value that no IMU can measure: 40 rad/s, 10,000 m/s^2", "IMU",
+     kAlways, "1 tick"},
+    {Fault::kImuAttitude, "imu_attitude",
+     "the accelerometer's mean is 30 degrees away from the attitude's vertical", "IMU", kCarrying,
+     "0.5 s"},
+    {Fault::kImuGyro, "imu_gyro", "the attitude does not change as the angular velocity says",
+     "IMU", kCarrying, "0.2 rad"},
+    {Fault::kTorqueMissing, "torque_missing",
+     "a drive reports another torque than it was commanded, by 15 % of its limit", "drives",
+     kDriven, "40 ms"},
+    {Fault::kNotFollowing, "not_following",
+     "a joint is 0.6 rad away from its target: something holds it", "drives", kStandUpOnly,
+     "50 ms"},
+    {Fault::kSpeedMismatch, "speed_mismatch",
+     "a joint's position does not change as its speed says", "drives", kDriven, "0.3 rad"},
+    {Fault::kJointMisplaced, "joint_misplaced",
+     "a joint that was silent, or a robot that starts, is neither where it was nor in the lying "
+     "pose: verify its zero with `sandrunner check`",
+     "drives", mode_set(Mode::kDamping), "the tick of `arm`"},
+    {Fault::kForeignTraffic, "foreign_traffic",
+     "somebody else commands a drive, or it answers more often than it is asked", "drives", kAlways,
+     "2 frames in 10 ms"},
 }};
 
 /// After these the values of the joints that they are about are not to be trusted.
@@ -128,7 +168,8 @@ inline constexpr std::uint64_t kBlindingFaults =
     static_cast<std::uint64_t>(Fault::kJointPosition) |
     static_cast<std::uint64_t>(Fault::kJointSpeed) |
     static_cast<std::uint64_t>(Fault::kEncoderJump) |
-    static_cast<std::uint64_t>(Fault::kEncoderFrozen);
+    static_cast<std::uint64_t>(Fault::kEncoderFrozen) |
+    static_cast<std::uint64_t>(Fault::kSpeedMismatch);
 
 constexpr bool faults_in_order() noexcept {
   for (int i = 0; i < kNumFaults; ++i) {
@@ -137,6 +178,11 @@ constexpr bool faults_in_order() noexcept {
   return true;
 }
 static_assert(faults_in_order());
+
+/// Whether the table has the fault judged in this mode.
+constexpr bool judged_in(Mode mode, Fault fault) noexcept {
+  return (kFaultTable[std::countr_zero(fault_bit(fault))].modes & mode_set(mode)) != 0;
+}
 
 /// Stable name of one fault: "non_finite_joint", "joints_stale", "tilt", ...; "none".
 const char* fault_name(Fault fault) noexcept;

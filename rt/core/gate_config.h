@@ -27,6 +27,10 @@ struct GateConfig {
   /// what lies beyond the joint's whole range is a mistake.
   double target_step_rad = 2.0;
 
+  /// Pose of a robot that lies: where joints may be whose zero nothing else vouches for. From the
+  /// robot's file.
+  JointArray<double> lying_rad{};
+
   // Joint speeds, rad/s.
   /// Limit: counted; a commanded velocity is clamped to it. From the URDF.
   JointArray<double> speed_limit_radps{};

@@ -7,6 +7,8 @@
 #include <type_traits>
 
 #include "rt/core/faults.h"
+#include "rt/core/imu_judge.h"
+#include "rt/core/joint_judge.h"
 #include "rt/core/messages.h"
 
 namespace sandrunner {
@@ -66,12 +68,12 @@ struct GateState {
 
   JointArray<std::uint64_t> torque_over_ticks{};  ///< judged ticks in a row above the fault torque
   JointArray<double> heat_n2m2{};                 ///< squared torque, averaged over thermal_time_s
-  std::uint64_t encoders_seen = 0;  ///< 1: the next three are those of the last judgement
-  JointArray<std::uint64_t> sample_tick{};
-  JointArray<double> position_rad{};
-  JointArray<double> velocity_radps{};
-  JointArray<std::uint64_t> changed_tick{};  ///< sample since which they have had the same bits
-  JointArray<double> told_rad{};             ///< commanded position then
+  ImuMemory imu;
+  JointMemory joints;
+
+  Mode mode = Mode::kPassive;   ///< of the latest judgement
+  std::uint64_t walk_tick = 0;  ///< of the latest judgement in Walk
+  std::uint64_t walked = 0;     ///< 1: there was one
 
   JointArray<double> sent_rad{};    ///< the last commanded positions
   std::uint64_t sent = 0;           ///< 1: the last command had stiffness
@@ -82,6 +84,8 @@ struct GateState {
   GateCounters counters;
 };
 static_assert(std::is_trivially_copyable_v<GateState>);
-static_assert(sizeof(GateState) == 8 * (17 + 9 * kNumJoints) + sizeof(GateCounters), "no padding");
+static_assert(sizeof(GateState) == 8 * (19 + 4 * kNumJoints) + sizeof(ImuMemory) +
+                                       sizeof(JointMemory) + sizeof(GateCounters),
+              "no padding");
 
 }  // namespace sandrunner

@@ -54,9 +54,10 @@ OutputBounds::OutputBounds(const GateConfig& config) noexcept
   upper_.kd_nmsprad.fill(config.kd_limit_nmsprad);
 }
 
-JointArray<double> OutputBounds::apply(const JointState& joints,
-                                       const JointArray<double>* before_rad, JointCommand& command,
-                                       GateCounters& counters) const noexcept {
+OutputBounds::Result OutputBounds::apply(const JointState& joints,
+                                         const JointArray<double>* before_rad, double torque_share,
+                                         JointCommand& command,
+                                         GateCounters& counters) const noexcept {
   const bool kp_clamped = clamp_all(command.kp_nmprad, lower_.kp_nmprad, upper_.kp_nmprad);
   const bool kd_clamped = clamp_all(command.kd_nmsprad, lower_.kd_nmsprad, upper_.kd_nmsprad);
   if (kp_clamped || kd_clamped) ++counters.gains_clamped;
@@ -74,14 +75,15 @@ JointArray<double> OutputBounds::apply(const JointState& joints,
   if (clamp_all(command.velocity_radps, lower_.velocity_radps, upper_.velocity_radps)) {
     ++counters.velocity_clamped;
   }
-  const JointArray<double> asked_rad = command.position_rad;
+  Result result{.asked_rad = command.position_rad, .torque_nm = {}};
 
-  JointArray<double> torque_nm;
+  JointArray<double>& torque_nm = result.torque_nm;
   bool torque_clamped = false;
   double power_w = 0.0;
   for (int j = 0; j < kNumJoints; ++j) {
+    const double limit_nm = torque_share * torque_limit_nm_[j];
     const double given_nm = torque_of(command, joints, j);
-    torque_nm[j] = clamp_to(given_nm, -torque_limit_nm_[j], torque_limit_nm_[j]);
+    torque_nm[j] = clamp_to(given_nm, -limit_nm, limit_nm);
     if (torque_nm[j] != given_nm) {
       torque_clamped = true;
       move_torque(command, j, given_nm, torque_nm[j]);
@@ -95,9 +97,10 @@ JointArray<double> OutputBounds::apply(const JointState& joints,
     for (int j = 0; j < kNumJoints; ++j) {
       if (torque_nm[j] * joints.velocity_radps[j] <= 0.0) continue;  // brakes
       move_torque(command, j, torque_nm[j], share * torque_nm[j]);
+      torque_nm[j] *= share;
     }
   }
-  return asked_rad;
+  return result;
 }
 
 }  // namespace sandrunner

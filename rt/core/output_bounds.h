@@ -13,12 +13,17 @@ namespace sandrunner {
 /// take a torque. Counts each bound that acts.
 class OutputBounds {
  public:
+  struct Result {
+    JointArray<double> asked_rad;  ///< positions before torques were bounded
+    JointArray<double> torque_nm;  ///< that the command gives at the measured joints
+  };
+
   explicit OutputBounds(const GateConfig& config) noexcept;
 
-  /// `before_rad`: the last positions commanded with stiffness, null if there are none. Returns the
-  /// positions in `command` before its torques were bounded. All finite.
-  JointArray<double> apply(const JointState& joints, const JointArray<double>* before_rad,
-                           JointCommand& command, GateCounters& counters) const noexcept;
+  /// `before_rad`: the last positions commanded with stiffness, null if there are none.
+  /// `torque_share`: of each joint's limit of torque that may be given. All finite.
+  Result apply(const JointState& joints, const JointArray<double>* before_rad, double torque_share,
+               JointCommand& command, GateCounters& counters) const noexcept;
 
  private:
   JointCommand lower_, upper_;

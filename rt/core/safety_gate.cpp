@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "rt/core/same_bits.h"
+
 namespace sandrunner {
 namespace {
 
-constexpr std::uint64_t bit(Fault fault) { return static_cast<std::uint64_t>(fault); }
+constexpr auto bit = fault_bit;  // short, as it is in every line
 
 /// Joints with a value that is not finite, as bits.
 std::uint64_t non_finite(const JointState& joints) noexcept {
@@ -50,10 +52,6 @@ std::uint64_t age(std::uint64_t sampled, const GateState& state) noexcept {
   return state.tick - sampled - stalled;
 }
 
-bool same_bits(double a, double b) noexcept {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
 /// Cosine for thresholds, from arithmetic alone so that it has the same bits everywhere: series at
 /// an eighth of the angle, then cos 2x = 2 cos^2 x - 1 three times. To 1e-13 in [0, 180] degrees.
 double cos_of_degrees(double angle_deg) noexcept {
@@ -67,14 +65,6 @@ double cos_of_degrees(double angle_deg) noexcept {
   }
   for (int i = 0; i < 3; ++i) cosine = 2.0 * cosine * cosine - 1.0;
   return cosine;
-}
-
-/// What a braked joint at rest may be told to have: some steps of the coarsest drive's speed.
-constexpr double kRest_radps = 0.05;
-
-/// As the table says.
-bool judged_in(Mode mode, Fault fault) noexcept {
-  return (kFaultTable[std::countr_zero(bit(fault))].modes & mode_set(mode)) != 0;
 }
 
 /// Adds `found` and the joints it is about to the latch, and remembers what began it: a stall of
@@ -92,6 +82,17 @@ void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept
   state.fault_joints |= joints;
   if ((found & kBlindingFaults) != 0) state.blind_joints |= joints;
 }
+
+/// Outside Walk a joint is a fault at this share of the speed that is one there.
+constexpr double kCalmSpeedShare = 1.0 / 3.0;
+constexpr std::uint64_t kRunsOut_ticks = kControlHz / 4;
+
+/// StandUp gives at most this share of a joint's torque: what it presses on may be a hand. Good
+/// runs need up to 0.58 of it.
+constexpr double kStandUpTorqueShare = 0.65;
+
+/// A measured torque heats by no more than that of this many times its limit.
+constexpr double kMostHeating = 10.0;
 
 }  // namespace
 
@@ -137,11 +138,29 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
   found |= judge_ages(input, mode, state, at_fault);
   if (input.policy != nullptr) found |= judge_policy(*input.policy, state);
 
+  if (sensors.foreign_traffic != 0) {
+    found |= bit(Fault::kForeignTraffic);
+    at_fault |= sensors.foreign_traffic;
+  }
   if (joints_usable) {
     // Drives that are off may lie as they like, but they cool and they move.
     found |= judge_heat(sensors.joints, elapsed, mode, state, at_fault);
-    if (mode != Mode::kPassive) found |= judge_joints(sensors.joints, state, at_fault);
-    found |= judge_encoders(sensors.joints, mode, state, at_fault);
+    if (mode != Mode::kPassive) found |= judge_joints(sensors.joints, mode, state, at_fault);
+    const JointVerdict verdict =
+        judge_samples(config_, sensors.joints,
+                      {.mode = mode,
+                       .mode_before = state.mode,
+                       .imu = imu_usable && !config_.hanging ? &sensors.imu : nullptr,
+                       .stiff = state.sent != 0,
+                       .sent_rad = state.sent_rad},
+                      state.joints);
+    found |= verdict.faults;
+    at_fault |= verdict.joints;
+    state.blind_joints |= verdict.blind;
+  }
+  if (imu_usable) {
+    const bool carries = (kCarrying & mode_set(mode)) != 0;
+    found |= judge_imu(sensors.imu, carries, state.imu);
   }
   if (mode == Mode::kPassive) state.torque_over_ticks.fill(0);
   if (judged_in(mode, Fault::kTilt) && imu_usable && !config_.hanging) {
@@ -151,6 +170,11 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
   }
 
   ++state.judged;
+  state.mode = mode;
+  if (mode == Mode::kWalk) {
+    state.walked = 1;
+    state.walk_tick = state.tick;
+  }
   latch(found, at_fault, state);
   return found;
 }
@@ -206,9 +230,13 @@ std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateStat
   return found;
 }
 
-std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& state,
+std::uint64_t SafetyGate::judge_joints(const JointState& joints, Mode mode, GateState& state,
                                        std::uint64_t& at_fault) const noexcept {
   std::uint64_t found = 0;
+  // Legs that run may be as fast as that for a moment after Walk, whatever follows it.
+  const bool runs = mode == Mode::kWalk || mode == Mode::kFault ||
+                    (state.walked != 0 && state.tick - state.walk_tick < kRunsOut_ticks);
+  const double speed_fault_radps = (runs ? 1.0 : kCalmSpeedShare) * config_.speed_fault_radps;
   bool past_stop = false, too_fast = false;
   for (int j = 0; j < kNumJoints; ++j) {
     std::uint64_t faults = 0;
@@ -219,7 +247,7 @@ std::uint64_t SafetyGate::judge_joints(const JointState& joints, GateState& stat
 
     const double speed_radps = std::fabs(joints.velocity_radps[j]);
     too_fast = too_fast || speed_radps > config_.speed_limit_radps[j];
-    if (speed_radps > config_.speed_fault_radps) faults |= bit(Fault::kJointSpeed);
+    if (speed_radps > speed_fault_radps) faults |= bit(Fault::kJointSpeed);
 
     std::uint64_t& over_ticks = state.torque_over_ticks[j];
     over_ticks = std::fabs(joints.torque_nm[j]) > torque_fault_nm_[j] ? over_ticks + 1 : 0;
@@ -238,7 +266,9 @@ std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t ela
   bool hot = false;
   const double share = std::min(heat_per_tick_ * static_cast<double>(elapsed), 1.0);
   for (int j = 0; j < kNumJoints; ++j) {
-    const double torque_nm = joints.torque_nm[j];
+    // Bounded, as a mean that one absurd value has left never comes down again.
+    const double most_nm = kMostHeating * config_.torque_limit_nm[j];
+    const double torque_nm = clamp_to(joints.torque_nm[j], -most_nm, most_nm);
     double& heat = state.heat_n2m2[j];
     heat += share * (torque_nm * torque_nm - heat);
     hot = hot || heat > 0.64 * heat_fault_n2m2_;
@@ -248,54 +278,6 @@ std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t ela
     }
   }
   if (hot) ++state.counters.hot;
-  return found;
-}
-
-std::uint64_t SafetyGate::judge_encoders(const JointState& joints, Mode mode, GateState& state,
-                                         std::uint64_t& at_fault) const noexcept {
-  std::uint64_t found = 0;
-  for (int j = 0; j < kNumJoints; ++j) {
-    const std::uint64_t tick = joints.tick[j];
-    if (state.encoders_seen != 0 && tick <= state.sample_tick[j]) continue;  // no new sample
-    std::uint64_t faults = 0;
-    const auto seconds = [](std::uint64_t ticks) {
-      return kControlPeriod_s * static_cast<double>(ticks);
-    };
-    if (state.encoders_seen != 0 && judged_in(mode, Fault::kEncoderJump)) {
-      const double way_rad = std::fabs(joints.position_rad[j] - state.position_rad[j]);
-      const double reach_rad = config_.encoder_jump_rad +
-                               config_.speed_fault_radps * seconds(tick - state.sample_tick[j]);
-      if (way_rad > reach_rad) faults |= bit(Fault::kEncoderJump);
-    }
-    const bool same = same_bits(joints.position_rad[j], state.position_rad[j]) &&
-                      same_bits(joints.velocity_radps[j], state.velocity_radps[j]);
-    const bool braked = mode == Mode::kDamping || mode == Mode::kFault;
-    if (!same || (state.sent == 0 && !braked)) {
-      state.changed_tick[j] = tick;
-      state.told_rad[j] = state.sent_rad[j];
-    } else {
-      // What its own speed says that it moved, and what it was told to.
-      const std::uint64_t frozen_ticks = tick - state.changed_tick[j];
-      const double speed_radps = std::fabs(joints.velocity_radps[j]);
-      const bool moves = speed_radps * seconds(frozen_ticks) > config_.frozen_moved_rad &&
-                         !((braked || mode == Mode::kStand) && speed_radps <= kRest_radps);
-      if (judged_in(mode, Fault::kEncoderFrozen)) {
-        const double told_rad = std::fabs(state.sent_rad[j] - state.told_rad[j]);
-        const bool deaf =
-            frozen_ticks >= config_.frozen_ticks && told_rad > config_.frozen_told_rad;
-        if (deaf || moves) faults |= bit(Fault::kEncoderFrozen);
-      } else if (mode == Mode::kFault && moves) {
-        // Damped by a speed that it no longer has it would be driven, not braked.
-        state.blind_joints |= std::uint64_t{1} << j;
-      }
-    }
-    if (faults != 0) at_fault |= std::uint64_t{1} << j;
-    found |= faults;
-  }
-  state.encoders_seen = 1;
-  state.sample_tick = joints.tick;
-  state.position_rad = joints.position_rad;
-  state.velocity_radps = joints.velocity_radps;
   return found;
 }
 
@@ -326,9 +308,7 @@ std::uint64_t SafetyGate::judge_policy(const PolicyOutput& policy,
     state.action_sequence = state.same_actions = 0;
   }
   if (policy.sequence == state.action_sequence) return 0;
-  const bool same =
-      state.action_sequence != 0 && std::equal(policy.target_rad.begin(), policy.target_rad.end(),
-                                               state.action_rad.begin(), same_bits);
+  const bool same = state.action_sequence != 0 && same_bits(policy.target_rad, state.action_rad);
   state.same_actions = same ? state.same_actions + 1 : 0;
   state.action_sequence = policy.sequence;
   state.action_rad = policy.target_rad;
@@ -338,22 +318,26 @@ std::uint64_t SafetyGate::judge_policy(const PolicyOutput& policy,
 SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const JointState& joints,
                              GateState& state) const noexcept {
   const bool stiff_before = state.sent != 0;
-  state.sent = 0;
+  state.sent = state.joints.commanded = 0;
   if (!enabled) return SafeCommand{};
   if (!is_finite(wanted)) latch(bit(Fault::kNonFiniteOutput), 0, state);
   if (state.faults != 0) return SafeCommand{damping(joints), true, state.blind_joints};
 
   JointCommand allowed = wanted;
-  const JointArray<double> asked_rad =
-      bounds_.apply(joints, stiff_before ? &state.sent_rad : nullptr, allowed, state.counters);
+  const auto [asked_rad, torque_nm] = bounds_.apply(
+      joints, stiff_before ? &state.sent_rad : nullptr,
+      state.mode == Mode::kStandUp ? kStandUpTorqueShare : 1.0, allowed, state.counters);
+  state.joints.commanded_nm = torque_nm;
+  state.joints.commanded = 1;
   const bool stiff = std::any_of(allowed.kp_nmprad.begin(), allowed.kp_nmprad.end(),
                                  [](double kp) { return kp > 0.0; });
   if (stiff) {
     state.sent = 1;
     state.sent_rad = asked_rad;
     if (!stiff_before) {
-      state.told_rad = asked_rad;
-      state.changed_tick = joints.tick;
+      state.joints.changed_tick = state.joints.still_tick = joints.tick;
+      state.joints.still_rad = joints.position_rad;
+      state.joints.still_target_rad = state.joints.changed_target_rad = asked_rad;
     }
   }
   return SafeCommand{allowed, true, 0};

@@ -50,12 +50,10 @@ class SafetyGate {
   std::uint64_t judge_time(std::uint64_t tick, Mode mode, GateState& state) const noexcept;
   std::uint64_t judge_ages(const GateInput& input, Mode mode, GateState& state,
                            std::uint64_t& at_fault) const noexcept;
-  std::uint64_t judge_joints(const JointState& joints, GateState& state,
+  std::uint64_t judge_joints(const JointState& joints, Mode mode, GateState& state,
                              std::uint64_t& at_fault) const noexcept;
   std::uint64_t judge_heat(const JointState& joints, std::uint64_t elapsed, Mode mode,
                            GateState& state, std::uint64_t& at_fault) const noexcept;
-  std::uint64_t judge_encoders(const JointState& joints, Mode mode, GateState& state,
-                               std::uint64_t& at_fault) const noexcept;
   std::uint64_t judge_body(const ImuSample& imu, std::uint64_t elapsed,
                            GateState& state) const noexcept;
   std::uint64_t judge_policy(const PolicyOutput& policy, GateState& state) const noexcept;

@@ -106,6 +106,7 @@ ControllerConfig controller_config(const sim::Robot& robot) {
   c.damping.kd_nmsprad = robot.damping_kd_nmsprad;
   c.gate.joint_lower_rad = robot.model.lower_rad;
   c.gate.joint_upper_rad = robot.model.upper_rad;
+  c.gate.lying_rad = robot.lying_rad;
   c.gate.speed_limit_radps = robot.model.speed_limit_radps;
   c.gate.speed_fault_radps = robot.speed_fault_radps;
   c.gate.kp_limit_nmprad = robot.kp_limit_nmprad;

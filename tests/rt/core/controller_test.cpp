@@ -82,7 +82,9 @@ TEST(ControllerTest, PassiveIsRefusedWhileStanding) {
 
 /// Stands up from `posture_rad`, checks that targets move smoothly, returns how long it took.
 double stand_up(const JointArray<double>& posture_rad, double* nearest_to_fold_rad = nullptr) {
-  FakeLoop loop;
+  ControllerConfig config = test_robot();
+  config.gate.lying_rad = posture_rad;
+  FakeLoop loop(Mode::kPassive, config);
   loop.robot.now.joints.position_rad = posture_rad;
   loop.stand_up();
   const StandConfig& stand = loop.config.stand;
@@ -140,6 +142,7 @@ TEST(ControllerTest, DoesNotFoldWhenNearlyStanding) {
 double ramped_kp_nmprad(const JointArray<double>& posture_rad, double time_s) {
   ControllerConfig config = test_robot();
   config.stand.gain_ramp_s = 1.2;
+  config.gate.lying_rad = posture_rad;
   FakeLoop loop(Mode::kPassive, config);
   loop.robot.now.joints.position_rad = posture_rad;
   loop.stand_up();
@@ -199,7 +202,11 @@ TEST(ControllerTest, StopThatIsAskedForAgainAndAgainIsStillOneStop) {
 TEST(ControllerTest, StopEndsAfterItsLongestWaitIfTheRobotNeverRests) {
   FakeLoop loop;
   loop.reach(Mode::kWalk);
-  loop.spoil = [&](ControllerInput& seen) { seen.sensors.imu.angular_velocity_radps[2] = 1.5; };
+  loop.spoil = [&](ControllerInput& seen) {
+    const double sign = seen.sensors.tick % 2 == 0 ? 1.0 : -1.0;
+    seen.sensors.imu.angular_velocity_radps[2] = sign * 1.5;
+    for (double& q : seen.sensors.joints.position_rad) q += sign * kTremble_rad;
+  };
   loop.request(ModeRequest::kStand);
   loop.run_s(1.0 + 2.98);
   EXPECT_EQ(loop.output.mode, Mode::kWalk);
@@ -242,6 +249,7 @@ TEST(ControllerTest, TorqueIsContinuousFromWalkToStand) {
     seen.sensors.joints.position_rad = loop.config.stand.nominal_rad;
     for (double& q : seen.sensors.joints.position_rad) q -= 0.1;
     seen.sensors.joints.velocity_radps = {};
+    seen.sensors.joints.torque_nm = loop.controller.state().gate.joints.commanded_nm;
   };
   loop.request(ModeRequest::kStand);
   const auto torque_nm = [&] {
@@ -286,12 +294,13 @@ TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
   const double continuous_nm = loop.config.gate.continuous_torque_nm;
   double torque_nm = 0.0, away_rad = 0.0;
   loop.spoil = [&](ControllerInput& seen) {  // its foot lies in sand
+    const bool slips = away_rad < 0.35;
     away_rad = std::min(away_rad + 0.001, 0.35);
     const double held_rad = loop.config.stand.nominal_rad[3] - away_rad;
     const JointCommand& c = loop.output.command.joints();
     torque_nm = c.kp_nmprad[3] * (c.position_rad[3] - held_rad);
     seen.sensors.joints.position_rad[3] = held_rad;
-    seen.sensors.joints.velocity_radps[3] = 0.0;
+    seen.sensors.joints.velocity_radps[3] = slips ? -0.001 * kControlHz : 0.0;
     seen.sensors.joints.torque_nm[3] = torque_nm;
   };
   loop.run_s(9.0);
@@ -308,7 +317,8 @@ TEST(ControllerTest, AJointThatBearsTooMuchForEverIsAnOverloadAndDoesNotSinkWith
   const double continuous_nm = loop.config.gate.continuous_torque_nm;
   double farthest_rad = 0.0;
   loop.spoil = [&](ControllerInput& seen) {  // a load, which giving way does not relieve
-    seen.sensors.joints.torque_nm[5] = 1.1 * continuous_nm;
+    // With breaks, as a torque that was not commanded is a fault as well.
+    if (seen.sensors.tick % 160 < 150) seen.sensors.joints.torque_nm[5] = 1.2 * continuous_nm;
     if (loop.output.mode != Mode::kStand) return;
     farthest_rad = std::max(farthest_rad, std::fabs(loop.output.command.joints().position_rad[5] -
                                                     loop.config.stand.nominal_rad[5]));

@@ -15,8 +15,13 @@ namespace sandrunner {
 
 inline constexpr double kTremble_rad = 1e-6;
 
-inline constexpr JointArray<double> kLyingPosture_rad = {0.3, 1.5, -2.3, -0.3, 1.5, -2.3,
-                                                         0.3, 1.5, -2.3, -0.3, 1.5, -2.3};
+/// What no real IMU is without: values that change from sample to sample.
+inline void tremble(ImuSample& imu) noexcept {
+  const double sign = imu.tick % 2 == 0 ? 1.0 : -1.0;
+  imu.orientation_wxyz[3] += sign * kTremble_rad;
+  imu.angular_velocity_radps[2] += sign * kTremble_rad;
+  imu.linear_acceleration_mps2[2] += sign * kTremble_rad;
+}
 
 /// Stands upright whatever its joints do; these follow commanded positions at up to 10 rad/s.
 class FakeRobot : public RobotIo {
@@ -29,6 +34,7 @@ class FakeRobot : public RobotIo {
   void read(std::uint64_t, SensorFrame& frame) noexcept override {
     now.joints.tick.fill(now.tick);
     now.imu.tick = now.tick;
+    tremble(now.imu);
     frame = now;
   }
 
@@ -36,9 +42,12 @@ class FakeRobot : public RobotIo {
     last = command;
     constexpr double kReach_rad = 10.0 * kControlPeriod_s;
     for (int j = 0; j < kNumJoints; ++j) {
-      const bool driven = command.enabled() && command.joints().kp_nmprad[j] > 0.0;
-      const double target_rad =
-          driven ? command.joints().position_rad[j] : now.joints.position_rad[j];
+      const JointCommand& c = command.joints();
+      now.joints.torque_nm[j] =
+          joint_torque(now.joints.position_rad[j], now.joints.velocity_radps[j], c.position_rad[j],
+                       c.velocity_radps[j], c.kp_nmprad[j], c.kd_nmsprad[j], c.feedforward_nm[j]);
+      const bool driven = command.enabled() && c.kp_nmprad[j] > 0.0;
+      const double target_rad = driven ? c.position_rad[j] : now.joints.position_rad[j];
       const double way_rad =
           clamp_to(target_rad - now.joints.position_rad[j], -kReach_rad, kReach_rad);
       now.joints.position_rad[j] += way_rad;

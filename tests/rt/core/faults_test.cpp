@@ -28,8 +28,10 @@ struct FaultCase {
   std::uint64_t ticks_to_threshold;
   /// The disturbance, from tick 0 on; `last` are the inputs before it began.
   void (*disturb)(ControllerInput& seen, const ControllerInput& last);
-  Fault also = Fault::kNone;  ///< arises in the same tick
+  std::uint64_t also = 0;  ///< bits of faults that arise in the same tick
 };
+
+constexpr std::uint64_t kJumped = fault_bit(Fault::kEncoderJump) | fault_bit(Fault::kSpeedMismatch);
 
 const FaultCase kFaultCases[] = {
     {Fault::kNonFiniteAction, Mode::kWalk, 0,
@@ -46,23 +48,22 @@ const FaultCase kFaultCases[] = {
     {Fault::kImuStale, Mode::kStandUp, 40,
      [](auto& seen, auto& last) { seen.sensors.imu = last.sensors.imu; }},
     {Fault::kJointPosition, Mode::kStand, 0,
-     [](auto& seen, auto&) { seen.sensors.joints.position_rad[2] = 0.351; }, Fault::kEncoderJump},
+     [](auto& seen, auto&) { seen.sensors.joints.position_rad[2] = 0.351; }, kJumped},
     {Fault::kJointPosition, Mode::kDamping, 0,
-     [](auto& seen, auto&) { seen.sensors.joints.position_rad[8] = -2.5 - 0.351; },
-     Fault::kEncoderJump},
+     [](auto& seen, auto&) { seen.sensors.joints.position_rad[8] = -2.5 - 0.351; }, kJumped},
     {Fault::kJointSpeed, Mode::kWalk, 0,
      [](auto& seen, auto&) { seen.sensors.joints.velocity_radps[7] = -60.1; }},
     {Fault::kJointTorque, Mode::kWalk, 19,
      [](auto& seen, auto&) { seen.sensors.joints.torque_nm[5] = -72.1; }},
     {Fault::kTilt, Mode::kWalk, 0,
-     [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(60.1); }},
+     [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(60.1); },
+     fault_bit(Fault::kImuGyro)},
     {Fault::kTilt, Mode::kStandUp, 0,
-     [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(-170.0); }},
+     [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(-170.0); },
+     fault_bit(Fault::kImuGyro)},
 };
 
-std::uint64_t bits(const FaultCase& c) {
-  return static_cast<std::uint64_t>(c.fault) | static_cast<std::uint64_t>(c.also);
-}
+std::uint64_t bits(const FaultCase& c) { return fault_bit(c.fault) | c.also; }
 
 void PrintTo(const FaultCase& fault_case, std::ostream* out) {
   *out << fault_name(fault_case.fault) << " in " << mode_name(fault_case.mode);
@@ -214,6 +215,7 @@ TEST_F(ResetTest, RefusedWhileTheRobotLiesOnItsSide) {
   loop.request(ModeRequest::kResetFault);
   EXPECT_EQ(loop.output.mode, Mode::kFault);
   loop.spoil = nullptr;
+  loop.tick();
   loop.request(ModeRequest::kResetFault);
   EXPECT_EQ(loop.output.mode, Mode::kPassive);
 }

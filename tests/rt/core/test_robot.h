@@ -6,6 +6,9 @@
 
 namespace sandrunner {
 
+inline constexpr JointArray<double> kLyingPosture_rad = {0.3, 1.5, -2.3, -0.3, 1.5, -2.3,
+                                                         0.3, 1.5, -2.3, -0.3, 1.5, -2.3};
+
 /// What the controller is told of a robot of round numbers; everything else at its default.
 inline ControllerConfig test_robot() {
   ControllerConfig c;
@@ -39,6 +42,7 @@ inline ControllerConfig test_robot() {
                         .acceleration_mps2 = 1e4,
                         .yaw_acceleration_radps2 = 1e4};
   c.gate.torque_limit_nm = all_joints(60.0);
+  c.gate.lying_rad = kLyingPosture_rad;
   return c;
 }
 

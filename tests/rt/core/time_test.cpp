@@ -119,6 +119,7 @@ TEST(StandTest, IsReachedByPostureAndNotByTime) {
     double& q = seen.sensors.joints.position_rad[4];
     q = std::max(q, behind_rad) + (seen.sensors.tick % 2 == 0 ? kTremble_rad : 0.0);
     seen.sensors.joints.velocity_radps[4] = 0.0;
+    seen.sensors.joints.torque_nm[4] = loop.controller.state().gate.joints.commanded_nm[4];
   };
   loop.run_s(3.4);
   EXPECT_EQ(loop.output.mode, Mode::kStandUp);

@@ -49,23 +49,33 @@ class FaultyRobot final : public RobotIo {
   /// What happens to each frame; `good` is the last one before, `n` counts from 0.
   std::function<void(SensorFrame& frame, const SensorFrame& good, std::uint64_t n)> spoil;
   SafeCommand last;
-  bool weak = false;  ///< the drives give no torque
+  bool weak = false;           ///< the drives give no torque
+  std::uint64_t limp = 0;      ///< nor do these, bit j for joint j
+  std::uint64_t inverted = 0;  ///< these give it in the wrong direction
 
  private:
   // What reaches the drives. The driver of torque drives evaluates the law on what it has read, and
   // gives no torque where that is not to be trusted.
   SafeCommand as_driven(const SafeCommand& command) const {
-    if (drives_ == Drives::kGains || !command.enabled()) return command;
-    const JointCommand& c = command.joints();
-    JointCommand torque;
-    for (int j = 0; j < kNumJoints; ++j) {
-      const double nm = joint_torque(seen_.joints.position_rad[j], seen_.joints.velocity_radps[j],
-                                     c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j],
-                                     c.kd_nmsprad[j], c.feedforward_nm[j]);
-      const bool blind = (command.blind_joints() >> j & 1) != 0;
-      torque.feedforward_nm[j] = blind ? 0.0 : nm;
+    if (!command.enabled() || (drives_ == Drives::kGains && limp == 0 && inverted == 0)) {
+      return command;
     }
-    return sim::pass_gate(torque);
+    const sim::RigidState<double>& state = simulator_.state().robot.rigid;
+    JointCommand driven = command.joints();
+    for (int j = 0; j < kNumJoints; ++j) {
+      const bool is_inverted = (inverted >> j & 1) != 0, is_limp = (limp >> j & 1) != 0;
+      if (drives_ == Drives::kGains && !is_inverted && !is_limp) continue;
+      const bool host = drives_ == Drives::kTorque;
+      const double position_rad = host ? seen_.joints.position_rad[j] : state.q[j];
+      const double velocity_radps = host ? seen_.joints.velocity_radps[j] : state.qd[j];
+      const double nm = joint_torque(position_rad, velocity_radps, driven.position_rad[j],
+                                     driven.velocity_radps[j], driven.kp_nmprad[j],
+                                     driven.kd_nmsprad[j], driven.feedforward_nm[j]);
+      const bool blind = (command.blind_joints() >> j & 1) != 0;
+      driven.kp_nmprad[j] = driven.kd_nmsprad[j] = 0.0;
+      driven.feedforward_nm[j] = blind || is_limp ? 0.0 : is_inverted ? -nm : nm;
+    }
+    return sim::pass_gate(driven);
   }
 
   sim::Simulator& simulator_;
@@ -170,6 +180,18 @@ struct DisturbedLoop {
   std::uint64_t tick = 0;  ///< of the next step
   TickRecord record;
 };
+
+/// Something holds a joint below this position, with a millimetre of give. Before each step.
+inline void hold_below(sim::Simulator& simulator, int joint, double upper_rad) {
+  sim::SimulatorState state = simulator.state();
+  const double phase = 0.05 * static_cast<double>(state.tick);
+  const double most_rad = upper_rad + 1e-3 * std::sin(phase);
+  double& position_rad = state.robot.rigid.q[joint];
+  if (position_rad < most_rad) return;
+  position_rad = most_rad;
+  state.robot.rigid.qd[joint] = 1e-3 * 0.05 * kControlHz * std::cos(phase);
+  simulator.restore(state);
+}
 
 /// Has the robot in each mode.
 class EveryModeTest : public testing::Test {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "disturbed_loop.h"
+#include "rt/core/rotation.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner {
@@ -24,6 +25,7 @@ struct FaultCase {
   std::uint64_t within_ticks;  ///< from the first disturbed tick to the one that brakes
   std::function<void(DisturbedLoop&)> begin;
   std::function<void(DisturbedLoop&)> each_tick = nullptr;  ///< before it
+  double reached_rad = 0.25;                                ///< controller.stand.reached_rad
 };
 
 std::vector<FaultCase> every_case() {
@@ -46,9 +48,8 @@ std::vector<FaultCase> every_case() {
       sensor(Fault::kJointsStale, 9, [](F f, G g, N) { f.joints = g.joints; }),
       sensor(Fault::kImuStale, 41, [](F f, G g, N) { f.imu = g.imu; }),
       {Fault::kPolicyStale, 122, [](DisturbedLoop& p) { p.policy.hangs = true; }},
-      // Slowly, as an encoder that jumps is another fault.
-      sensor(Fault::kJointPosition, 40,
-             [](F f, G, N n) { f.joints.position_rad[2] += 0.08 * static_cast<double>(n); }),
+      // It jumps there, which is a fault as well, but not the first.
+      sensor(Fault::kJointPosition, 1, [](F f, G, N) { f.joints.position_rad[2] = 0.4; }),
       sensor(Fault::kJointSpeed, 1, [](F f, G, N) { f.joints.velocity_radps[1] = -60.1; }),
       sensor(Fault::kJointTorque, 20, [](F f, G, N) { f.joints.torque_nm[7] = 76.2; }),
       sensor(Fault::kTilt, 1, [on_its_side](F f, G, N) { f.imu.orientation_wxyz = on_its_side; }),
@@ -71,12 +72,38 @@ std::vector<FaultCase> every_case() {
        [](DisturbedLoop& p) {
          p.policy.spoil = [](PolicyOutput& o, const auto& before) { o.target_rad = before; };
        }},
-      sensor(Fault::kOverload, 40000, [](F f, G, N) { f.joints.torque_nm[7] = 60.0; }),
-      sensor(Fault::kFreeFall, 1000,
-             [](F f, G, N) {
-               f.imu.linear_acceleration_mps2 = {0.5, 0.5, -0.5};
+      // With breaks, as a torque that was not commanded is a fault as well.
+      sensor(Fault::kOverload, 40000,
+             [](F f, G, N n) {
+               if (n % 160 < 150) f.joints.torque_nm[7] = 60.0;
              }),
-      {Fault::kNotStanding, 12000, [](DisturbedLoop& p) { p.robot.weak = true; }},
+      sensor(Fault::kFreeFall, 1000,
+             [](F f, G, N n) {
+               f.imu.linear_acceleration_mps2 = {0.5, 0.5, n % 2 == 0 ? 0.5 : -0.5};
+             }),
+      // Knees give by 0.08 rad under the robot's weight.
+      {.fault = Fault::kNotStanding,
+       .within_ticks = 12000,
+       .begin = [](DisturbedLoop&) {},
+       .reached_rad = 0.02},
+      sensor(Fault::kImuFrozen, 10,
+             [](F f, G g, N) {
+               const std::uint64_t fresh = f.imu.tick;
+               f.imu = g.imu;
+               f.imu.tick = fresh;
+             }),
+      sensor(Fault::kImuRange, 1, [](F f, G, N) { f.imu.angular_velocity_radps[1] = 41.0; }),
+      sensor(Fault::kImuAttitude, 6000,
+             [](F f, G, N) {
+               Vector3& felt = f.imu.linear_acceleration_mps2;
+               felt = rotated(turned({1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, 0.8), felt);
+             }),
+      sensor(Fault::kImuGyro, 600, [](F f, G, N) { f.imu.angular_velocity_radps[2] += 3.0; }),
+      sensor(Fault::kTorqueMissing, 161, [](F f, G, N) { f.joints.torque_nm[4] += 15.0; }),
+      {Fault::kNotFollowing, 4000, [](DisturbedLoop&) {},
+       [](DisturbedLoop& p) { hold_below(p.simulator, 2, -2.2); }},
+      sensor(Fault::kSpeedMismatch, 900, [](F f, G, N) { f.joints.velocity_radps[1] += 2.0; }),
+      sensor(Fault::kForeignTraffic, 1, [](F f, G, N) { f.foreign_traffic = 1u << 4; }),
   };
 }
 
@@ -93,7 +120,9 @@ TEST_F(FaultMatrixTest, EveryFaultInEveryModeOnlyBrakesInTimeAndStaysHarmless) {
       for (const Drives drives : {Drives::kGains, Drives::kTorque}) {
         SCOPED_TRACE(std::string(row.name) + " in " + mode_name(mode) +
                      (drives == Drives::kGains ? ", gains" : ", torque"));
-        DisturbedLoop run(config, policy, drives, snapshots.at(mode));
+        ProcessConfig used = config;
+        used.controller.stand.reached_rad = c.reached_rad;
+        DisturbedLoop run(used, policy, drives, snapshots.at(mode));
         const TickRecord& record = run.record;
         run.step();  // the last good one
         c.begin(run);
@@ -137,7 +166,8 @@ TEST_F(FaultMatrixTest, EveryFaultInEveryModeOnlyBrakesInTimeAndStaysHarmless) {
 }
 
 TEST_F(FaultMatrixTest, EveryFaultOfTheTableHasACase) {
-  std::uint64_t covered = static_cast<std::uint64_t>(Fault::kNonFiniteOutput);  // faults_test.cpp
+  // faults_test.cpp, broken_robot_test.cpp
+  std::uint64_t covered = fault_bit(Fault::kNonFiniteOutput) | fault_bit(Fault::kJointMisplaced);
   for (const FaultCase& c : every_case()) covered |= static_cast<std::uint64_t>(c.fault);
   EXPECT_EQ(covered, (std::uint64_t{1} << kNumFaults) - 1);
 }

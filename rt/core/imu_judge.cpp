@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/core/imu_judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/core/faults.h"
+#include "rt/core/rotation.h"
+#include "rt/core/same_bits.h"
+
+namespace sandrunner {
+namespace {
+
+/// A longer gap is a stall of the loop, through which nothing is known of the motion.
+constexpr std::uint64_t kLongestImuStep_ticks = kTicksPerPolicyStep;
+
+bool within(const Vector3& v, double range) noexcept {
+  return std::ranges::all_of(v, [&](double value) { return std::fabs(value) <= range; });
+}
+
+double squared(const Vector3& v) noexcept { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
+/// The turn from one attitude to the next, body frame, rad: for small ones its vector, for large
+/// ones less than that, but never small.
+Vector3 turn_between(const Rotation& from, const Rotation& to) noexcept {
+  const Rotation step = product(inverse(from), to);
+  const double scale = step[0] < 0.0 ? -2.0 : 2.0;
+  return {scale * step[1], scale * step[2], scale * step[3]};
+}
+
+}  // namespace
+
+std::uint64_t judge_imu(const ImuSample& imu, bool comparing, ImuMemory& memory) noexcept {
+  std::uint64_t found = 0;
+  if (!within(imu.angular_velocity_radps, kGyroRange_radps) ||
+      !within(imu.linear_acceleration_mps2, kAccelerometerRange_mps2)) {
+    found |= fault_bit(Fault::kImuRange);
+  }
+  const ImuSample before = memory.sample;
+  const bool first = memory.seen == 0;
+  if (!first && imu.tick <= before.tick) return found;  // no new sample
+  memory.seen = 1;
+  memory.sample = imu;
+  if (first || !comparing) {
+    memory.same_samples.fill(0);
+    memory.lean_ticks = 0;
+    memory.turn_error_rad = {};
+    memory.felt_mps2 = {0.0, 0.0, kGravity_mps2};
+    return found;
+  }
+
+  const bool same[] = {same_bits(imu.orientation_wxyz, before.orientation_wxyz),
+                       same_bits(imu.angular_velocity_radps, before.angular_velocity_radps),
+                       same_bits(imu.linear_acceleration_mps2, before.linear_acceleration_mps2)};
+  for (int i = 0; i < 3; ++i) {
+    std::uint64_t& count = memory.same_samples[i];
+    count = same[i] ? count + 1 : 0;
+    if (count >= kImuFrozenSamples) found |= fault_bit(Fault::kImuFrozen);
+  }
+
+  const std::uint64_t ticks = imu.tick - before.tick;
+  if (ticks > kLongestImuStep_ticks) return found;
+  const double step_s = kControlPeriod_s * static_cast<double>(ticks);
+  const double share = std::min(step_s / kImuCompare_s, 1.0);
+  const Vector3 turned_rad = turn_between(before.orientation_wxyz, imu.orientation_wxyz);
+  const Vector3 felt_mps2 = rotated(imu.orientation_wxyz, imu.linear_acceleration_mps2);
+  for (int i = 0; i < 3; ++i) {
+    const double rate_radps =
+        0.5 * (before.angular_velocity_radps[i] + imu.angular_velocity_radps[i]);
+    double& error_rad = memory.turn_error_rad[i];
+    error_rad += turned_rad[i] - step_s * rate_radps - share * error_rad;
+    memory.felt_mps2[i] += share * (felt_mps2[i] - memory.felt_mps2[i]);
+  }
+  if (squared(memory.turn_error_rad) > kGyroDisagrees_rad * kGyroDisagrees_rad) {
+    found |= fault_bit(Fault::kImuGyro);
+  }
+  // Falling there is no direction to judge, and a fall is another fault.
+  const double felt = std::sqrt(squared(memory.felt_mps2));
+  const bool leans = felt > 0.5 * kGravity_mps2 && memory.felt_mps2[2] < kLeanCosine * felt;
+  memory.lean_ticks = leans ? memory.lean_ticks + ticks : 0;
+  if (memory.lean_ticks > ticks_from_s(kLean_s)) found |= fault_bit(Fault::kImuAttitude);
+  return found;
+}
+
+}  // namespace sandrunner

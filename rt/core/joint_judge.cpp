@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/core/joint_judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/core/faults.h"
+#include "rt/core/rotation.h"
+#include "rt/core/same_bits.h"
+
+namespace sandrunner {
+namespace {
+
+/// A longer gap between two samples is a stall of the loop, through which nothing is known of the
+/// motion.
+constexpr std::uint64_t kLongestJointStep_ticks = 8;
+
+double seconds(std::uint64_t ticks) noexcept {
+  return kControlPeriod_s * static_cast<double>(ticks);
+}
+
+/// How fast the body uses up what a joint at rest may miss of its motion, 1/s.
+double motion_rate(const ImuSample& imu) noexcept {
+  const double turns_radps = length(imu.angular_velocity_radps);
+  const double felt_mps2 = rotated(imu.orientation_wxyz, imu.linear_acceleration_mps2)[2];
+  const double sinks_mps2 = std::fabs(felt_mps2 - kGravity_mps2);
+  return std::max(turns_radps - kBodyRest_radps, 0.0) / kBodyTurn_rad +
+         std::max(sinks_mps2 - kBodyRest_mps2, 0.0) / kBodySinks_mps;
+}
+
+/// Whether the values of joint j stay the same while it moves, by its own speed or by the body's.
+bool frozen_in_motion(const GateConfig& config, const JointState& joints, int j,
+                      const JointContext& context, double rate_per_s, JointMemory& m) noexcept {
+  const bool same = same_bits(joints.position_rad[j], m.position_rad[j]) &&
+                    same_bits(joints.velocity_radps[j], m.velocity_radps[j]);
+  const bool braked = context.mode == Mode::kDamping || context.mode == Mode::kFault;
+  if (!same || (!context.stiff && !braked)) {
+    m.changed_tick[j] = joints.tick[j];
+    m.changed_target_rad[j] = context.sent_rad[j];
+    m.body_motion[j] = 0.0;
+    return false;
+  }
+  m.body_motion[j] += rate_per_s * seconds(joints.tick[j] - m.sample_tick[j]);
+  const double speed_radps = std::fabs(joints.velocity_radps[j]);
+  const bool moves =
+      speed_radps * seconds(joints.tick[j] - m.changed_tick[j]) > config.frozen_moved_rad;
+  const bool may_rest = braked || context.mode == Mode::kStand;
+  return (moves && !(may_rest && speed_radps <= kRest_radps)) || m.body_motion[j] > 1.0;
+}
+
+/// Whether joint j stays where it is while its target moves away: to the bit, or to some counts of
+/// an encoder that is stuck.
+bool deaf_to_target(const GateConfig& config, const JointState& joints, int j,
+                    const JointContext& context, JointMemory& m) noexcept {
+  if (!context.stiff || std::fabs(joints.position_rad[j] - m.still_rad[j]) > kStill_rad) {
+    m.still_rad[j] = joints.position_rad[j];
+    m.still_tick[j] = joints.tick[j];
+    m.still_target_rad[j] = context.sent_rad[j];
+    m.still_way_rad[j] = 0.0;
+  }
+  const double way_rad = std::fabs(context.sent_rad[j] - m.still_target_rad[j]);
+  m.still_way_rad[j] = std::max(m.still_way_rad[j], way_rad);
+  const std::uint64_t frozen_ticks = joints.tick[j] - m.changed_tick[j];
+  const bool frozen =
+      context.stiff && frozen_ticks >= config.frozen_ticks &&
+      std::fabs(context.sent_rad[j] - m.changed_target_rad[j]) > config.frozen_told_rad;
+  return frozen || (joints.tick[j] - m.still_tick[j] >= ticks_from_s(kStill_s) &&
+                    m.still_way_rad[j] > kStillTarget_rad);
+}
+
+/// Whether the position of joint j has changed by something else than its speed.
+bool speed_disagrees(const JointState& joints, int j, JointMemory& m) noexcept {
+  const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
+  if (ticks > kLongestJointStep_ticks) return false;
+  double& drift_rad = m.drift_rad[j];
+  drift_rad += joints.position_rad[j] - m.position_rad[j] -
+               0.5 * seconds(ticks) * (joints.velocity_radps[j] + m.velocity_radps[j]) -
+               drift_rad * (seconds(ticks) / kSpeedCompare_s);
+  return std::fabs(drift_rad) > kSpeedDisagrees_rad;
+}
+
+/// Whether the drive of joint j has long given another torque than it was commanded.
+bool torque_missing(const GateConfig& config, const JointState& joints, int j,
+                    JointMemory& m) noexcept {
+  const double commanded_nm = m.commanded_nm[j], speed_radps = joints.velocity_radps[j];
+  const bool away = std::fabs(commanded_nm - joints.torque_nm[j]) >
+                    kTorqueMissingShare * config.torque_limit_nm[j];
+  // What no drive can give: the torque-speed line leaves less and less to a joint that drives fast.
+  const bool too_fast = commanded_nm * speed_radps > 0.0 &&
+                        std::fabs(speed_radps) > 0.5 * config.speed_limit_radps[j];
+  std::uint64_t& ticks = m.torque_missing_ticks[j];
+  ticks = m.commanded != 0 && away && !too_fast ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
+  return ticks > ticks_from_s(kTorqueMissing_s);
+}
+
+/// Whether something has long held joint j away from its target.
+bool not_following(const JointState& joints, int j, const JointContext& context,
+                   JointMemory& m) noexcept {
+  const bool behind = context.mode == Mode::kStandUp && context.stiff &&
+                      std::fabs(context.sent_rad[j] - joints.position_rad[j]) > kNotFollowing_rad;
+  std::uint64_t& ticks = m.behind_ticks[j];
+  ticks = behind ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
+  return ticks > ticks_from_s(kNotFollowing_s);
+}
+
+/// With the drives off: a joint that comes, or comes back after a silence, may have lost its zero
+/// until it is where it was or where a lying robot has it.
+void doubt(const GateConfig& config, const JointState& joints, int j, JointMemory& m) noexcept {
+  const std::uint64_t joint = std::uint64_t{1} << j;
+  const bool first = m.seen == 0;
+  const bool returns = !first && joints.tick[j] - m.sample_tick[j] > kSilent_ticks;
+  if (returns && (m.unsure_joints & joint) == 0) {
+    m.known_joints |= joint;
+    m.known_rad[j] = m.position_rad[j];
+  }
+  if (first || returns) m.unsure_joints |= joint;
+  const auto near = [&](double rad) {
+    return std::fabs(joints.position_rad[j] - rad) <= kMisplaced_rad;
+  };
+  const bool known = (m.known_joints & joint) != 0 && near(m.known_rad[j]);
+  if (known || near(config.lying_rad[j])) {
+    m.unsure_joints &= ~joint;
+    m.known_joints &= ~joint;
+  }
+}
+
+}  // namespace
+
+JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
+                           const JointContext& context, JointMemory& memory) noexcept {
+  JointVerdict verdict;
+  JointMemory& m = memory;
+  const Mode mode = context.mode;
+  const bool driven = (kDriven & mode_set(mode)) != 0;
+  const bool carries = (kCarrying & mode_set(mode)) != 0;
+  const double rate_per_s = carries && context.imu != nullptr ? motion_rate(*context.imu) : 0.0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (m.seen != 0 && joints.tick[j] <= m.sample_tick[j]) continue;  // no new sample
+    const std::uint64_t joint = std::uint64_t{1} << j;
+    std::uint64_t faults = 0;
+    const auto find = [&](bool found, Fault fault) {
+      if (found && judged_in(mode, fault)) faults |= fault_bit(fault);
+      return found;
+    };
+    if (!driven) doubt(config, joints, j, m);
+    if (m.seen != 0) {
+      const double way_rad = std::fabs(joints.position_rad[j] - m.position_rad[j]);
+      const double reach_rad =
+          config.encoder_jump_rad +
+          config.speed_fault_radps * seconds(joints.tick[j] - m.sample_tick[j]);
+      find(way_rad > reach_rad, Fault::kEncoderJump);
+      const bool frozen = frozen_in_motion(config, joints, j, context, rate_per_s, m);
+      const bool deaf = deaf_to_target(config, joints, j, context, m);
+      find(frozen || deaf, Fault::kEncoderFrozen);
+      if (!driven && mode != Mode::kFault) m.drift_rad[j] = 0.0;
+      const bool disagrees = find(speed_disagrees(joints, j, m), Fault::kSpeedMismatch);
+      if (mode == Mode::kFault && (frozen || disagrees)) verdict.blind |= joint;
+      find(torque_missing(config, joints, j, m), Fault::kTorqueMissing);
+      find(not_following(joints, j, context, m), Fault::kNotFollowing);
+    } else {
+      m.changed_tick[j] = m.still_tick[j] = joints.tick[j];
+      m.still_rad[j] = joints.position_rad[j];
+    }
+    if (faults != 0) verdict.joints |= joint;
+    verdict.faults |= faults;
+    m.sample_tick[j] = joints.tick[j];
+    m.position_rad[j] = joints.position_rad[j];
+    m.velocity_radps[j] = joints.velocity_radps[j];
+  }
+  m.seen = 1;
+  const bool arming = mode == Mode::kDamping && context.mode_before == Mode::kPassive;
+  if (arming && m.unsure_joints != 0 && !config.hanging) {
+    verdict.faults |= fault_bit(Fault::kJointMisplaced);
+    verdict.joints |= m.unsure_joints;
+  } else if (driven && (kDriven & mode_set(context.mode_before)) != 0) {
+    m.unsure_joints = m.known_joints = 0;  // it was armed, or it starts on its feet
+  }
+  return verdict;
+}
+
+}  // namespace sandrunner

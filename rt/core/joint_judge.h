@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether joints and drives can be believed: their encoders change as their speeds and the body's
+// motion say, and drives give the torque that they are commanded.
+#pragma once
+
+#include <cstdint>
+
+#include "rt/core/gate_config.h"
+#include "rt/core/messages.h"
+
+namespace sandrunner {
+
+/// Time constant of the comparison of a position with its speed.
+inline constexpr double kSpeedCompare_s = 0.5;
+/// Fault: a joint's position and the integral of its speed disagree by this much, rad.
+inline constexpr double kSpeedDisagrees_rad = 0.3;
+/// Fault: the reported torque differs from the commanded one by this share of the joint's limit ...
+inline constexpr double kTorqueMissingShare = 0.15;
+inline constexpr double kTorqueMissing_s = 0.04;  ///< ... for this long
+/// Fault in StandUp: a joint is this far from its target ...
+inline constexpr double kNotFollowing_rad = 0.6;
+inline constexpr double kNotFollowing_s = 0.05;  ///< ... for this long
+/// Fault: a joint stays within this, a count of a coarse encoder, ...
+inline constexpr double kStill_rad = 0.0005;
+inline constexpr double kStill_s = 0.25;         ///< ... for this long ...
+inline constexpr double kStillTarget_rad = 0.4;  ///< ... while its target moves by this.
+/// Motion of the body while a joint's values stay the same to the bit, each beyond what a robot at
+/// rest shows: a turn of 0.1 rad or 0.3 m/s of vertical speed are a fault.
+inline constexpr double kBodyRest_radps = 0.1, kBodyTurn_rad = 0.1;
+inline constexpr double kBodyRest_mps2 = 0.5, kBodySinks_mps = 0.3;
+/// Speed that a braked joint at rest may report: some steps of the coarsest drive's speed.
+inline constexpr double kRest_radps = 0.05;
+/// A joint that was silent for longer than this may have lost its zero.
+inline constexpr std::uint64_t kSilent_ticks = 200;
+/// Fault on arming: since then such a joint has not been this near to where it was or to the lying
+/// pose, rad. One turn of a motor moves the zero of a 6.75:1 drive by 0.93 rad.
+inline constexpr double kMisplaced_rad = 0.3;
+
+/// What is remembered of the joints. All members 64 bits wide.
+struct JointMemory {
+  std::uint64_t seen = 0;  ///< 1: the next three are those of the last judgement
+  JointArray<std::uint64_t> sample_tick{};
+  JointArray<double> position_rad{};
+  JointArray<double> velocity_radps{};
+
+  JointArray<std::uint64_t> changed_tick{};  ///< sample since which they have had the same bits
+  JointArray<double> changed_target_rad{};   ///< commanded position then
+  JointArray<double> body_motion{};          ///< of the body since then; 1 is too much
+  JointArray<double> still_rad{};            ///< position near which the joint has been ...
+  JointArray<std::uint64_t> still_tick{};    ///< ... since this sample ...
+  JointArray<double> still_target_rad{};     ///< ... at which it was commanded to be here ...
+  JointArray<double> still_way_rad{};        ///< ... and this far away since then, at most
+  JointArray<double> drift_rad{};            ///< change of position, less the integral of the speed
+
+  JointArray<double> commanded_nm{};  ///< torque of the last command, at the values then measured
+  std::uint64_t commanded = 0;        ///< 1: there was one
+  JointArray<std::uint64_t> torque_missing_ticks{}, behind_ticks{};
+
+  std::uint64_t unsure_joints = 0;  ///< that may have lost their zero, bit j for joint j
+  std::uint64_t known_joints = 0;   ///< of these, those that were somewhere before
+  JointArray<double> known_rad{};   ///< where
+};
+static_assert(sizeof(JointMemory) == 8 * (4 + 15 * kNumJoints), "no padding");
+
+/// What a judgement of joints rests on besides their values.
+struct JointContext {
+  Mode mode = Mode::kPassive;
+  Mode mode_before = Mode::kPassive;   ///< of the last judgement
+  const ImuSample* imu = nullptr;      ///< null: not usable, or the robot hangs
+  bool stiff = false;                  ///< the last command had stiffness
+  const JointArray<double>& sent_rad;  ///< its positions
+};
+
+struct JointVerdict {
+  std::uint64_t faults = 0;  ///< bits of Fault
+  std::uint64_t joints = 0;  ///< that they are about
+  std::uint64_t blind = 0;   ///< joints that damping by their own speed would drive
+};
+
+/// Judges the new samples of finite values, and remembers them.
+JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
+                           const JointContext& context, JointMemory& memory) noexcept;
+
+}  // namespace sandrunner
