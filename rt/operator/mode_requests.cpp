@@ -39,6 +39,7 @@ const char* failure(ModeRequest request, Mode after) noexcept {
     case ModeRequest::kNone:
     case ModeRequest::kPassive:  // which nobody can request
     case ModeRequest::kStop:     // whatever moved is ending
+    case ModeRequest::kLie:
       return nullptr;
     case ModeRequest::kArm:
       if (after == Mode::kDamping) return nullptr;
