@@ -137,10 +137,10 @@ struct LiveView {
   /// `simulator`: null unless in lockstep on simulated ground; so is `stand_again` without
   /// operators.
   LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
-           const std::atomic<bool>& interrupt, OperatorDesk* desk, sim::Simulator* simulator,
+           const std::atomic<int>& interrupts, OperatorDesk* desk, sim::Simulator* simulator,
            StandAgain* stand_again)
       : feed(scene, config.robot.description) {
-    if (lockstep) pace.emplace(interrupt);
+    if (lockstep) pace.emplace(interrupts);
     if (lockstep && simulator) {
       hand.emplace(*simulator, config.simulator.terrain, config.effective, stand_again);
     }
@@ -287,7 +287,7 @@ int run(int argc, char** argv) {
   const RunScene scene = scene_of(config, policy_name);
   if (out) listeners.page.emplace(scene, config.robot.description);
   if (options->view) {
-    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted(), open_desk,
+    listeners.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
                            robot.simulator.get(), stand_again ? &*stand_again : nullptr);
   }
 
@@ -307,7 +307,7 @@ int run(int argc, char** argv) {
       .tap = listeners.tap(),
       .begin_tap = [&](std::int64_t start_ns) { listeners.begin(start_ns); },
       .between = listeners.between(),
-      .interrupt = signals.interrupted()};
+      .interrupts = signals.interrupts()};
   SystemClock clock;
   const RunResult result =
       options->realtime ? run_in_realtime(parts, config.realtime, clock) : run_in_lockstep(parts);
@@ -345,7 +345,7 @@ int run(int argc, char** argv) {
   if (listeners.view) {
     std::fflush(stdout);
     listeners.view->feed.end();
-    while (!signals.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return result.survived ? kExitOk : kExitRobotFailed;
 }

@@ -33,7 +33,7 @@ struct RealtimeEnd : LoopEnd {
 /// InputError if a required part of the set-up is not to be had.
 RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
                          const RealtimeConfig& realtime, Mode start, Policy* policy,
-                         OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                         OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
                          Clock& clock, const StartTap& begin_tap = {});
 
 }  // namespace sandrunner

@@ -19,7 +19,7 @@ RunResult run(const RunParts& parts, const Loop& loop) {
   RunResult result;
   loop(parts.plan.start_walking ? Mode::kWalk : Mode::kPassive, op, tap, result);
   if (parts.live) {
-    result.interrupted = parts.interrupt.load();
+    result.interrupted = parts.interrupts > 0;
     const Fault fault = result.end.gate.first_fault;
     result.survived = fault == Fault::kNone;  // no fault since, whoever has reset it
     if (!result.survived) result.fall_reason = fault_name(fault);
@@ -44,7 +44,7 @@ RunResult run(const RunParts& parts, const Loop& loop) {
 RunResult run_in_lockstep(const RunParts& parts) {
   return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
     result.end = run_lockstep(parts.robot, parts.controller, start, parts.policy, op,
-                              parts.interrupt, tap, parts.begin_tap, parts.between);
+                              parts.interrupts, tap, parts.begin_tap, parts.between);
   });
 }
 
@@ -52,7 +52,7 @@ RunResult run_in_realtime(const RunParts& parts, const RealtimeConfig& realtime,
   return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
     const RealtimeEnd end =
         run_realtime(parts.robot, parts.controller, realtime, start, parts.policy, op,
-                     parts.interrupt, tap, clock, parts.begin_tap);
+                     parts.interrupts, tap, clock, parts.begin_tap);
     result.end = end;
     result.realtime = end.report;
   });

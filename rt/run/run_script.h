@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "rt/loop/operator_input.h"
+#include "rt/operator/gentle_end.h"
 #include "rt/run/command_source.h"
 
 namespace sandrunner {
@@ -15,8 +16,8 @@ struct RunPlan {
 };
 
 /// The operator of a run from the command line: stands the robot up, lets it settle and walk, stops
-/// it, waits, and lets it down in damping, as after a fall, a fault or an interrupt; or just walks.
-/// Without a policy it only stands up, and is let down.
+/// it, waits, and lets it lie down, as after an interrupt; or just walks. After a fall, a fault or
+/// a second interrupt it damps at once. Without a policy it only stands up, and lies down.
 class RunScript final : public OperatorInput {
  public:
   /// `command` must outlive the script.
@@ -35,10 +36,10 @@ class RunScript final : public OperatorInput {
   double walked_s() const noexcept { return static_cast<double>(walked_) * kControlPeriod_s; }
 
  private:
-  enum class Phase { kArm, kStandUp, kWalk, kStop, kDamp };
+  enum class Phase { kArm, kStandUp, kWalk, kStop, kEnd };
   void request(ModeRequest r) noexcept;
   void enter(Phase phase) noexcept;
-  void damp() noexcept;
+  void end(ModeRequest r) noexcept;
   void fail(const char* reason) noexcept;
   bool next_phase(Mode mode, std::uint64_t ticks) noexcept;
 
@@ -48,7 +49,8 @@ class RunScript final : public OperatorInput {
   const std::uint64_t walk_ticks_;
   Phase phase_;
   OperatorCommand command_;
-  std::uint64_t in_phase_ = 0, standing_ = 0, walked_ = 0;
+  GentleEnd end_;
+  std::uint64_t standing_ = 0, walked_ = 0;
   bool has_walked_, interrupted_ = false;
   const char* fall_reason_ = nullptr;
   double fall_time_s_ = 0.0;
