@@ -45,7 +45,12 @@ SignalWatch::SignalWatch() {
     }
     struct sigaction inherited;
     if (sigaction(number, nullptr, &inherited) != 0) continue;  // the C library's own
-    if (inherited.sa_handler == SIG_IGN) continue;  // nohup, a shell's &
+    if (inherited.sa_handler == SIG_IGN) {
+      // A shell that starts a script's command with & has it ignore SIGINT and SIGQUIT: a robot
+      // must stop all the same.
+      if (number == SIGHUP) continue;  // nohup
+      std::signal(number, SIG_DFL);
+    }
     sigaddset(&watched_, number);
   }
   sigaddset(&watched_, kEnd);

@@ -12,7 +12,7 @@ namespace sandrunner {
 
 /// What the process does about signals while it has a robot. Every one that would end or stop it
 /// (Ctrl-C, Ctrl-\, Ctrl-Z, a closed terminal, a timer, a limit of processor time, ...), but for
-/// those that were ignored from the start (nohup), is taken away from all threads that start
+/// a SIGHUP that was ignored from the start (nohup), is taken away from all threads that start
 /// after it and waited for in a thread of its own: no code runs in a signal handler, no system call
 /// of another thread is interrupted, and the robot is let down first. Ignored are those that stand
 /// for an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. What nobody can catch, SIGKILL and

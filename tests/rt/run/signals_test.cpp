@@ -136,6 +136,18 @@ TEST(SignalWatchDeathTest, ACrashAfterTheRobotIsGoneCallsItNoMore) {
   EXPECT_EXIT(child(), testing::KilledBySignal(SIGSEGV), "^$");
 }
 
+TEST(SignalWatchDeathTest, InAScriptsBackgroundInterruptQuitAndTerminateCount) {
+  for (const int number : {SIGINT, SIGQUIT, SIGTERM}) {
+    const auto child = [number] {
+      signal(number, SIG_IGN);  // a shell's &
+      const SignalWatch watch;
+      kill(getpid(), number);
+      _exit(comes_true(watch.interrupts()) ? 0 : 1);
+    };
+    EXPECT_EXIT(child(), testing::ExitedWithCode(0), "") << number;
+  }
+}
+
 TEST(SignalWatchDeathTest, ASecondInterruptCountsButNotTheHangUpsOfOneTerminal) {
   const auto child = [] {
     const SignalWatch watch;
