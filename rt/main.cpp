@@ -260,7 +260,7 @@ int run(int argc, char** argv) {
   if (config.controller.gate.hanging) {
     to_standard_error(
         "sandrunner: hardware.hanging: tilt and free fall are not judged, nor would a fall on the "
-        "ground be\n");
+        "ground be; the robot does not walk\n");
   }
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");
@@ -269,9 +269,13 @@ int run(int argc, char** argv) {
   SignalWatch signals;
   std::optional<RemoteOperator> remote;
   std::optional<OperatorDesk> desk;
+  const char* const no_walk = config.controller.gate.hanging
+                                  ? "the robot hangs (hardware.hanging), it may not walk"
+                              : policy ? nullptr
+                                       : "no policy to walk with";
   if (options->live) {
     remote.emplace(config.dds.stale_ticks());
-    desk.emplace(*remote, config.dds.stale_s, policy.has_value());
+    desk.emplace(*remote, config.dds.stale_s, no_walk);
   }
   OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   std::optional<StandAgain> stand_again;

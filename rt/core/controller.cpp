@@ -178,6 +178,7 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   state_.request_id = command.request_id;
   const std::optional<Event> event = event_of(command.request);
   if (!event) return mode;
+  if (event == Event::kRequestWalk && config_.gate.hanging) return mode;
   if (mode == Mode::kFault && drives_on(tick)) return mode;
   if (mode == Mode::kWalk) {
     // The latest wish counts: asking for Walk during the stop takes the stop back. Asking again

@@ -9,7 +9,8 @@ namespace {
 // A run but for its loop: `loop(start, op, tap)` runs that and returns how it ended.
 template <typename Loop>
 RunResult run(const RunParts& parts, const Loop& loop) {
-  RunScript script(parts.command, parts.plan, parts.policy != nullptr);
+  RunScript script(parts.command, parts.plan,
+                   parts.policy != nullptr && !parts.controller.gate.hanging);
   RunObserver observer(parts.scene, parts.keep_record, parts.progress);
   const TickTap tap = [&](const TickRecord& tick) {
     observer.add(tick);

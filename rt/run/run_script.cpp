@@ -8,10 +8,10 @@ constexpr std::uint64_t kSettle_ticks = kControlHz;  // in Stand before Walk; tw
 
 }  // namespace
 
-RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool has_policy)
+RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool can_walk)
     : source_(command),
       plan_(plan),
-      has_policy_(has_policy),
+      can_walk_(can_walk),
       walk_ticks_(ticks_from_s(plan.walk_s)),
       phase_(plan.start_walking ? Phase::kWalk : Phase::kArm),
       has_walked_(plan.start_walking),
@@ -61,7 +61,7 @@ bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
     case Phase::kStandUp:
       if (mode != Mode::kStand) standing_ = 0;
       if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {
-        if (has_policy_) {
+        if (can_walk_) {
           request(ModeRequest::kWalk);
           enter(Phase::kWalk);
         } else {

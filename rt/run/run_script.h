@@ -17,11 +17,11 @@ struct RunPlan {
 
 /// The operator of a run from the command line: stands the robot up, lets it settle and walk, stops
 /// it, waits, and lets it lie down, as after an interrupt; or just walks. After a fall, a fault or
-/// a second interrupt it damps at once. Without a policy it only stands up, and lies down.
+/// a second interrupt it damps at once. A robot that may not walk only stands up, and lies down.
 class RunScript final : public OperatorInput {
  public:
   /// `command` must outlive the script.
-  RunScript(const CommandSource& command, const RunPlan& plan, bool has_policy);
+  RunScript(const CommandSource& command, const RunPlan& plan, bool can_walk);
 
   OperatorCommand command(std::uint64_t tick) noexcept override;
   OperatorVerdict advance(const TickFacts& facts) noexcept override;
@@ -45,7 +45,7 @@ class RunScript final : public OperatorInput {
 
   const CommandSource& source_;
   const RunPlan plan_;
-  const bool has_policy_;
+  const bool can_walk_;
   const std::uint64_t walk_ticks_;
   Phase phase_;
   OperatorCommand command_;

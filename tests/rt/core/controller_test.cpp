@@ -279,6 +279,15 @@ TEST(ControllerTest, WalkThatIsAskedForDuringTheBlendBeginsWhereStandHoldsTheJoi
   }
 }
 
+TEST(ControllerTest, AHangingRobotDoesNotWalk) {
+  ControllerConfig config = test_robot();
+  config.gate.hanging = true;
+  FakeLoop loop(Mode::kPassive, config);
+  loop.reach(Mode::kStand);
+  loop.request(ModeRequest::kWalk);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+}
+
 TEST(LieTest, AStandingRobotFoldsItsLegsBeforeItDamps) {
   FakeLoop loop;
   loop.reach(Mode::kStand);

@@ -170,7 +170,7 @@ TEST_F(HandTest, APushIsHalfAMetrePerSecondBetweenTwoTicksAndTheNextTickKnowsOfI
 }
 
 TEST_F(HandTest, ARobotThatHasFallenWithAFaultStandsAgainByTheWaysOfTheModeMachine) {
-  OperatorDesk desk(remote, 60.0, true);
+  OperatorDesk desk(remote, 60.0, nullptr);
   bool fallen = false;
   std::vector<Mode> modes;
   simulator.reset_lying();

@@ -188,7 +188,7 @@ TEST_F(ViewServerTest, ARunWithoutADeskTakesNoCommands) {
 
 TEST_F(ViewServerTest, APageIsOneOfTheOperators) {
   RemoteOperator op(1200);
-  OperatorDesk desk(op, 60.0, true);
+  OperatorDesk desk(op, 60.0, nullptr);
   const ViewServer driven(0, {.feed = feed, .desk = &desk});
   const std::string url = driven.url();
   const int its_port = std::stoi(url.substr(url.find(':', 6) + 1));
