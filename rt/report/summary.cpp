@@ -94,7 +94,10 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
   const auto of = [](const char* unit, double value, double commanded) {
     return fmt::format("{:>6} {}   of {:>6}", fixed_text(value, 3), unit, fixed_text(commanded, 3));
   };
-  std::string end = r.interrupted ? "interrupted, ended in damping" : "finished on its feet";
+  std::string end = r.interrupted ? "interrupted, ended in damping"
+                    : r.has_truth ? "finished on its feet"
+                                  : "finished without a fault";
+  if (!r.has_truth) end += "; whether it fell is not known, there is no ground truth";
   if (!r.survived) {
     end = "FAILED: " + r.fall_reason;
     const std::vector<std::string> joints = joints_in(r.end.gate.fault_joints, r.record.scene);
@@ -159,7 +162,7 @@ std::string summary_json(const RunResult& r, const RunInfo& info) {
   j["terrain"] = info.terrain;
   j["clock"] = info.clock;
   j["seed"] = info.seed;
-  j["survived"] = r.survived;
+  j["survived"] = r.survived && !r.has_truth ? Json() : Json(r.survived);
   j["fall_time_s"] = r.fall_time_s ? Json(*r.fall_time_s) : Json();
   j["fall_reason"] = r.survived ? Json() : Json(r.fall_reason);
   j["fall_mode"] = r.fall_mode ? Json(mode_name(*r.fall_mode)) : Json();

@@ -12,12 +12,13 @@ RunResult run(const RunParts& parts, const Loop& loop) {
   RunScript script(parts.command, parts.plan,
                    parts.policy != nullptr && !parts.controller.gate.hanging);
   RunObserver observer(parts.scene, parts.keep_record, parts.progress);
+  RunResult result;
   const TickTap tap = [&](const TickRecord& tick) {
+    result.has_truth = tick.has_truth != 0;
     observer.add(tick);
     if (parts.tap) parts.tap(tick);
   };
   OperatorInput& op = parts.live ? *parts.live : script;
-  RunResult result;
   loop(parts.plan.start_walking ? Mode::kWalk : Mode::kPassive, op, tap, result);
   if (parts.live) {
     result.interrupted = parts.interrupts > 0;

@@ -238,6 +238,14 @@ TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
   const RunResult known = simulate(
       {.config = config, .policy = &policy, .plan = {.walk_s = 1.0, .start_walking = true}});
   EXPECT_TRUE(result.survived);
+  // Nor is it known whether it fell.
+  EXPECT_NE(summary_json(result, {}).find("\"survived\": null"), std::string::npos);
+  EXPECT_NE(summary_table(result, {}).find("whether it fell is not known"), std::string::npos);
+  RunResult faulted = result;
+  faulted.survived = false;
+  faulted.fall_reason = "tilt";
+  EXPECT_NE(summary_json(faulted, {}).find("\"survived\": false"), std::string::npos);
+  EXPECT_NE(summary_json(known, {}).find("\"survived\": true"), std::string::npos);
   EXPECT_FALSE(result.figures.motion);
   EXPECT_FALSE(result.figures.estimate);
   EXPECT_FALSE(result.record.has_truth());
