@@ -149,6 +149,7 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   if (policy_thread) end.report.policy = policy_thread->deadlines();
   end.report.late_policy_outputs = state.late_policy_outputs;
   end.report.records_dropped = ring->dropped();
+  end.report.watchdog_gap_ns = watchdog.longest_gap_ns();
   end.report.setup = setup.items();
   return end;
 }

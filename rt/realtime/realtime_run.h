@@ -19,6 +19,7 @@ struct RealtimeReport {
   PolicyDeadlines policy;
   std::uint64_t late_policy_outputs = 0;  ///< that came after the tick they were meant for
   std::uint64_t records_dropped = 0;      ///< ticks that figures and record lack
+  std::int64_t watchdog_gap_ns = 0;       ///< longest time in which the watchdog did not look
   std::vector<SetupItem> setup;
 };
 

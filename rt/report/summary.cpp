@@ -9,6 +9,7 @@
 #include "rt/base/build.h"
 #include "rt/base/fixed_text.h"
 #include "rt/core/mode_machine.h"
+#include "rt/realtime/watchdog.h"
 
 namespace sandrunner {
 
@@ -33,6 +34,7 @@ nlohmann::ordered_json realtime_json(const RealtimeReport& r) {
   j["policy_missed"] = r.policy.missed;
   j["policy_late"] = r.late_policy_outputs;
   j["records_dropped"] = r.records_dropped;
+  j["watchdog_longest_gap_ms"] = 1e-6 * static_cast<double>(r.watchdog_gap_ns);
   j["late_us"] = histogram_json(r.control.late);
   j["read_us"] = histogram_json(r.control.read);
   j["control_us"] = histogram_json(r.control.control);
@@ -66,6 +68,12 @@ std::string realtime_table(const RealtimeReport& r) {
   if (r.records_dropped > 0) {
     t += fmt::format("  {} ticks are not in the figures: they came faster than they were taken\n",
                      r.records_dropped);
+  }
+  if (r.watchdog_gap_ns >= kWatchdog_ns) {
+    t += fmt::format(
+        "  the watchdog did not look for {:.0f} ms: a control thread that hung would not "
+        "have lost its drives\n",
+        1e-6 * static_cast<double>(r.watchdog_gap_ns));
   }
   for (const SetupItem& item : r.setup) {
     t += fmt::format("  {:<26}{}{}\n", item.name,
