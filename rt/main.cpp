@@ -49,10 +49,12 @@
 namespace sandrunner {
 namespace {
 
+constexpr int kLastWords_ms = 2000;
+
 void show_progress(const RunSample& s) {
   const std::string where =
       s.has_truth ? fmt::format("{:6.2f} m/s  x {:7.2f} m ", s.vx_mps, s.base_position_m[0]) : "";
-  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", s.t_s, mode_name(s.mode), where));
+  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", s.t_s, mode_name(s.mode), where), 0);
 }
 
 std::string recording_line(const RecordingResult& r, const std::string& dir) {
@@ -344,7 +346,10 @@ int run(int argc, char** argv) {
   if (robot.hardware) {
     written += hardware_report(*robot.hardware, *config.hardware, config.robot.description);
   }
-  fmt::print("{}{}", summary_table(result, info), written);
+  // A terminal that was stopped must not keep the process, which holds the buses, from its end.
+  if (isatty(STDOUT_FILENO) == 0 || takes_output(STDOUT_FILENO, kLastWords_ms)) {
+    fmt::print("{}{}", summary_table(result, info), written);
+  }
   if (not_written) std::rethrow_exception(not_written);
   if (listeners.view) {
     std::fflush(stdout);
