@@ -289,6 +289,11 @@ int run(int argc, char** argv) {
   listeners.black_box = make_black_box(*options, config, policy_text, brain);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
+  if (robot.hardware) {
+    for (const std::string& line : unguarded(*config.hardware)) {
+      to_standard_error(fmt::format("sandrunner: {}\n", line));
+    }
+  }
 
   const RunScene scene = scene_of(config, policy_name);
   if (out) listeners.page.emplace(scene, config.robot.description);
