@@ -101,7 +101,7 @@ class Drive {
     if (fds[1].revents != 0) {
       const std::string bytes = terminal.read();
       if (bytes.empty()) quit_ = true;
-      for (const char key : keys_from(bytes)) press(key);
+      for (const char key : key_reader_.keys(bytes)) press(key);
     }
     if (fds[2].revents != 0 && !device_->read_into(*gamepad_)) {
       device_.reset();
@@ -157,14 +157,15 @@ class Drive {
   ModeClient modes_;
   ViewReader reader_;
   RobotView view_;
+  KeyReader key_reader_;
   KeyDriver keys_;
   CommandPacer pacer_;
   std::optional<GamepadDevice> device_;
   std::optional<Gamepad> gamepad_;
   const std::string where_;  // the robot is looked for
   bool quit_ = false;
-  std::string asked_;   // the latest request
-  bool waits_ = false;  // for its answer
+  std::string asked_;    // the latest request
+  bool waits_ = false;   // for its answer
   std::int64_t asked_ns_ = 0, next_line_ns_ = 0;
 };
 
