@@ -108,6 +108,7 @@ class Drive {
       gamepad_.reset();
       report("the gamepad is gone");
     }
+    if (fds[2].revents != 0 && gamepad_) gamepad_->heard(steady_ns());
   }
 
   void press(char key) {
@@ -135,7 +136,10 @@ class Drive {
     }
     const double scale = 0.1 * keys_.scale_tenths();
     std::optional<VelocityCommand> wanted = keys_.command(now_ns);
-    if (!wanted && gamepad_) wanted = gamepad_->command(scale);
+    if (!wanted && gamepad_) wanted = gamepad_->command(scale, now_ns);
+    const bool silent = gamepad_ && gamepad_->silent(now_ns);
+    if (silent && !silent_) report("the gamepad has said nothing for 1 s: zero until it does");
+    silent_ = silent;
     send(wanted);
     reader_.take_into(view_);
     if (now_ns < next_line_ns_) return;
@@ -164,6 +168,7 @@ class Drive {
   std::optional<Gamepad> gamepad_;
   const std::string where_;  // the robot is looked for
   bool quit_ = false;
+  bool silent_ = false;  // the gamepad, while it is to drive
   std::string asked_;    // the latest request
   bool waits_ = false;   // for its answer
   std::int64_t asked_ns_ = 0, next_line_ns_ = 0;
