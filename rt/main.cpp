@@ -49,10 +49,12 @@
 namespace sandrunner {
 namespace {
 
+constexpr int kLastWords_ms = 2000;
+
 void show_progress(const RunSample& s) {
   const std::string where =
       s.has_truth ? fmt::format("{:6.2f} m/s  x {:7.2f} m ", s.vx_mps, s.base_position_m[0]) : "";
-  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", s.t_s, mode_name(s.mode), where));
+  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", s.t_s, mode_name(s.mode), where), 0);
 }
 
 std::string recording_line(const RecordingResult& r, const std::string& dir) {
@@ -137,10 +139,10 @@ struct LiveView {
   /// `simulator`: null unless in lockstep on simulated ground; so is `stand_again` without
   /// operators.
   LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
-           const std::atomic<bool>& interrupt, OperatorDesk* desk, sim::Simulator* simulator,
+           const std::atomic<int>& interrupts, OperatorDesk* desk, sim::Simulator* simulator,
            StandAgain* stand_again)
       : feed(scene, config.robot.description) {
-    if (lockstep) pace.emplace(interrupt);
+    if (lockstep) pace.emplace(interrupts);
     if (lockstep && simulator) {
       hand.emplace(*simulator, config.simulator.terrain, config.effective, stand_again);
     }
@@ -260,7 +262,7 @@ int run(int argc, char** argv) {
   if (config.controller.gate.hanging) {
     to_standard_error(
         "sandrunner: hardware.hanging: tilt and free fall are not judged, nor would a fall on the "
-        "ground be\n");
+        "ground be; the robot does not walk\n");
   }
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");
@@ -269,9 +271,13 @@ int run(int argc, char** argv) {
   SignalWatch signals;
   std::optional<RemoteOperator> remote;
   std::optional<OperatorDesk> desk;
+  const char* const no_walk = config.controller.gate.hanging
+                                  ? "the robot hangs (hardware.hanging), it may not walk"
+                              : policy ? nullptr
+                                       : "no policy to walk with";
   if (options->live) {
     remote.emplace(config.dds.stale_ticks());
-    desk.emplace(*remote, config.dds.stale_s, policy.has_value());
+    desk.emplace(*remote, config.dds.stale_s, no_walk);
   }
   OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   std::optional<StandAgain> stand_again;
@@ -283,11 +289,16 @@ int run(int argc, char** argv) {
   listeners.black_box = make_black_box(*options, config, policy_text, brain);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
+  if (robot.hardware) {
+    for (const std::string& line : unguarded(*config.hardware)) {
+      to_standard_error(fmt::format("sandrunner: {}\n", line));
+    }
+  }
 
   const RunScene scene = scene_of(config, policy_name);
   if (out) listeners.page.emplace(scene, config.robot.description);
   if (options->view) {
-    listeners.view.emplace(scene, config, !options->realtime, signals.interrupted(), open_desk,
+    listeners.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
                            robot.simulator.get(), stand_again ? &*stand_again : nullptr);
   }
 
@@ -307,7 +318,7 @@ int run(int argc, char** argv) {
       .tap = listeners.tap(),
       .begin_tap = [&](std::int64_t start_ns) { listeners.begin(start_ns); },
       .between = listeners.between(),
-      .interrupt = signals.interrupted()};
+      .interrupts = signals.interrupts()};
   SystemClock clock;
   const RunResult result =
       options->realtime ? run_in_realtime(parts, config.realtime, clock) : run_in_lockstep(parts);
@@ -340,12 +351,15 @@ int run(int argc, char** argv) {
   if (robot.hardware) {
     written += hardware_report(*robot.hardware, *config.hardware, config.robot.description);
   }
-  fmt::print("{}{}", summary_table(result, info), written);
+  // A terminal that was stopped must not keep the process, which holds the buses, from its end.
+  if (isatty(STDOUT_FILENO) == 0 || takes_output(STDOUT_FILENO, kLastWords_ms)) {
+    fmt::print("{}{}", summary_table(result, info), written);
+  }
   if (not_written) std::rethrow_exception(not_written);
   if (listeners.view) {
     std::fflush(stdout);
     listeners.view->feed.end();
-    while (!signals.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return result.survived ? kExitOk : kExitRobotFailed;
 }

@@ -330,4 +330,17 @@ void match_gate(const GateConfig& gate, HardwareConfig& h) {
   }
 }
 
+std::vector<std::string> unguarded(const HardwareConfig& config) {
+  std::vector<std::string> lines;
+  if (config.emergency_stop.chip.empty()) {
+    lines.emplace_back("no emergency stop is configured: hardware.emergency_stop.chip is not set");
+  }
+  const HardwareConfig open;
+  if (config.voltage_low_v <= open.voltage_low_v && config.voltage_high_v >= open.voltage_high_v) {
+    lines.emplace_back(
+        "the supply voltage is not judged: hardware.voltage_low_v and .voltage_high_v are not set");
+  }
+  return lines;
+}
+
 }  // namespace sandrunner

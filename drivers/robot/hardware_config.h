@@ -89,4 +89,8 @@ void adapt_gate(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 /// without a fault), and for a speed fault above what replies can tell.
 void match_gate(const GateConfig& gate, HardwareConfig& hardware);
 
+/// One line for each guard of the robot that the file leaves off: the emergency stop, the range of
+/// the supply.
+std::vector<std::string> unguarded(const HardwareConfig& config);
+
 }  // namespace sandrunner

@@ -9,6 +9,8 @@
 namespace sandrunner {
 namespace {
 
+constexpr std::uint64_t kStop = 1, kStopAndLie = 2;  // ControllerState::stopping
+
 constexpr double kYield_radps = 0.05;  // a torque of 30 N m is relieved by 10 N m in 2 s
 
 std::optional<Event> event_of(ModeRequest request) noexcept {
@@ -29,6 +31,8 @@ std::optional<Event> event_of(ModeRequest request) noexcept {
       return Event::kRequestArm;
     case ModeRequest::kStop:
       return Event::kRequestStop;
+    case ModeRequest::kLie:
+      return Event::kRequestLie;
   }
   return std::nullopt;
 }
@@ -174,23 +178,44 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   state_.request_id = command.request_id;
   const std::optional<Event> event = event_of(command.request);
   if (!event) return mode;
+  if (event == Event::kRequestWalk && config_.gate.hanging) return mode;
   if (mode == Mode::kFault && drives_on(tick)) return mode;
   if (mode == Mode::kWalk) {
     // The latest wish counts: asking for Walk during the stop takes the stop back. Asking again
     // for the stop that is on its way does not begin it anew.
-    if ((event == Event::kRequestStand || event == Event::kRequestStop) && state_.stopping == 0) {
-      begin_stop(tick);
+    if (event == Event::kRequestStand || event == Event::kRequestStop ||
+        event == Event::kRequestLie) {
+      if (state_.stopping == 0) begin_stop(tick);
+      state_.stopping = event == Event::kRequestLie ? kStopAndLie : kStop;
     } else if (event == Event::kRequestWalk) {
       state_.stopping = 0;
     }
+  } else if (event == Event::kRequestLie && (mode == Mode::kStandUp || mode == Mode::kStand)) {
+    if (mode == Mode::kStandUp && state_.folding != 0) return Mode::kDamping;
+    state_.stopping = kStopAndLie;
+  } else if (mode == Mode::kStand && event == Event::kRequestStand) {
+    if (state_.to_rad == fold_rad_) {  // it is on its way down
+      start_motion(motion_command(tick).position_rad, config_.stand.nominal_rad,
+                   config_.stand.extend_s, tick);
+    }
+    state_.stopping = kStop;
+  } else if (mode == Mode::kStand && event == Event::kRequestWalk && state_.folding != 0) {
+    return mode;
   }
   return next_mode(mode, *event);
 }
 
 void Controller::begin_stop(std::uint64_t tick) noexcept {
-  state_.stopping = 1;
+  state_.stopping = kStop;
   state_.zero_since_tick = tick;
   state_.restless_tick = tick;
+}
+
+/// From where the joints are commanded to be now: they carry the robot.
+void Controller::begin_lowering(std::uint64_t tick) noexcept {
+  state_.stopping = kStopAndLie;
+  state_.folding = 1;
+  start_motion(motion_command(tick).position_rad, fold_rad_, config_.stand.extend_s, tick);
 }
 
 Mode Controller::after_time(Mode mode, const ControllerInput& input) noexcept {
@@ -201,8 +226,14 @@ Mode Controller::after_time(Mode mode, const ControllerInput& input) noexcept {
       standing(input.sensors)) {
     return next_mode(mode, Event::kStoodUp);
   }
-  if (mode == Mode::kStand && lost > ticks_from_s(config_.shaping.operator_down_s)) {
-    return next_mode(mode, Event::kRequestDamp);
+  if (mode == Mode::kStand) {
+    if (lost > ticks_from_s(config_.shaping.operator_down_s)) state_.stopping = kStopAndLie;
+    if (motion_done(tick) && state_.stopping == kStopAndLie) {
+      if (state_.to_rad == fold_rad_) return next_mode(mode, Event::kLowered);
+      begin_lowering(tick);
+    } else if (motion_done(tick)) {
+      state_.folding = 0;
+    }
   }
   if (mode == Mode::kWalk && state_.stopping == 0 &&
       lost > ticks_from_s(config_.shaping.operator_stand_s)) {
@@ -245,6 +276,7 @@ void Controller::enter(Mode mode, const SensorFrame& sensors) noexcept {
     case Mode::kDamping:
       break;
     case Mode::kStandUp:
+      state_.stopping = 0;
       state_.folding = distance(measured_rad, stand.nominal_rad) < stand.skip_fold_rad ? 0 : 1;
       if (state_.folding != 0) {
         start_motion(measured_rad, fold_rad_, std::max(stand.fold_s, stand.gain_ramp_s), tick);
@@ -261,7 +293,14 @@ void Controller::enter(Mode mode, const SensorFrame& sensors) noexcept {
         for (int j = 0; j < kNumJoints; ++j) {
           from_rad[j] = measured_rad[j] + ratio * (state_.target_rad[j] - measured_rad[j]);
         }
-        start_motion(from_rad, stand.nominal_rad, stand.blend_s, tick);
+        if (state_.stopping == kStopAndLie) {
+          state_.folding = 1;
+          start_motion(from_rad, fold_rad_, stand.extend_s, tick);
+        } else {
+          start_motion(from_rad, stand.nominal_rad, stand.blend_s, tick);
+        }
+      } else if (state_.stopping == kStopAndLie) {
+        begin_lowering(tick);
       } else {
         start_motion(stand.nominal_rad, stand.nominal_rad, 0.0, tick);
       }

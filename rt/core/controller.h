@@ -103,12 +103,15 @@ struct ControllerState {
   JointArray<double> to_rad{};
   std::uint64_t motion_start_tick = 0;
   std::uint64_t motion_ticks = 0;
-  std::uint64_t folding = 0;  ///< 1 in the first phase of StandUp
+  /// 1 in the first phase of StandUp; in Stand from the beginning of a lowering to its end, or
+  /// until it has risen again.
+  std::uint64_t folding = 0;
 
   // Walk.
-  VelocityCommand command;            ///< inside the envelope, after the slew, before the yaw clip
-  double command_share = 1.0;         ///< of what was asked that the envelope leaves
-  std::uint64_t stopping = 0;         ///< 1 after a request of Stand
+  VelocityCommand command;     ///< inside the envelope, after the slew, before the yaw clip
+  double command_share = 1.0;  ///< of what was asked that the envelope leaves
+  /// 1 after a request of Stand or stop; 2 after one to lie down, also in Stand.
+  std::uint64_t stopping = 0;
   std::uint64_t zero_since_tick = 0;  ///< while stopping: since when the command has been zero
   std::uint64_t restless_tick = 0;    ///< while stopping: when something last moved
   std::uint64_t episode = 0;
@@ -165,6 +168,7 @@ class Controller {
   Mode after_request(const OperatorCommand& command, std::uint64_t tick) noexcept;
   Mode after_time(Mode mode, const ControllerInput& input) noexcept;
   void begin_stop(std::uint64_t tick) noexcept;
+  void begin_lowering(std::uint64_t tick) noexcept;
   void pause_motion(std::uint64_t tick) noexcept;
   void yield_to_heat(const JointState& joints) noexcept;
   bool drives_on(std::uint64_t tick) const noexcept;

@@ -120,7 +120,8 @@ enum class ModeRequest : std::uint64_t {
   kWalk,
   kResetFault,
   kArm,
-  kStop
+  kStop,
+  kLie
 };
 
 /// Latest wish of the operator. A request counts once for each new `request_id`.

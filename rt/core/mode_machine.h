@@ -2,14 +2,14 @@
 // The modes of the controller and every way from one to another.
 //
 // clang-format off
-//            | arm      damp     stop     passive  stand    walk  reset      | stood up  stopped | fault
-//   ---------+---------------------------------------------------------------+-------------------+------
-//   Passive  | Damping  .        .        .        .        .     .          | .         .       | Fault
-//   Damping  | .        .        .        Passive  StandUp  .     .          | .         .       | Fault
-//   StandUp  | .        Damping  Damping  .        .        .     .          | Stand     .       | Fault
-//   Stand    | .        Damping  .        .        .        Walk  .          | .         .       | Fault
-//   Walk     | .        Damping  (1)      .        (1)      .     .          | .         Stand   | Fault
-//   Fault    | .        .        .        .        .        .     Passive(2) | .         .       | .
+//            | arm      damp     stop     lie       passive  stand    walk     reset      | stood up  stopped  lowered | fault
+//   ---------+---------------------------------------------------------------------------+---------------------------+------
+//   Passive  | Damping  .        .        .         .        .        .        .          | .         .        .       | Fault
+//   Damping  | .        .        .        .         Passive  StandUp  .        .          | .         .        .       | Fault
+//   StandUp  | .        Damping  Damping  Stand(3)  .        .        .        .          | Stand     .        .       | Fault
+//   Stand    | .        Damping  .        (3)       .        (4)      Walk(4)  .          | .         .        Damping | Fault
+//   Walk     | .        Damping  (1)      (1,3)     .        (1)      .        .          | .         Stand    .       | Fault
+//   Fault    | .        .        .        .         .        .        .        Passive(2) | .         .        .       | .
 // clang-format on
 //
 // "." stays. Two steps from rest to motion: arm switches the drives on, which only brake, stand
@@ -20,6 +20,11 @@
 //
 // (2) Only when the drives are off and no condition for a fault holds any more (controller.h). The
 // robot then stays Passive until somebody asks for more: a reset never re-arms.
+//
+// (3) Stand lowers the body: the legs fold, then it damps. A robot that lies on the ground, as in
+// the first motion of StandUp, goes to Damping at once.
+//
+// (4) While the body is lowered, Stand raises it again, and Walk is ignored until that is done.
 #pragma once
 
 #include <array>
@@ -38,11 +43,13 @@ enum class Event : std::uint64_t {
   kRequestReset,
   kRequestArm,
   kRequestStop,
+  kRequestLie,
   kStoodUp,
   kStopped,
+  kLowered,
   kFault,
 };
-inline constexpr int kNumEvents = 10;
+inline constexpr int kNumEvents = 12;
 
 struct Transition {
   Mode from;
@@ -50,7 +57,7 @@ struct Transition {
   Mode to;
 };
 
-inline constexpr std::array<Transition, 16> kTransitions = {{
+inline constexpr std::array<Transition, 18> kTransitions = {{
     {Mode::kPassive, Event::kRequestArm, Mode::kDamping},
     {Mode::kPassive, Event::kFault, Mode::kFault},
     {Mode::kDamping, Event::kRequestPassive, Mode::kPassive},
@@ -58,10 +65,12 @@ inline constexpr std::array<Transition, 16> kTransitions = {{
     {Mode::kDamping, Event::kFault, Mode::kFault},
     {Mode::kStandUp, Event::kRequestDamp, Mode::kDamping},
     {Mode::kStandUp, Event::kRequestStop, Mode::kDamping},
+    {Mode::kStandUp, Event::kRequestLie, Mode::kStand},
     {Mode::kStandUp, Event::kStoodUp, Mode::kStand},
     {Mode::kStandUp, Event::kFault, Mode::kFault},
     {Mode::kStand, Event::kRequestDamp, Mode::kDamping},
     {Mode::kStand, Event::kRequestWalk, Mode::kWalk},
+    {Mode::kStand, Event::kLowered, Mode::kDamping},
     {Mode::kStand, Event::kFault, Mode::kFault},
     {Mode::kWalk, Event::kRequestDamp, Mode::kDamping},
     {Mode::kWalk, Event::kStopped, Mode::kStand},

@@ -38,7 +38,7 @@ void ControlLoop::tick(const SlotGrid::Slot& slot, const OperatorCommand& comman
   record.truth = truth_;
 }
 
-bool ControlLoop::tick(const SlotGrid::Slot& slot, OperatorInput& op, bool interrupted,
+bool ControlLoop::tick(const SlotGrid::Slot& slot, OperatorInput& op, int interrupts,
                        TickRecord& record) noexcept {
   tick(slot, op.command(slot.number), record);
   const OperatorVerdict verdict = op.advance({.ticks = 1 + slot.skipped,
@@ -47,7 +47,7 @@ bool ControlLoop::tick(const SlotGrid::Slot& slot, OperatorInput& op, bool inter
                                               .first_fault = record.output.first_fault,
                                               .base_contact = record.truth.base_contact != 0,
                                               .thigh_contact = record.truth.thigh_contact != 0,
-                                              .interrupted = interrupted});
+                                              .interrupts = interrupts});
   record.counts = verdict.counts ? 1 : 0;
   return verdict.running;
 }

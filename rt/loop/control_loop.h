@@ -27,9 +27,9 @@ class ControlLoop {
   void tick(const SlotGrid::Slot& slot, const OperatorCommand& command,
             TickRecord& record) noexcept;
 
-  /// The same under an operator, who sees what came of it. `interrupted`: somebody wants the
-  /// process to end. False: that was the last tick.
-  bool tick(const SlotGrid::Slot& slot, OperatorInput& op, bool interrupted,
+  /// The same under an operator, who sees what came of it. `interrupts`: how often somebody has
+  /// wanted the process to end. False: that was the last tick.
+  bool tick(const SlotGrid::Slot& slot, OperatorInput& op, int interrupts,
             TickRecord& record) noexcept;
 
   const Controller& controller() const noexcept { return controller_; }

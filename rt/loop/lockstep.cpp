@@ -11,8 +11,8 @@ void Lockstep::tick(const OperatorCommand& command) noexcept {
   loop_.tick({.number = next_tick_++}, command, record_);
 }
 
-bool Lockstep::tick(OperatorInput& op, bool interrupted) noexcept {
-  return loop_.tick({.number = next_tick_++}, op, interrupted, record_);
+bool Lockstep::tick(OperatorInput& op, int interrupts) noexcept {
+  return loop_.tick({.number = next_tick_++}, op, interrupts, record_);
 }
 
 LockstepState Lockstep::state() noexcept {
@@ -30,14 +30,14 @@ void Lockstep::restore(const LockstepState& state, std::uint64_t next_tick) noex
 }
 
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                     OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
                      const StartTap& begin_tap, const BetweenTicks& between) {
   Lockstep loop(robot, config, start, policy);
   if (begin_tap) begin_tap(clock_ns(CLOCK_REALTIME));
   const auto begin = std::chrono::steady_clock::now();
   bool running = true;
   while (running) {
-    running = loop.tick(op, interrupt.load(std::memory_order_relaxed));
+    running = loop.tick(op, interrupts.load(std::memory_order_relaxed));
     tap(loop.record());
     if (running && between && between(loop.next_tick())) loop.robot_changed();
   }

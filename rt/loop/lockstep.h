@@ -30,7 +30,7 @@ class Lockstep {
   /// The next tick under the operator's latest command.
   void tick(const OperatorCommand& command) noexcept;
   /// The same under an operator; false: that was the last tick.
-  bool tick(OperatorInput& op, bool interrupted) noexcept;
+  bool tick(OperatorInput& op, int interrupts) noexcept;
 
   /// Somebody has changed the robot since the last tick.
   void robot_changed() noexcept { loop_.robot_changed(); }
@@ -69,9 +69,9 @@ struct LoopEnd {
   GateState gate;
 };
 
-/// Ticks until `op` or `interrupt` ends it, then the drives are off.
+/// Ticks until `op` ends it, which sees the `interrupts`, then the drives are off.
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                     OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
                      const StartTap& begin_tap = {}, const BetweenTicks& between = {});
 
 }  // namespace sandrunner

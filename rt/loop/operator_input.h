@@ -9,7 +9,6 @@
 namespace sandrunner {
 
 /// How long a robot is damped before its loop ends, whatever ends it: it is let down, not dropped.
-/// From standing Raibo sinks onto its folded legs in 0.6 s.
 inline constexpr std::uint64_t kDampingEnd_ticks = kControlHz;
 
 /// What an operator sees of the tick that was just done.
@@ -20,7 +19,7 @@ struct TickFacts {
   Fault first_fault = Fault::kNone;  ///< that began the latch
   bool base_contact = false;         ///< simulated robot: its base touches the ground
   bool thigh_contact = false;        ///< likewise
-  bool interrupted = false;          ///< somebody wants the process to end
+  int interrupts = 0;                ///< how often somebody has wanted the process to end
 };
 
 struct OperatorVerdict {

@@ -9,7 +9,7 @@ bool is_request(std::string_view name) noexcept {
   return std::ranges::find(kRequests, name) != kRequests.end();
 }
 
-RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept {
+RequestDecision decide(std::string_view name, Mode mode, const char* no_walk) noexcept {
   if (name == "damp") return {.request = ModeRequest::kDamp, .calms = true};
   if (name == "stop") return {.request = ModeRequest::kStop, .calms = true};
   if (name == "reset_fault") {
@@ -25,20 +25,29 @@ RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept
     if (mode == Mode::kPassive) return {.refusal = "the drives are off, arm comes first"};
     return {.request = ModeRequest::kStand};
   }
-  if (!can_walk) return {.refusal = "no policy to walk with"};
+  if (name == "lie") {
+    if (mode == Mode::kPassive) return {.refusal = "the drives are off"};
+    return {.request = ModeRequest::kLie};
+  }
+  if (name == "disarm") {
+    if (mode == Mode::kPassive) return {.refusal = "the drives are off already"};
+    if (mode != Mode::kDamping) return {.refusal = "the robot carries itself, lie comes first"};
+    return {.request = ModeRequest::kPassive};
+  }
+  if (no_walk) return {.refusal = no_walk};
   if (mode != Mode::kStand && mode != Mode::kWalk) {
     return {.refusal = "the robot does not stand, stand comes first"};
   }
   return {.request = ModeRequest::kWalk};
 }
 
-bool calms(std::string_view name) noexcept { return decide(name, Mode::kPassive, true).calms; }
+bool calms(std::string_view name) noexcept { return decide(name, Mode::kPassive, nullptr).calms; }
 
 const char* failure(ModeRequest request, Mode after) noexcept {
   switch (request) {
     case ModeRequest::kNone:
-    case ModeRequest::kPassive:  // which nobody can request
-    case ModeRequest::kStop:     // whatever moved is ending
+    case ModeRequest::kStop:  // whatever moved is ending
+    case ModeRequest::kLie:
       return nullptr;
     case ModeRequest::kArm:
       if (after == Mode::kDamping) return nullptr;
@@ -48,6 +57,10 @@ const char* failure(ModeRequest request, Mode after) noexcept {
       break;
     case ModeRequest::kWalk:
       if (after == Mode::kWalk) return nullptr;
+      if (after == Mode::kStand) return "the robot is lying down, stand comes first";
+      break;
+    case ModeRequest::kPassive:
+      if (after == Mode::kPassive) return nullptr;
       break;
     case ModeRequest::kDamp:
       // A fault damps too, then switches the drives off; in Passive they are.

@@ -9,9 +9,10 @@
 namespace sandrunner {
 
 /// What an operator may request over DDS or from a page of --view, by name.
-inline constexpr std::array<std::string_view, 6> kRequests = {"arm",  "stand", "walk",
-                                                              "stop", "damp",  "reset_fault"};
-inline constexpr const char* kRequestNames = "arm, stand, walk, stop, damp or reset_fault";
+inline constexpr std::array<std::string_view, 8> kRequests = {
+    "arm", "stand", "walk", "stop", "lie", "damp", "disarm", "reset_fault"};
+inline constexpr const char* kRequestNames =
+    "arm, stand, walk, stop, lie, damp, disarm or reset_fault";
 bool is_request(std::string_view name) noexcept;
 
 /// What to do about a request.
@@ -22,9 +23,9 @@ struct RequestDecision {
 };
 
 /// Decides in `mode`; `name` is one of the above. "stop" ends every motion: a walking robot's in a
-/// controlled stop, a rising one's in damping; it makes no robot stand up. `can_walk`: there is a
-/// policy.
-RequestDecision decide(std::string_view name, Mode mode, bool can_walk) noexcept;
+/// controlled stop, a rising one's in damping; it makes no robot stand up. `no_walk`: why the
+/// robot may not walk; null: it may.
+RequestDecision decide(std::string_view name, Mode mode, const char* no_walk) noexcept;
 
 /// Whether a request of this name ends motion, in whatever mode.
 bool calms(std::string_view name) noexcept;

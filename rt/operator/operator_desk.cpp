@@ -17,10 +17,10 @@ constexpr const char* kNoAnswer = "the controller does not answer";
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk,
+OperatorDesk::OperatorDesk(RemoteOperator& op, double stale_s, const char* no_walk,
                            std::chrono::milliseconds answer)
     : operator_(op),
-      can_walk_(can_walk),
+      no_walk_(no_walk),
       answer_(answer),
       gate_(static_cast<std::int64_t>(stale_s * 1e9)) {}
 
@@ -92,7 +92,7 @@ std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
   // nothing but a damp replaces it.
   const bool waiting = calming_number_ > operator_.considered();
   if (waiting && name != "damp") return kNoAnswer;
-  const RequestDecision decision = decide(name, operator_.mode(), can_walk_);
+  const RequestDecision decision = decide(name, operator_.mode(), no_walk_);
   if (decision.refusal) return decision.refusal;
   if (!decision.calms && gate_.held(clock_ns(CLOCK_MONOTONIC)) && who != holder_) {
     return "another operator drives the robot";

@@ -41,10 +41,10 @@ class OperatorDesk {
   using Objection = std::function<std::string()>;
 
   /// `op` must outlive the desk. `stale_s`: a velocity older than this holds nothing any more.
-  /// `can_walk`: there is a policy. `answer`: the controller answers within a tick; a busy computer
-  /// holds a thread that is not real-time up for some tens of ms; what has not answered after this
-  /// time is not running.
-  OperatorDesk(RemoteOperator& op, double stale_s, bool can_walk,
+  /// `no_walk`: why the robot may not walk; null: it may. `answer`: the controller answers within a
+  /// tick; a busy computer holds a thread that is not real-time up for some tens of ms; what has
+  /// not answered after this time is not running.
+  OperatorDesk(RemoteOperator& op, double stale_s, const char* no_walk,
                std::chrono::milliseconds answer = std::chrono::milliseconds(100));
 
   /// A velocity. `publisher`: what `who` sends it with. One that is objected to holds nothing.
@@ -57,6 +57,7 @@ class OperatorDesk {
                          const Objection& objection = {});
 
   Mode mode() const noexcept { return operator_.mode(); }
+  const char* no_walk() const noexcept { return no_walk_; }
   CommandCounts counts() const;
   /// The latest mode request and what became of it; empty: none yet.
   std::string last_request() const;
@@ -66,7 +67,7 @@ class OperatorDesk {
   std::string follow(std::string_view name, const OperatorId& who, const Objection& objection);
 
   RemoteOperator& operator_;
-  const bool can_walk_;
+  const char* const no_walk_;
   const std::chrono::milliseconds answer_;
   mutable std::mutex mutex_;  // of all that follows
   CommandGate gate_;

@@ -17,10 +17,9 @@ OperatorCommand RemoteOperator::command(std::uint64_t tick) noexcept {
   }
   next_tick_ = tick + 1;
   if (velocity_number_ == 0 || tick - arrival_tick_ > stale_ticks_) command_.velocity = {};
-  if (!interrupted_ && !first && asked.request_number != request_number_) {
+  if (!end_.begun() && !first && asked.request_number != request_number_) {
     request_number_ = asked.request_number;
-    command_.request = asked.request;
-    ++command_.request_id;
+    request(asked.request);
     life_tick_ = tick;
   }
   command_.tick = life_tick_;
@@ -30,16 +29,18 @@ OperatorCommand RemoteOperator::command(std::uint64_t tick) noexcept {
 OperatorVerdict RemoteOperator::advance(const TickFacts& facts) noexcept {
   mode_.store(facts.mode, std::memory_order_relaxed);
   considered_.store(request_number_, std::memory_order_release);
-  if (interrupted_) damped_ticks_ += facts.ticks;
-  if (facts.interrupted && !interrupted_) {
-    interrupted_ = true;
-    command_.request = ModeRequest::kDamp;
-    ++command_.request_id;
-  }
-  // Drives that are off need no damping.
-  const bool done =
-      interrupted_ && (facts.mode == Mode::kPassive || damped_ticks_ >= kDampingEnd_ticks);
-  return {.running = !done, .counts = facts.mode == Mode::kWalk};
+  // What was skipped lies before the end that this tick begins.
+  const std::uint64_t ticks = end_.begun() ? facts.ticks : 0;
+  if (facts.interrupts > 0) request(end_.lie());
+  if (facts.interrupts > 1) request(end_.damp());
+  request(end_.advance(facts.mode, ticks));
+  return {.running = !end_.done(), .counts = facts.mode == Mode::kWalk};
+}
+
+void RemoteOperator::request(ModeRequest r) noexcept {
+  if (r == ModeRequest::kNone) return;
+  command_.request = r;
+  ++command_.request_id;
 }
 
 }  // namespace sandrunner

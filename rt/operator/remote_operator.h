@@ -6,6 +6,7 @@
 
 #include "rt/core/triple_buffer.h"
 #include "rt/loop/operator_input.h"
+#include "rt/operator/gentle_end.h"
 
 namespace sandrunner {
 
@@ -19,8 +20,8 @@ struct OperatorRequests {
 
 /// The control thread's end of commands that come over DDS or from a page of --view. The age of a
 /// velocity counts from the tick at which it was first seen; beyond the stale time it is replaced
-/// by zero. Until the first request, the robot stays as it is. Ends in damping when it is
-/// interrupted.
+/// by zero. Until the first request, the robot stays as it is. Ends gently when it is interrupted,
+/// in damping at once when that happens again.
 class RemoteOperator final : public OperatorInput {
  public:
   /// `stale_ticks`: the greatest age at which a velocity is still followed, in control ticks.
@@ -41,12 +42,12 @@ class RemoteOperator final : public OperatorInput {
   const std::uint64_t stale_ticks_;
   TripleBuffer<OperatorRequests> asked_;
   // Only the control thread uses these:
+  void request(ModeRequest r) noexcept;
   std::uint64_t velocity_number_ = 0, request_number_ = 0;  // the latest seen
   std::uint64_t next_tick_ = 0;                             // 0: no tick yet
   std::uint64_t arrival_tick_ = 0;                          // of the velocity
   std::uint64_t life_tick_ = 0;                             // of the latest velocity or request
-  std::uint64_t damped_ticks_ = 0;                          // since the interrupt
-  bool interrupted_ = false;
+  GentleEnd end_;
   OperatorCommand command_;
   // For the other thread:
   std::atomic<Mode> mode_{Mode::kPassive};

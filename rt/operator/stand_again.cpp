@@ -48,7 +48,7 @@ OperatorVerdict StandAgain::advance(const TickFacts& facts) noexcept {
     const bool down = mode_ == Mode::kPassive || mode_ == Mode::kDamping || mode_ == Mode::kFault;
     if (phase_ == Phase::kDown && down && upright_) phase_ = Phase::kUp;
     const bool stands = phase_ == Phase::kUp && mode_ == Mode::kStand;
-    if (stands || ticks_ > kLongest_ticks || facts.interrupted) phase_ = Phase::kIdle;
+    if (stands || ticks_ > kLongest_ticks || facts.interrupts > 0) phase_ = Phase::kIdle;
   }
   return other_.advance(facts);
 }

@@ -19,9 +19,9 @@ bool ControlThread::tick(const SlotGrid::Slot& slot) noexcept {
   const std::int64_t begin = clock_.now_ns();
   TickRecord* const claimed = ring_.claim();
   TickRecord& record = claimed ? *claimed : spare_;
-  const bool ends =
-      interrupt_.load(std::memory_order_relaxed) || end_.load(std::memory_order_relaxed);
-  const bool running = loop_.tick(slot, operator_, ends, record);
+  const int interrupts = std::max<int>(interrupts_.load(std::memory_order_relaxed),
+                                       end_.load(std::memory_order_relaxed));
+  const bool running = loop_.tick(slot, operator_, interrupts, record);
 
   ControlDeadlines& d = deadlines_;
   ++d.ticks;

@@ -32,13 +32,13 @@ class ControlThread {
   /// `clock`: that of `loop`. Two that end it: `interrupt` is the user's, which no busy ordinary
   /// thread can keep from the robot; `end` the process's. Everything must outlive the thread.
   ControlThread(RobotIo& robot, ControlLoop& loop, OperatorInput& op, TickRing& ring, Clock& clock,
-                const std::atomic<bool>& interrupt, const std::atomic<bool>& end)
+                const std::atomic<int>& interrupts, const std::atomic<bool>& end)
       : robot_(robot),
         loop_(loop),
         operator_(op),
         ring_(ring),
         clock_(clock),
-        interrupt_(interrupt),
+        interrupts_(interrupts),
         end_(end) {}
 
   /// Runs from slot 0 at `start_ns` on, then switches the drives off. Real-time safe.
@@ -56,7 +56,7 @@ class ControlThread {
   OperatorInput& operator_;
   TickRing& ring_;
   Clock& clock_;
-  const std::atomic<bool>& interrupt_;
+  const std::atomic<int>& interrupts_;
   const std::atomic<bool>& end_;
   TickRecord spare_;  // where a tick is recorded that finds the ring full
   ControlDeadlines deadlines_;

@@ -95,14 +95,14 @@ void end_if_it_hangs(const Watchdog& watchdog, const std::atomic<std::uint64_t>&
 
 RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
                          const RealtimeConfig& realtime, Mode start, Policy* policy,
-                         OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                         OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
                          Clock& clock, const StartTap& begin_tap) {
   RealtimeSetup setup(realtime);
   const auto exchange = std::make_unique<PolicyExchange>();
   const auto ring = std::make_unique<TickRing>();
   std::atomic<bool> stop{false};
   ControlLoop loop(robot, config, start, *exchange, clock);
-  ControlThread control(robot, loop, op, *ring, clock, interrupt, stop);
+  ControlThread control(robot, loop, op, *ring, clock, interrupts, stop);
   Watchdog watchdog(robot, control.ticks(), clock);
   std::optional<PolicyThread> policy_thread;
   if (policy) policy_thread.emplace(*policy, *exchange, clock);
@@ -149,6 +149,7 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   if (policy_thread) end.report.policy = policy_thread->deadlines();
   end.report.late_policy_outputs = state.late_policy_outputs;
   end.report.records_dropped = ring->dropped();
+  end.report.watchdog_gap_ns = watchdog.longest_gap_ns();
   end.report.setup = setup.items();
   return end;
 }

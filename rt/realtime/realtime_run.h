@@ -19,6 +19,7 @@ struct RealtimeReport {
   PolicyDeadlines policy;
   std::uint64_t late_policy_outputs = 0;  ///< that came after the tick they were meant for
   std::uint64_t records_dropped = 0;      ///< ticks that figures and record lack
+  std::int64_t watchdog_gap_ns = 0;       ///< longest time in which the watchdog did not look
   std::vector<SetupItem> setup;
 };
 
@@ -33,7 +34,7 @@ struct RealtimeEnd : LoopEnd {
 /// InputError if a required part of the set-up is not to be had.
 RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
                          const RealtimeConfig& realtime, Mode start, Policy* policy,
-                         OperatorInput& op, const std::atomic<bool>& interrupt, const TickTap& tap,
+                         OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
                          Clock& clock, const StartTap& begin_tap = {});
 
 }  // namespace sandrunner

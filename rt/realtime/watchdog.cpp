@@ -20,7 +20,9 @@ void Watchdog::run(std::int64_t start_ns) noexcept {
 
 void Watchdog::look(std::int64_t now_ns) noexcept {
   const std::uint64_t ticks = ticks_.load(std::memory_order_relaxed);
-  const bool held_up = now_ns - looked_ns_ > kHeldUp_ns;
+  const std::int64_t gap_ns = watching_ ? now_ns - looked_ns_ : 0;
+  const bool held_up = gap_ns > kHeldUp_ns;
+  if (gap_ns > longest_gap_ns()) longest_gap_ns_.store(gap_ns, std::memory_order_relaxed);
   if (!watching_ || ticks != seen_ || held_up) alive_ns_ = now_ns;
   watching_ = true;
   seen_ = ticks;

@@ -31,12 +31,17 @@ class Watchdog {
   /// One look; the first one is given the time from which it watches. Cuts the drives if need be.
   void look(std::int64_t now_ns) noexcept;
   bool has_cut() const noexcept { return cut_.load(std::memory_order_relaxed); }
+  /// Longest time between two looks: for so long nothing watched the control thread.
+  std::int64_t longest_gap_ns() const noexcept {
+    return longest_gap_ns_.load(std::memory_order_relaxed);
+  }
 
  private:
   RobotIo& robot_;
   const std::atomic<std::uint64_t>& ticks_;
   Clock& clock_;
   std::atomic<bool> stop_{false}, cut_{false};
+  std::atomic<std::int64_t> longest_gap_ns_{0};
   std::uint64_t seen_ = 0;
   std::int64_t looked_ns_ = 0, alive_ns_ = 0;
   bool watching_ = false;

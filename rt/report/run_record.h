@@ -23,6 +23,7 @@ struct LegPoints {
 struct RunScene {
   std::string terrain;  ///< name for titles; empty: not known
   std::string policy;   ///< name for titles, may be empty
+  std::string note;     ///< a line for whoever looks at the run, may be empty
   std::array<std::string, kNumLegs> leg_names;
   JointArray<std::string> joint_names;
   double mass_kg = 0.0;

@@ -23,6 +23,8 @@ struct RunInfo {
 /// What became of a run.
 struct RunResult {
   bool survived = true;  ///< on its feet: no base or thigh contact since the first Walk, no fault
+  /// Without ground truth nothing tells a fall but a fault: `survived` is then not known.
+  bool has_truth = true;
   std::optional<double> fall_time_s;  ///< since the start of Walk
   std::optional<Mode> fall_mode;      ///< in which it fell, or that a fault ended
   std::string

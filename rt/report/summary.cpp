@@ -9,6 +9,7 @@
 #include "rt/base/build.h"
 #include "rt/base/fixed_text.h"
 #include "rt/core/mode_machine.h"
+#include "rt/realtime/watchdog.h"
 
 namespace sandrunner {
 
@@ -33,6 +34,7 @@ nlohmann::ordered_json realtime_json(const RealtimeReport& r) {
   j["policy_missed"] = r.policy.missed;
   j["policy_late"] = r.late_policy_outputs;
   j["records_dropped"] = r.records_dropped;
+  j["watchdog_longest_gap_ms"] = 1e-6 * static_cast<double>(r.watchdog_gap_ns);
   j["late_us"] = histogram_json(r.control.late);
   j["read_us"] = histogram_json(r.control.read);
   j["control_us"] = histogram_json(r.control.control);
@@ -67,6 +69,12 @@ std::string realtime_table(const RealtimeReport& r) {
     t += fmt::format("  {} ticks are not in the figures: they came faster than they were taken\n",
                      r.records_dropped);
   }
+  if (r.watchdog_gap_ns >= kWatchdog_ns) {
+    t += fmt::format(
+        "  the watchdog did not look for {:.0f} ms: a control thread that hung would not "
+        "have lost its drives\n",
+        1e-6 * static_cast<double>(r.watchdog_gap_ns));
+  }
   for (const SetupItem& item : r.setup) {
     t += fmt::format("  {:<26}{}{}\n", item.name,
                      item.obtained ? "" : "NOT OBTAINED: ", item.detail);
@@ -94,7 +102,10 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
   const auto of = [](const char* unit, double value, double commanded) {
     return fmt::format("{:>6} {}   of {:>6}", fixed_text(value, 3), unit, fixed_text(commanded, 3));
   };
-  std::string end = r.interrupted ? "interrupted, ended in damping" : "finished on its feet";
+  std::string end = r.interrupted ? "interrupted, ended in damping"
+                    : r.has_truth ? "finished on its feet"
+                                  : "finished without a fault";
+  if (!r.has_truth) end += "; whether it fell is not known, there is no ground truth";
   if (!r.survived) {
     end = "FAILED: " + r.fall_reason;
     const std::vector<std::string> joints = joints_in(r.end.gate.fault_joints, r.record.scene);
@@ -159,7 +170,7 @@ std::string summary_json(const RunResult& r, const RunInfo& info) {
   j["terrain"] = info.terrain;
   j["clock"] = info.clock;
   j["seed"] = info.seed;
-  j["survived"] = r.survived;
+  j["survived"] = r.survived && !r.has_truth ? Json() : Json(r.survived);
   j["fall_time_s"] = r.fall_time_s ? Json(*r.fall_time_s) : Json();
   j["fall_reason"] = r.survived ? Json() : Json(r.fall_reason);
   j["fall_mode"] = r.fall_mode ? Json(mode_name(*r.fall_mode)) : Json();

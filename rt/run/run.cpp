@@ -9,17 +9,19 @@ namespace {
 // A run but for its loop: `loop(start, op, tap)` runs that and returns how it ended.
 template <typename Loop>
 RunResult run(const RunParts& parts, const Loop& loop) {
-  RunScript script(parts.command, parts.plan, parts.policy != nullptr);
+  RunScript script(parts.command, parts.plan,
+                   parts.policy != nullptr && !parts.controller.gate.hanging);
   RunObserver observer(parts.scene, parts.keep_record, parts.progress);
+  RunResult result;
   const TickTap tap = [&](const TickRecord& tick) {
+    result.has_truth = tick.has_truth != 0;
     observer.add(tick);
     if (parts.tap) parts.tap(tick);
   };
   OperatorInput& op = parts.live ? *parts.live : script;
-  RunResult result;
   loop(parts.plan.start_walking ? Mode::kWalk : Mode::kPassive, op, tap, result);
   if (parts.live) {
-    result.interrupted = parts.interrupt.load();
+    result.interrupted = parts.interrupts > 0;
     const Fault fault = result.end.gate.first_fault;
     result.survived = fault == Fault::kNone;  // no fault since, whoever has reset it
     if (!result.survived) result.fall_reason = fault_name(fault);
@@ -44,7 +46,7 @@ RunResult run(const RunParts& parts, const Loop& loop) {
 RunResult run_in_lockstep(const RunParts& parts) {
   return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
     result.end = run_lockstep(parts.robot, parts.controller, start, parts.policy, op,
-                              parts.interrupt, tap, parts.begin_tap, parts.between);
+                              parts.interrupts, tap, parts.begin_tap, parts.between);
   });
 }
 
@@ -52,7 +54,7 @@ RunResult run_in_realtime(const RunParts& parts, const RealtimeConfig& realtime,
   return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
     const RealtimeEnd end =
         run_realtime(parts.robot, parts.controller, realtime, start, parts.policy, op,
-                     parts.interrupt, tap, clock, parts.begin_tap);
+                     parts.interrupts, tap, clock, parts.begin_tap);
     result.end = end;
     result.realtime = end.report;
   });

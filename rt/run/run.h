@@ -27,7 +27,9 @@ struct RunParts {
   TickTap tap = {};                                     ///< gets every tick: recorders, telemetry
   StartTap begin_tap = {};                              ///< is told when it starts
   BetweenTicks between = {};                            ///< of a run in lockstep
-  const std::atomic<bool>& interrupt;                   ///< ends the run in damping
+  /// How often somebody has wanted it to end: at the first time it ends gently, at the second in
+  /// damping at once.
+  const std::atomic<int>& interrupts;
 };
 
 /// Runs the robot in one thread, as fast as it goes: from lying to standing, the walk, standing

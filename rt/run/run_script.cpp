@@ -8,10 +8,10 @@ constexpr std::uint64_t kSettle_ticks = kControlHz;  // in Stand before Walk; tw
 
 }  // namespace
 
-RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool has_policy)
+RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool can_walk)
     : source_(command),
       plan_(plan),
-      has_policy_(has_policy),
+      can_walk_(can_walk),
       walk_ticks_(ticks_from_s(plan.walk_s)),
       phase_(plan.start_walking ? Phase::kWalk : Phase::kArm),
       has_walked_(plan.start_walking),
@@ -33,16 +33,17 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   verdict.counts = phase_ == Phase::kWalk && facts.mode == Mode::kWalk;
   if (facts.faults != 0) fail(fault_name(facts.first_fault));
   // Lying and standing up, base and thighs only carry; once the robot has walked, touching the
-  // ground is a fall, but not while it is let down.
-  const bool carries = has_walked_ && phase_ != Phase::kDamp;
+  // ground is a fall, but not while it lies down.
+  const bool carries = has_walked_ && phase_ != Phase::kEnd;
   if (carries && facts.base_contact) fail("base_contact");
   if (carries && facts.thigh_contact) fail("thigh_contact");
-  if (facts.interrupted) {
+  if (facts.interrupts > 0) {
     interrupted_ = true;
-    damp();
+    end(end_.lie());
   }
+  if (facts.interrupts > 1) end(end_.damp());
   const Phase before = phase_;
-  // What was skipped lies before the damping that this tick begins: a stall does not shorten it.
+  // What was skipped lies before the end that this tick begins: a stall does not shorten it.
   verdict.running = next_phase(facts.mode, phase_ == at_start ? facts.ticks : 1);
   const bool stood_up = before == Phase::kStandUp && phase_ != Phase::kStandUp;
   if (stood_up && facts.base_contact) fail("did_not_stand");
@@ -50,7 +51,6 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
 }
 
 bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
-  in_phase_ += ticks;
   switch (phase_) {
     case Phase::kArm:
       if (mode == Mode::kDamping) {
@@ -61,11 +61,11 @@ bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
     case Phase::kStandUp:
       if (mode != Mode::kStand) standing_ = 0;
       if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {
-        if (has_policy_) {
+        if (can_walk_) {
           request(ModeRequest::kWalk);
           enter(Phase::kWalk);
         } else {
-          damp();
+          end(end_.lie());
         }
       }
       return true;
@@ -77,10 +77,11 @@ bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
       }
       return true;
     case Phase::kStop:
-      if (mode == Mode::kStand && (standing_ += ticks) >= 2 * kSettle_ticks) damp();
+      if (mode == Mode::kStand && (standing_ += ticks) >= 2 * kSettle_ticks) end(end_.lie());
       return true;
-    case Phase::kDamp:
-      return in_phase_ < kDampingEnd_ticks;
+    case Phase::kEnd:
+      end(end_.advance(mode, ticks));
+      return !end_.done();
   }
   return false;
 }
@@ -92,13 +93,13 @@ void RunScript::request(ModeRequest r) noexcept {
 
 void RunScript::enter(Phase phase) noexcept {
   phase_ = phase;
-  in_phase_ = standing_ = 0;
+  standing_ = 0;
 }
 
-void RunScript::damp() noexcept {
-  if (phase_ == Phase::kDamp) return;
-  request(ModeRequest::kDamp);
-  enter(Phase::kDamp);
+void RunScript::end(ModeRequest r) noexcept {
+  if (r == ModeRequest::kNone) return;
+  request(r);
+  enter(Phase::kEnd);
 }
 
 void RunScript::fail(const char* reason) noexcept {
@@ -106,7 +107,7 @@ void RunScript::fail(const char* reason) noexcept {
   if (fall_reason_ || interrupted_) return;
   fall_reason_ = reason;
   fall_time_s_ = walked_s();
-  damp();
+  end(end_.damp());
 }
 
 }  // namespace sandrunner

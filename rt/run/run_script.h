@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "rt/loop/operator_input.h"
+#include "rt/operator/gentle_end.h"
 #include "rt/run/command_source.h"
 
 namespace sandrunner {
@@ -15,12 +16,12 @@ struct RunPlan {
 };
 
 /// The operator of a run from the command line: stands the robot up, lets it settle and walk, stops
-/// it, waits, and lets it down in damping, as after a fall, a fault or an interrupt; or just walks.
-/// Without a policy it only stands up, and is let down.
+/// it, waits, and lets it lie down, as after an interrupt; or just walks. After a fall, a fault or
+/// a second interrupt it damps at once. A robot that may not walk only stands up, and lies down.
 class RunScript final : public OperatorInput {
  public:
   /// `command` must outlive the script.
-  RunScript(const CommandSource& command, const RunPlan& plan, bool has_policy);
+  RunScript(const CommandSource& command, const RunPlan& plan, bool can_walk);
 
   OperatorCommand command(std::uint64_t tick) noexcept override;
   OperatorVerdict advance(const TickFacts& facts) noexcept override;
@@ -35,20 +36,21 @@ class RunScript final : public OperatorInput {
   double walked_s() const noexcept { return static_cast<double>(walked_) * kControlPeriod_s; }
 
  private:
-  enum class Phase { kArm, kStandUp, kWalk, kStop, kDamp };
+  enum class Phase { kArm, kStandUp, kWalk, kStop, kEnd };
   void request(ModeRequest r) noexcept;
   void enter(Phase phase) noexcept;
-  void damp() noexcept;
+  void end(ModeRequest r) noexcept;
   void fail(const char* reason) noexcept;
   bool next_phase(Mode mode, std::uint64_t ticks) noexcept;
 
   const CommandSource& source_;
   const RunPlan plan_;
-  const bool has_policy_;
+  const bool can_walk_;
   const std::uint64_t walk_ticks_;
   Phase phase_;
   OperatorCommand command_;
-  std::uint64_t in_phase_ = 0, standing_ = 0, walked_ = 0;
+  GentleEnd end_;
+  std::uint64_t standing_ = 0, walked_ = 0;
   bool has_walked_, interrupted_ = false;
   const char* fall_reason_ = nullptr;
   double fall_time_s_ = 0.0;

@@ -14,6 +14,7 @@ RunScene scene_of(const ProcessConfig& config, const std::string& policy) {
   RunScene scene;
   scene.terrain = config.simulator.terrain.name;
   scene.policy = policy;
+  if (config.controller.gate.hanging) scene.note = "The robot hangs: it may not walk.";
   scene.leg_names = config.robot.description.leg_names;
   scene.joint_names = config.robot.description.joint_names;
   scene.mass_kg = model.mass();

@@ -5,8 +5,14 @@
 #include <array>
 #include <csignal>
 
+#include "rt/base/clock_ns.h"
+
 namespace sandrunner {
 namespace {
+
+// A shell and the kernel both send a closed terminal's, timeout(1) one to its child and one to its
+// group. A person's second Ctrl-C takes longer.
+constexpr std::int64_t kTogether_ns = 100'000'000;
 
 const int kEnd = SIGRTMIN;  // wakes the thread for its end
 
@@ -38,15 +44,25 @@ SignalWatch::SignalWatch() {
       continue;
     }
     struct sigaction inherited;
-    if (sigaction(number, nullptr, &inherited) != 0) continue;          // the C library's own
-    if (inherited.sa_handler != SIG_IGN) sigaddset(&watched_, number);  // nohup, a shell's &
+    if (sigaction(number, nullptr, &inherited) != 0) continue;  // the C library's own
+    if (inherited.sa_handler == SIG_IGN) {
+      // A shell that starts a script's command with & has it ignore SIGINT and SIGQUIT: a robot
+      // must stop all the same.
+      if (number == SIGHUP) continue;  // nohup
+      std::signal(number, SIG_DFL);
+    }
+    sigaddset(&watched_, number);
   }
   sigaddset(&watched_, kEnd);
   pthread_sigmask(SIG_BLOCK, &watched_, nullptr);
   thread_ = std::thread([this] {
     int number;
+    std::int64_t last_ns = 0;
     while (sigwait(&watched_, &number) == 0 && !end_) {
-      if (number != kEnd) interrupted_ = true;
+      const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+      const bool another = now_ns - last_ns > kTogether_ns && number != SIGHUP;
+      if (interrupts_ == 0 || another) ++interrupts_;
+      last_ns = now_ns;
     }
   });
 }

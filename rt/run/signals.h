@@ -12,10 +12,10 @@ namespace sandrunner {
 
 /// What the process does about signals while it has a robot. Every one that would end or stop it
 /// (Ctrl-C, Ctrl-\, Ctrl-Z, a closed terminal, a timer, a limit of processor time, ...), but for
-/// those that were ignored from the start (nohup), is taken away from all threads that start after
-/// it and waited for in a thread of its own: no code runs in a signal handler, no system call of
-/// another thread is interrupted, and the robot is let down first. Ignored are those that stand for
-/// an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. What nobody can catch, SIGKILL and
+/// a SIGHUP that was ignored from the start (nohup), is taken away from all threads that start
+/// after it and waited for in a thread of its own: no code runs in a signal handler, no system call
+/// of another thread is interrupted, and the robot is let down first. Ignored are those that stand
+/// for an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. What nobody can catch, SIGKILL and
 /// SIGSTOP, is left to the drives' own time-out.
 class SignalWatch {
  public:
@@ -24,12 +24,14 @@ class SignalWatch {
   SignalWatch(const SignalWatch&) = delete;
   SignalWatch& operator=(const SignalWatch&) = delete;
 
-  /// True once any of them has come.
-  const std::atomic<bool>& interrupted() const noexcept { return interrupted_; }
+  /// How often a person or a service has asked for the end. Signals that come together count once,
+  /// as those of a closed terminal do, and a hang-up is never more than the first.
+  const std::atomic<int>& interrupts() const noexcept { return interrupts_; }
 
  private:
   sigset_t watched_;
-  std::atomic<bool> interrupted_{false}, end_{false};
+  std::atomic<int> interrupts_{0};
+  std::atomic<bool> end_{false};
   std::thread thread_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <string>
@@ -36,13 +37,15 @@ inline Policy random_policy(std::uint64_t seed = 1) {
   return {file.spec, Network(file.parameters)};
 }
 
-/// The last sample of a run in `mode`: what follows Stand is letting it down.
-inline RunSample last_in(const RunRecord& record, Mode mode) {
-  for (auto sample = record.samples.rbegin(); sample != record.samples.rend(); ++sample) {
-    if (sample->mode == mode) return *sample;
+/// The last sample of a run in Stand before it lies down, which takes 1.5 s.
+inline RunSample last_standing(const RunRecord& record) {
+  const auto last = std::find_if(record.samples.rbegin(), record.samples.rend(),
+                                 [](const RunSample& s) { return s.mode == Mode::kStand; });
+  if (record.samples.rend() - last <= 151) {
+    ADD_FAILURE() << "never stood";
+    return record.samples.back();
   }
-  ADD_FAILURE() << "never in " << mode_name(mode);
-  return record.samples.back();
+  return *(last + 151);
 }
 
 /// A run of the simulated robot.
@@ -52,7 +55,7 @@ struct SimulatedRun {
   std::string command = "1,0,0";
   RunPlan plan = {};
   bool keep_record = false;
-  const std::atomic<bool>* interrupt = nullptr;
+  const std::atomic<int>* interrupts = nullptr;
   std::function<void(const RunSample&)> progress = {};
   TickTap tap = {};
   StartTap begin_tap = {};
@@ -65,7 +68,7 @@ inline RunResult simulate(const SimulatedRun& run) {
   sim::Simulator simulator(run.config.robot, run.config.simulator);
   if (!run.plan.start_walking) simulator.reset_lying();
   const CommandSource command(run.command);
-  const std::atomic<bool> nobody{false};
+  const std::atomic<int> nobody{false};
   const RunParts parts{.robot = simulator,
                        .controller = run.config.controller,
                        .policy = run.policy,
@@ -77,7 +80,7 @@ inline RunResult simulate(const SimulatedRun& run) {
                        .progress = run.progress,
                        .tap = run.tap,
                        .begin_tap = run.begin_tap,
-                       .interrupt = run.interrupt ? *run.interrupt : nobody};
+                       .interrupts = run.interrupts ? *run.interrupts : nobody};
   SystemClock system;
   return run.realtime ? run_in_realtime(parts, run.config.realtime, run.clock ? *run.clock : system)
                       : run_in_lockstep(parts);

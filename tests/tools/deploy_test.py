@@ -63,6 +63,16 @@ class Installed(unittest.TestCase):
         self.assertNotIn("--arm", unit)
         self.assertNotRegex(unit, "(?m)^WatchdogSec")
 
+    def test_the_service_starts_again_until_its_devices_are_there(self):
+        unit = (self.prefix / "lib/systemd/system/sandrunner.service").read_text()
+        self.assertRegex(unit, "(?m)^Restart=on-failure$")
+        self.assertRegex(unit, "(?m)^StartLimitIntervalSec=0$")
+        self.assertNotRegex(unit, "(?m)^(RestartPreventExitStatus|StartLimitBurst)=")
+
+    def test_a_walking_robot_has_the_time_to_lie_down(self):
+        unit = (self.prefix / "lib/systemd/system/sandrunner.service").read_text()
+        self.assertGreaterEqual(int(re.search("(?m)^TimeoutStopSec=([0-9]+)$", unit)[1]), 15)
+
 
 class Package(unittest.TestCase):
     @classmethod

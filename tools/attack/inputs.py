@@ -257,7 +257,7 @@ class Inputs:
         """sandrunner-ctl with a robot, which others may be at as well."""
         topics = ['rt/odom', 'rt/joint_states', 'rt/imu/data', 'rt/tf', 'rt/diagnostics', 'rt/robot_description',
                   'sandrunner/ticks', 'sandrunner/mode_reply', 'rt/cmd_vel', 'x', '']
-        modes = ['arm', 'stand', 'walk', 'stop', 'damp', 'reset_fault']
+        modes = ['arm', 'stand', 'walk', 'stop', 'lie', 'damp', 'disarm', 'reset_fault']
         velocity = [number(rng) if rng.random() < 0.1 else f'{rng.uniform(-1, 1):.3g}' for _ in range(3)]
         words = rng.choice([['mode', rng.choice(modes)], ['cmd', '--for', '0.1', *velocity],
                             ['watch', rng.choice(topics), '--count', str(rng.randint(0, 50))],

@@ -101,13 +101,14 @@ class Drive {
     if (fds[1].revents != 0) {
       const std::string bytes = terminal.read();
       if (bytes.empty()) quit_ = true;
-      for (const char key : keys_from(bytes)) press(key);
+      for (const char key : key_reader_.keys(bytes)) press(key);
     }
     if (fds[2].revents != 0 && !device_->read_into(*gamepad_)) {
       device_.reset();
       gamepad_.reset();
       report("the gamepad is gone");
     }
+    if (fds[2].revents != 0 && gamepad_) gamepad_->heard(steady_ns());
   }
 
   void press(char key) {
@@ -135,7 +136,10 @@ class Drive {
     }
     const double scale = 0.1 * keys_.scale_tenths();
     std::optional<VelocityCommand> wanted = keys_.command(now_ns);
-    if (!wanted && gamepad_) wanted = gamepad_->command(scale);
+    if (!wanted && gamepad_) wanted = gamepad_->command(scale, now_ns);
+    const bool silent = gamepad_ && gamepad_->silent(now_ns);
+    if (silent && !silent_) report("the gamepad has said nothing for 1 s: zero until it does");
+    silent_ = silent;
     send(wanted);
     reader_.take_into(view_);
     if (now_ns < next_line_ns_) return;
@@ -157,14 +161,16 @@ class Drive {
   ModeClient modes_;
   ViewReader reader_;
   RobotView view_;
+  KeyReader key_reader_;
   KeyDriver keys_;
   CommandPacer pacer_;
   std::optional<GamepadDevice> device_;
   std::optional<Gamepad> gamepad_;
   const std::string where_;  // the robot is looked for
   bool quit_ = false;
-  std::string asked_;   // the latest request
-  bool waits_ = false;  // for its answer
+  bool silent_ = false;  // the gamepad, while it is to drive
+  std::string asked_;    // the latest request
+  bool waits_ = false;   // for its answer
   std::int64_t asked_ns_ = 0, next_line_ns_ = 0;
 };
 

@@ -47,8 +47,14 @@ double Gamepad::deflection(std::size_t axis) const {
   return std::copysign(beyond, way);
 }
 
-std::optional<VelocityCommand> Gamepad::command(double scale) const {
+bool Gamepad::silent(std::int64_t now_ns) const {
+  const bool held = deflection(0) != 0.0 || deflection(1) != 0.0 || deflection(2) != 0.0;
+  return enabled_ && held && now_ns - heard_ns_ > kSilence_ns;
+}
+
+std::optional<VelocityCommand> Gamepad::command(double scale, std::int64_t now_ns) const {
   if (!enabled_) return std::nullopt;
+  if (silent(now_ns)) return VelocityCommand{};
   // Sticks are positive to the right and down, velocities to the left and forward. 0 - x instead of
   // -x: no negative zero.
   return VelocityCommand{.vx_mps = 0.0 - scale * kFullSpeed.vx_mps * deflection(1),

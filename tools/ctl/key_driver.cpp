@@ -3,19 +3,38 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace sandrunner::ctl {
+namespace {
 
-std::vector<char> keys_from(std::string_view bytes) {
+constexpr std::string_view kPasteBegins = "\x1b[200~", kPasteEnds = "\x1b[201~";
+constexpr std::size_t kLongestSequence = 32;  // what is longer is none
+
+}  // namespace
+
+std::vector<char> KeyReader::keys(std::string_view bytes) {
+  const std::string text = std::exchange(rest_, {}).append(bytes);
   std::vector<char> keys;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const char c = bytes[i];
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     const bool sequence =
-        c == kKeyEscape && i + 1 < bytes.size() && (bytes[i + 1] == '[' || bytes[i + 1] == 'O');
+        c == kKeyEscape && i + 1 < text.size() && (text[i + 1] == '[' || text[i + 1] == 'O');
     if (sequence) {
       // ESC [ parameters final, or ESC O final; finals are '@' to '~'.
-      i += 2;
-      while (i < bytes.size() && (bytes[i] < '@' || bytes[i] > '~')) ++i;
+      std::size_t end = i + 2;
+      while (end < text.size() && (text[end] < '@' || text[end] > '~')) ++end;
+      if (end == text.size()) {
+        if (end - i <= kLongestSequence) rest_ = text.substr(i);
+        break;
+      }
+      const std::string_view found = std::string_view(text).substr(i, end + 1 - i);
+      if (found == kPasteBegins) pasting_ = true;
+      if (found == kPasteEnds) pasting_ = false;
+      i = end;
+    } else if (pasting_) {
+      // The end of the paste may be cut here.
+      if (c == kKeyEscape && i + 1 == text.size()) rest_ = text.substr(i);
     } else {
       keys.push_back(c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c);
     }

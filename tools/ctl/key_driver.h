@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,9 +18,19 @@ inline constexpr VelocityCommand kFullSpeed = {.vx_mps = 1.0, .vy_mps = 0.5, .wz
 inline constexpr char kKeyEscape = '\x1b';
 inline constexpr char kKeyCtrlC = '\x03';
 
-/// The keys in the bytes that a terminal sent at once. Sequences of special keys (arrows, function
-/// keys) are left out; letters become lower case.
-std::vector<char> keys_from(std::string_view bytes);
+/// Finds the keys in what a terminal sends. Sequences of special keys (arrows, function keys) are
+/// left out, and so is pasted text, which a terminal in bracketed paste mode marks (ESC [ 200 ~ to
+/// ESC [ 201 ~): a pasted word must not arm a robot. Letters become lower case.
+class KeyReader {
+ public:
+  /// The keys in the bytes of one read. A sequence may go on in the next one; an ESC at the end is
+  /// the key.
+  std::vector<char> keys(std::string_view bytes);
+
+ private:
+  std::string rest_;  // the beginning of a sequence
+  bool pasting_ = false;
+};
 
 /// What a key asks for besides a velocity.
 enum class KeyAction { kNone, kStop, kArm, kStand, kWalk, kDamp, kQuit };

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 
 #include "rt/base/errors.h"
 
@@ -16,8 +17,18 @@ termios before;
 
 constexpr int kCrashes[] = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGQUIT};
 
+// Pasted text comes between marks (KeyReader). A terminal that does not know this ignores it.
+constexpr char kMarkPastes[] = "\x1b[?2004h", kDoNot[] = "\x1b[?2004l";
+
+template <std::size_t kSize>
+void send(const char (&text)[kSize]) {
+  if (isatty(STDOUT_FILENO) == 0) return;
+  if (write(STDOUT_FILENO, text, kSize - 1) < 0) return;  // nobody looks
+}
+
 // Restores the terminal; the signal then has its default effect (SA_RESETHAND).
 void crash(int number) {
+  send(kDoNot);
   tcsetattr(STDIN_FILENO, TCSANOW, &before);
   raise(number);
 }
@@ -38,9 +49,11 @@ RawTerminal::RawTerminal() {
   raw.c_cc[VMIN] = 1;
   raw.c_cc[VTIME] = 0;
   tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+  send(kMarkPastes);
 }
 
 RawTerminal::~RawTerminal() {
+  send(kDoNot);
   // Keys that were typed but not read must not reach the shell.
   tcsetattr(STDIN_FILENO, TCSAFLUSH, &before);
   for (const int number : kCrashes) signal(number, SIG_DFL);

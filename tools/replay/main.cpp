@@ -152,7 +152,7 @@ void serve(Player& player) {
   player.feed->end();
   const ViewServer server(player.config.view_port, {.feed = *player.feed, .recorded = true});
   to_standard_error(fmt::format("sandrunner-replay: look at {}\n", server.url()));
-  while (!signals.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 
 // Compares, and draws what is asked for; returns the exit code.

@@ -31,7 +31,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, const s
   const RunScene scene = scene_of(config, file.spec.name);
   ViewPage page(scene, config.robot.description, {.bytes = kMostBytes});
   const CommandSource command(fmt::format("{},0,0", speed_mps));
-  const std::atomic<bool> nobody{false};
+  const std::atomic<int> nobody{false};
   run_in_lockstep({.robot = simulator,
                    .controller = config.controller,
                    .policy = &policy,
@@ -39,7 +39,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, const s
                    .plan = {.walk_s = kWalk_s, .start_walking = true},
                    .scene = scene,
                    .tap = [&](const TickRecord& tick) { page.add(tick); },
-                   .interrupt = nobody});
+                   .interrupts = nobody});
   const auto& provenance = file.spec.provenance;
   return page.html(progress.page_json(fmt::format(
       "Training of {}: {:.2f} million transitions, {} core-hours; below: its policy, asked for {} "

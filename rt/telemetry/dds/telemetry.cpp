@@ -68,6 +68,7 @@ void Telemetry::add(const TickRecord& record) {
   }
   if (diagnostics_rate_.due(tick)) {
     DiagnosticsMessage message = diagnostics_.message(stamp_ns);
+    if (desk_ && desk_->no_walk()) message.warn(desk_->no_walk());
     if (desk_) add_neighbours(message);
     add_counts(message, desk_ ? desk_->counts() : CommandCounts{}, failed_writes_);
     if (!ros_.publish(message)) ++failed_writes_;

@@ -35,6 +35,8 @@ const char* request_name(ModeRequest request) {
       return "reset_fault";
     case ModeRequest::kArm:
       return "arm";
+    case ModeRequest::kLie:
+      return "lie";
     case ModeRequest::kStop:
       return "stop";
   }

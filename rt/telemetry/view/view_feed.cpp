@@ -36,7 +36,7 @@ std::string message(Kind kind, const ViewRows<Row>& rows, std::uint64_t& from) {
 ViewFeed::ViewFeed(RunScene scene, const RobotDescription& robot, const Limits& limits)
     : scene_(std::move(scene)),
       limits_(limits),
-      hello_(view_hello(scene_, robot, kPolicyHz, "")),
+      hello_(view_hello(scene_, robot, kPolicyHz, scene_.note)),
       maker_(robot) {}
 
 void ViewFeed::add(const TickRecord& tick) {

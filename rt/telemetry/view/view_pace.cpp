@@ -17,7 +17,7 @@ constexpr milliseconds kNotCaughtUp{50};  // a machine that is this late does no
 
 void ViewPace::wait() {
   std::unique_lock lock(mutex_);
-  const auto interrupted = [&] { return interrupt_.load(std::memory_order_relaxed); };
+  const auto interrupted = [&] { return interrupts_.load(std::memory_order_relaxed) > 0; };
   if (status_.paused) {
     while (status_.paused && steps_ == 0 && !interrupted()) changed_.wait_for(lock, kLook);
     if (status_.paused && steps_ > 0) --steps_;

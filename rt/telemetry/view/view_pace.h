@@ -12,8 +12,8 @@ namespace sandrunner {
 /// ticks between two of them. Nothing of what the ticks compute depends on it.
 class ViewPace {
  public:
-  /// `interrupt` ends every wait.
-  explicit ViewPace(const std::atomic<bool>& interrupt) : interrupt_(interrupt) {}
+  /// The first of the `interrupts` ends every wait.
+  explicit ViewPace(const std::atomic<int>& interrupts) : interrupts_(interrupts) {}
 
   /// After every tick, from the thread of the ticks: returns when the next one is due.
   void wait();
@@ -34,7 +34,7 @@ class ViewPace {
  private:
   using Clock = std::chrono::steady_clock;
 
-  const std::atomic<bool>& interrupt_;
+  const std::atomic<int>& interrupts_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Status status_;

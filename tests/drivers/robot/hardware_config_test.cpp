@@ -139,6 +139,14 @@ TEST(HardwareConfigTest, AgesOfTheGateFollowTheRateOfTheExchange) {
   EXPECT_FALSE(gate.hanging);
 }
 
+TEST(HardwareConfigTest, WhatGuardsNothingIsNamed) {
+  EXPECT_EQ(unguarded(HardwareConfig{}).size(), 2u);
+  HardwareConfig config;
+  config.emergency_stop = {.chip = "/dev/gpiochip0", .line = 3};
+  config.voltage_low_v = 40.0;
+  EXPECT_TRUE(unguarded(config).empty());
+}
+
 TEST(HardwareConfigTest, ASpeedThatIsAFaultIsOneThatRepliesCanTell) {
   for (const auto& [name, fastest_radps] : {std::pair{"mit", 50.0}, {"moteus", 51.47}}) {
     GateConfig gate = example_gate();

@@ -287,6 +287,102 @@ TEST(ControllerTest, WalkThatIsAskedForDuringTheBlendBeginsWhereStandHoldsTheJoi
   }
 }
 
+TEST(ControllerTest, AHangingRobotDoesNotWalk) {
+  ControllerConfig config = test_robot();
+  config.gate.hanging = true;
+  FakeLoop loop(Mode::kPassive, config);
+  loop.reach(Mode::kStand);
+  loop.request(ModeRequest::kWalk);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+}
+
+TEST(LieTest, AStandingRobotFoldsItsLegsBeforeItDamps) {
+  FakeLoop loop;
+  loop.reach(Mode::kStand);
+  loop.request(ModeRequest::kLie);
+  double fastest_radps = 0.0;
+  std::uint64_t ticks = 1;
+  for (; loop.output.mode == Mode::kStand && ticks < 40000; ++ticks) {
+    const JointCommand& command = loop.output.command.joints();
+    EXPECT_EQ(command.kp_nmprad[4], loop.config.stand.kp_nmprad);
+    fastest_radps = std::max(fastest_radps, std::fabs(command.velocity_radps[4]));
+    loop.tick();
+  }
+  EXPECT_EQ(loop.output.mode, Mode::kDamping);
+  EXPECT_NEAR(static_cast<double>(ticks) * kControlPeriod_s, loop.config.stand.extend_s, 0.002);
+  EXPECT_NEAR(fastest_radps, 1.875 * 0.6 / loop.config.stand.extend_s, 0.01);
+  for (int j = 0; j < kNumJoints; ++j) {
+    EXPECT_NEAR(loop.robot.now.joints.position_rad[j],
+                loop.config.stand.fold_rad[j % kJointsPerLeg], 0.01);
+  }
+  // Nothing of it is left when the robot stands up again.
+  loop.request(ModeRequest::kStand);
+  loop.run_s(5.0);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+}
+
+TEST(LieTest, AWalkingRobotStopsFirst) {
+  FakeLoop loop;
+  loop.reach(Mode::kWalk);
+  loop.request(ModeRequest::kLie);
+  double vx_mps = 1.0;
+  while (loop.output.mode == Mode::kWalk) {
+    vx_mps = loop.output.policy_input.command.vx_mps;
+    loop.tick();
+  }
+  EXPECT_EQ(vx_mps, 0.0);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  loop.run_s(1.49);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  loop.run_s(0.02);
+  EXPECT_EQ(loop.output.mode, Mode::kDamping);
+}
+
+TEST(LieTest, ARisingRobotGoesDownAgainFromWhereItIs) {
+  FakeLoop loop;
+  loop.reach(Mode::kStandUp);
+  loop.request(ModeRequest::kLie);
+  EXPECT_EQ(loop.output.mode, Mode::kDamping);  // it lay on the ground
+  loop.request(ModeRequest::kStand);
+  loop.run_s(1.8);
+  ASSERT_EQ(loop.output.mode, Mode::kStandUp);
+  const double held_rad = loop.output.command.joints().position_rad[4];
+  loop.request(ModeRequest::kLie);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  EXPECT_NEAR(loop.output.command.joints().position_rad[4], held_rad, 1e-3);
+  loop.run_s(1.6);
+  EXPECT_EQ(loop.output.mode, Mode::kDamping);
+}
+
+TEST(LieTest, WalkIsIgnoredUntilStandHasRaisedTheRobotAgain) {
+  FakeLoop loop;
+  loop.reach(Mode::kStand);
+  loop.request(ModeRequest::kLie);
+  loop.run_s(0.8);
+  loop.request(ModeRequest::kWalk);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  const double held_rad = loop.output.command.joints().position_rad[4];
+  loop.request(ModeRequest::kStand);
+  EXPECT_NEAR(loop.output.command.joints().position_rad[4], held_rad, 1e-3);
+  loop.run_s(1.4);
+  loop.request(ModeRequest::kWalk);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  loop.run_s(0.2);
+  EXPECT_NEAR(loop.output.command.joints().position_rad[4], loop.config.stand.nominal_rad[4], 1e-9);
+  loop.request(ModeRequest::kWalk);
+  EXPECT_EQ(loop.output.mode, Mode::kWalk);
+}
+
+TEST(LieTest, DampDoesNotWait) {
+  for (const bool on_its_way : {false, true}) {
+    FakeLoop loop;
+    loop.reach(Mode::kStand);
+    if (on_its_way) loop.request(ModeRequest::kLie);
+    loop.request(ModeRequest::kDamp);
+    EXPECT_EQ(loop.output.mode, Mode::kDamping);
+  }
+}
+
 TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
   FakeLoop loop;
   loop.reach(Mode::kStand);

@@ -13,15 +13,15 @@ constexpr Mode P = Mode::kPassive, D = Mode::kDamping, U = Mode::kStandUp, S = M
                W = Mode::kWalk, F = Mode::kFault;
 
 TEST(ModeMachineTest, EveryEventInEveryModeLeadsWhereTheTableSays) {
-  // Columns in the order of Event: passive, damp, stand, walk, reset, arm, stop, stood up, stopped,
-  // fault.
+  // Columns in the order of Event: passive, damp, stand, walk, reset, arm, stop, lie, stood up,
+  // stopped, lowered, fault.
   const Mode expected[6][kNumEvents] = {
-      /* Passive */ {P, P, P, P, P, D, P, P, P, F},
-      /* Damping */ {P, D, U, D, D, D, D, D, D, F},
-      /* StandUp */ {U, D, U, U, U, U, D, S, U, F},
-      /* Stand   */ {S, D, S, W, S, S, S, S, S, F},
-      /* Walk    */ {W, D, W, W, W, W, W, W, S, F},
-      /* Fault   */ {F, F, F, F, P, F, F, F, F, F},
+      /* Passive */ {P, P, P, P, P, D, P, P, P, P, P, F},
+      /* Damping */ {P, D, U, D, D, D, D, D, D, D, D, F},
+      /* StandUp */ {U, D, U, U, U, U, D, S, S, U, U, F},
+      /* Stand   */ {S, D, S, W, S, S, S, S, S, S, D, F},
+      /* Walk    */ {W, D, W, W, W, W, W, W, W, S, W, F},
+      /* Fault   */ {F, F, F, F, P, F, F, F, F, F, F, F},
   };
   for (int mode = 0; mode < 6; ++mode) {
     for (int event = 0; event < kNumEvents; ++event) {

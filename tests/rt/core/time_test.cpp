@@ -135,7 +135,7 @@ TEST(StandTest, StopWhileStandingUpEndsInDamping) {
   EXPECT_EQ(loop.output.mode, Mode::kDamping);
 }
 
-TEST(LostOperatorTest, WalksAtZeroThenStandsThenIsLetDown) {
+TEST(LostOperatorTest, WalksAtZeroThenStandsThenLiesDown) {
   ControllerConfig config = test_robot();
   config.shaping.operator_hold_ticks = ticks_from_s(0.3);
   config.shaping.operator_stand_s = 2.0;
@@ -161,6 +161,9 @@ TEST(LostOperatorTest, WalksAtZeroThenStandsThenIsLetDown) {
   loop.run_s(5.0);
   EXPECT_EQ(loop.output.mode, Mode::kStand);
   loop.run_s(0.2);
+  EXPECT_EQ(loop.output.mode, Mode::kStand);
+  EXPECT_NE(loop.output.command.joints().position_rad, config.stand.nominal_rad);
+  loop.run_s(1.5);
   EXPECT_EQ(loop.output.mode, Mode::kDamping);
 }
 

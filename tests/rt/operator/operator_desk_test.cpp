@@ -7,6 +7,7 @@
 #include <cmath>
 #include <thread>
 
+#include "rt/core/mode_machine.h"
 #include "tests/support/wait_until.h"
 
 namespace sandrunner {
@@ -54,7 +55,7 @@ class WillingController {
 struct OperatorDeskTest : testing::Test {
   // A velocity holds for longer than any test takes.
   RemoteOperator op{1'000'000'000'000};
-  OperatorDesk desk{op, 60.0, true, std::chrono::seconds(5)};
+  OperatorDesk desk{op, 60.0, nullptr, std::chrono::seconds(5)};
   WillingController controller{op};
 };
 
@@ -79,6 +80,23 @@ TEST_F(OperatorDeskTest, WhileSomebodyDrivesOnlyStopAndDampAreTakenFromOthers) {
   EXPECT_EQ(desk.last_request(), "damp: accepted: mode damping");
 }
 
+TEST_F(OperatorDeskTest, ARobotThatMayNotWalkIsRefusedWithTheReason) {
+  const RequestDecision decision = decide("walk", Mode::kStand, "the robot hangs");
+  EXPECT_EQ(decision.request, ModeRequest::kNone);
+  EXPECT_STREQ(decision.refusal, "the robot hangs");
+  EXPECT_EQ(decide("stand", Mode::kDamping, "the robot hangs").refusal, nullptr);
+}
+
+TEST_F(OperatorDeskTest, DisarmTakesTheDrivesOffOnlyWhereNothingIsCarried) {
+  EXPECT_EQ(decide("disarm", Mode::kDamping, nullptr).request, ModeRequest::kPassive);
+  for (const Mode mode :
+       {Mode::kPassive, Mode::kStandUp, Mode::kStand, Mode::kWalk, Mode::kFault}) {
+    EXPECT_NE(decide("disarm", mode, nullptr).refusal, nullptr) << mode_name(mode);
+  }
+  EXPECT_EQ(failure(ModeRequest::kPassive, Mode::kPassive), nullptr);
+  EXPECT_NE(failure(ModeRequest::kPassive, Mode::kDamping), nullptr);
+}
+
 TEST_F(OperatorDeskTest, AnObjectionHoldsForWhatDoesNotEndTheMotion) {
   const auto objection = [] { return std::string("two robots"); };
   EXPECT_EQ(desk.request("walk", kPeer, objection).text, "two robots");
@@ -86,7 +104,7 @@ TEST_F(OperatorDeskTest, AnObjectionHoldsForWhatDoesNotEndTheMotion) {
   EXPECT_EQ(desk.drive(forward(0.5), 2, kPeer, objection), CommandVerdict::kObjection);
   EXPECT_EQ(desk.drive(forward(0.5), 1, kPage), CommandVerdict::kAccepted);  // nobody held it
   EXPECT_EQ(desk.request("fly", kPeer).text,
-            "unknown, expected arm, stand, walk, stop, damp or reset_fault");
+            "unknown, expected arm, stand, walk, stop, lie, damp, disarm or reset_fault");
   EXPECT_EQ(desk.counts().requests_refused, 2u);
   EXPECT_EQ(desk.counts().objected, 1u);
 }

@@ -65,23 +65,35 @@ TEST(RemoteOperatorTest, TheControllersFirstStepGetsNoRequestAndTheNextOneDoes) 
   EXPECT_EQ(op.mode(), Mode::kStandUp);
 }
 
-TEST(RemoteOperatorTest, AnInterruptDampsForASecondAndTakesNoMoreRequests) {
+TEST(RemoteOperatorTest, AnInterruptLiesDownThenDampsForASecondAndTakesNoMoreRequests) {
   RemoteOperator op(kStale_ticks);
   op.command(0);
-  EXPECT_TRUE(op.advance({.mode = Mode::kStand, .interrupted = true}).running);
+  EXPECT_TRUE(op.advance({.mode = Mode::kStand, .interrupts = 1}).running);
   op.ask({.velocity = {}, .request = ModeRequest::kWalk, .request_number = 1});
   const OperatorCommand command = op.command(1);
-  EXPECT_EQ(command.request, ModeRequest::kDamp);
+  EXPECT_EQ(command.request, ModeRequest::kLie);
   EXPECT_EQ(command.request_id, 1u);
+  for (int n = 0; n < 6000; ++n) {
+    ASSERT_TRUE(op.advance({.mode = Mode::kStand, .interrupts = 1}).running);
+  }
   int ticks = 1;
-  while (op.advance({.mode = Mode::kDamping, .interrupted = true}).running) ++ticks;
+  while (op.advance({.mode = Mode::kDamping, .interrupts = 1}).running) ++ticks;
   EXPECT_EQ(ticks, kControlHz);
+  EXPECT_EQ(op.command(2).request_id, 1u);
+}
+
+TEST(RemoteOperatorTest, ASecondInterruptDampsAtOnce) {
+  RemoteOperator op(kStale_ticks);
+  op.command(0);
+  op.advance({.mode = Mode::kWalk, .interrupts = 1});
+  op.advance({.mode = Mode::kWalk, .interrupts = 2});
+  EXPECT_EQ(op.command(1).request, ModeRequest::kDamp);
 }
 
 TEST(RemoteOperatorTest, AnInterruptedRobotWithItsDrivesOffEndsAtOnce) {
   RemoteOperator op(kStale_ticks);
   op.command(0);
-  EXPECT_FALSE(op.advance({.mode = Mode::kPassive, .interrupted = true}).running);
+  EXPECT_FALSE(op.advance({.mode = Mode::kPassive, .interrupts = 1}).running);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ class NoOperator final : public OperatorInput {
   OperatorVerdict advance(const TickFacts& facts) noexcept override {
     time_ticks += facts.ticks;
     if (facts.mode == Mode::kFault && fault_tick == 0) fault_tick = time_ticks - 1;
-    return {.running = !facts.interrupted && time_ticks < end};
+    return {.running = !(facts.interrupts > 0) && time_ticks < end};
   }
   std::uint64_t end = 1000, time_ticks = 0, fault_tick = 0;
 };
@@ -90,7 +90,8 @@ class ControlThreadTest : public testing::Test {
     }
     return all;
   }
-  void expect_ends_in_the_tick_after(std::atomic<bool>& flag) {
+  template <typename Flag>
+  void expect_ends_in_the_tick_after(Flag& flag) {
     robot_.duration_ns = [&flag](std::uint64_t tick) {
       flag = tick >= 50;
       return 10'000;
@@ -104,7 +105,8 @@ class ControlThreadTest : public testing::Test {
   MortalPolicy policy_;
   NoOperator operator_;
   std::unique_ptr<TickRing> ring_ = std::make_unique<TickRing>();
-  std::atomic<bool> interrupt_{false}, end_{false};
+  std::atomic<int> interrupt_{0};
+  std::atomic<bool> end_{false};
   ControlLoop loop_{robot_, test_robot(), Mode::kWalk, policy_, clock_};
   ControlThread thread_{robot_, loop_, operator_, *ring_, clock_, interrupt_, end_};
 };

@@ -22,7 +22,7 @@ class LiveOperator final : public OperatorInput {
     ticks_ += facts.ticks;
     mode_.store(facts.mode, std::memory_order_relaxed);
     faults_.store(facts.faults, std::memory_order_relaxed);
-    return {.running = !end_.load(std::memory_order_relaxed) && !facts.interrupted,
+    return {.running = !end_.load(std::memory_order_relaxed) && !(facts.interrupts > 0),
             .counts = facts.mode == Mode::kWalk};
   }
 

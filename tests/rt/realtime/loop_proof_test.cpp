@@ -61,7 +61,7 @@ TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
   unless_stalled([&](std::string& said) {
     RemoteOperator op(1200);
     // Commands all the time, a change of mode, a fault, the end.
-    std::atomic<bool> interrupt{false};
+    std::atomic<int> interrupt{false};
     OperatorRequests asked;
     int ticks = 0;
     bool walked = false, stood = false, faulted = false;
@@ -83,7 +83,7 @@ TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
     const RunResult result = simulate({.config = config,
                                        .policy = &policy,
                                        .plan = {.start_walking = true},
-                                       .interrupt = &interrupt,
+                                       .interrupts = &interrupt,
                                        .tap = at_each_tick,
                                        .live = &op,
                                        .realtime = true,

@@ -162,12 +162,12 @@ TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
 RunResult walk_until(const std::function<bool(const TickRecord&)>& interrupts) {
   Policy policy = load_shipped_policy();
   const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
-  std::atomic<bool> interrupt{false};
+  std::atomic<int> interrupt{false};
   return simulate({.config = config,
                    .policy = &policy,
                    .plan = {.walk_s = 60.0, .start_walking = true},
                    .keep_record = true,
-                   .interrupt = &interrupt,
+                   .interrupts = &interrupt,
                    .tap = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
                    .realtime = true});
 }

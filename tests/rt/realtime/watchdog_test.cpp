@@ -61,5 +61,13 @@ TEST_F(WatchdogTest, AStallOfTheWholeMachineIsNotTheControlThreads) {
   EXPECT_EQ(robot.cuts, 2);  // one a look
 }
 
+TEST_F(WatchdogTest, TheLongestTimeWithoutALookIsKept) {
+  look_until(now_ns + 50 * kMs);
+  EXPECT_EQ(watchdog.longest_gap_ns(), 5 * kMs);
+  now_ns += 3000 * kMs;
+  look_until(now_ns + 50 * kMs);
+  EXPECT_EQ(watchdog.longest_gap_ns(), 3005 * kMs);
+}
+
 }  // namespace
 }  // namespace sandrunner

@@ -46,7 +46,7 @@ class RunScriptTest : public testing::Test {
   const CommandSource source_{"1,0.5,-0.25"};
 };
 
-TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndIsLetDown) {
+TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndLiesDown) {
   RunScript script = walk_from_lying();
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   for (int i = 0; i < 9000; ++i) ASSERT_TRUE(in(script, Mode::kStandUp).running);
@@ -58,7 +58,10 @@ TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndIsLetDown) {
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   EXPECT_FALSE(in(script, Mode::kWalk).counts);  // the stop is no part of the walk
   EXPECT_EQ(ticks_in(script, Mode::kStand), 2 * kSettle_ticks);
-  EXPECT_EQ(asked(script), ModeRequest::kDamp);
+  EXPECT_EQ(asked(script), ModeRequest::kLie);
+  for (int i = 0; i < 6000; ++i) {
+    ASSERT_TRUE(script.advance({.mode = Mode::kStand, .thigh_contact = true}).running);
+  }
   const TickFacts down{.mode = Mode::kDamping, .base_contact = true, .thigh_contact = true};
   std::uint64_t ticks = 1;
   while (script.advance(down).running) ++ticks;
@@ -68,12 +71,12 @@ TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndIsLetDown) {
   EXPECT_DOUBLE_EQ(script.walked_s(), 2.0);
 }
 
-TEST_F(RunScriptTest, WithoutPolicyIsLetDownWhenItHasStood) {
+TEST_F(RunScriptTest, WithoutPolicyLiesDownWhenItHasStood) {
   RunScript script(source_, {}, false);
   arm(script);
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   EXPECT_EQ(ticks_in(script, Mode::kStand), kSettle_ticks);
-  EXPECT_EQ(asked(script), ModeRequest::kDamp);
+  EXPECT_EQ(asked(script), ModeRequest::kLie);
   EXPECT_EQ(ticks_in(script, Mode::kDamping), kDamping_ticks);
   EXPECT_TRUE(script.survived());
 }
@@ -132,7 +135,7 @@ TEST_F(RunScriptTest, SkippedSlotsCountAsTime) {
   in(script, Mode::kStand, 2 * kSettle_ticks - 1);
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   in(script, Mode::kStand);
-  EXPECT_EQ(asked(script), ModeRequest::kDamp);
+  EXPECT_EQ(asked(script), ModeRequest::kLie);
 }
 
 TEST_F(RunScriptTest, TouchingTheGroundAfterTheFirstStepIsAFall) {
@@ -185,7 +188,7 @@ TEST_F(RunScriptTest, FirstReasonStaysWhateverFollows) {
                   .base_contact = true});
   EXPECT_STREQ(script.fall_reason(), "tilt");
   const std::uint64_t id = script.command(0).request_id;
-  script.advance({.mode = Mode::kFault, .thigh_contact = true, .interrupted = true});
+  script.advance({.mode = Mode::kFault, .thigh_contact = true, .interrupts = 1});
   EXPECT_STREQ(script.fall_reason(), "tilt");
   EXPECT_DOUBLE_EQ(script.fall_time_s(), 0.1);
   EXPECT_EQ(script.fall_mode(), Mode::kWalk);  // the one that the fault ended
@@ -201,20 +204,46 @@ TEST_F(RunScriptTest, FaultInTheFirstTickEndsTheModeInWhichTheRunBegan) {
   EXPECT_EQ(script.fall_mode(), Mode::kWalk);
 }
 
-TEST_F(RunScriptTest, InterruptDampsInAnyPhaseAndIsNoFall) {
+TEST_F(RunScriptTest, InterruptLiesDownInAnyPhaseAndIsNoFall) {
   for (const int phase : {0, 1, 2}) {
     RunScript script = walk_from_lying();
     if (phase > 0) stand_up(script);
     if (phase > 1) ticks_in(script, Mode::kWalk);
-    EXPECT_TRUE(script.advance({.mode = Mode::kStand, .interrupted = true}).running);
-    EXPECT_EQ(asked(script), ModeRequest::kDamp);
-    const TickFacts down{.mode = Mode::kDamping, .base_contact = true, .interrupted = true};
+    EXPECT_TRUE(script.advance({.mode = Mode::kStand, .interrupts = 1}).running);
+    EXPECT_EQ(asked(script), ModeRequest::kLie);
+    const TickFacts lowered{.mode = Mode::kStand, .thigh_contact = true, .interrupts = 1};
+    for (int i = 0; i < 6000; ++i) ASSERT_TRUE(script.advance(lowered).running);
+    const TickFacts down{.mode = Mode::kDamping, .base_contact = true, .interrupts = 1};
     std::uint64_t ticks = 1;
     while (script.advance(down).running) ++ticks;
-    EXPECT_EQ(ticks, kDamping_ticks - 1);
+    EXPECT_EQ(ticks, kDamping_ticks);
+    EXPECT_EQ(asked(script), ModeRequest::kLie);
     EXPECT_TRUE(script.survived());
     EXPECT_TRUE(script.interrupted());
   }
+}
+
+TEST_F(RunScriptTest, ASecondInterruptDampsAtOnce) {
+  RunScript script = walk_from_lying();
+  stand_up(script);
+  script.advance({.mode = Mode::kWalk, .interrupts = 1});
+  script.advance({.mode = Mode::kWalk, .interrupts = 2});
+  EXPECT_EQ(asked(script), ModeRequest::kDamp);
+}
+
+TEST_F(RunScriptTest, AFaultAfterAnInterruptDampsForItsTime) {
+  RunScript script = walk_at_once();
+  script.advance({.mode = Mode::kWalk, .interrupts = 1});
+  std::uint64_t ticks = 1;
+  while (script.advance({.mode = Mode::kFault, .faults = 1, .interrupts = 1}).running) ++ticks;
+  EXPECT_EQ(ticks, kDamping_ticks);
+}
+
+TEST_F(RunScriptTest, ARobotThatDoesNotLieDownIsDampedAfterFiveSeconds) {
+  RunScript script = walk_at_once();
+  script.advance({.mode = Mode::kWalk, .interrupts = 1});
+  EXPECT_EQ(ticks_in(script, Mode::kWalk), 5 * kControlHz - 1U);
+  EXPECT_EQ(asked(script), ModeRequest::kDamp);
 }
 
 TEST_F(RunScriptTest, StallThatFaultsIsStillDampedForItsTime) {

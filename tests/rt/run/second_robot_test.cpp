@@ -71,7 +71,7 @@ TEST_F(SecondRobotTest, StandsUpWithItsOwnPoseAndGains) {
     const ProcessConfig c = config(terrain);
     const RunResult result = run_once(c, nullptr, {}, true);
     EXPECT_TRUE(result.survived) << result.fall_reason;
-    const RunSample last = last_in(result.record, Mode::kStand);
+    const RunSample last = last_standing(result.record);
     for (int leg = 0; leg < kNumLegs; ++leg) {
       EXPECT_NEAR(last.base_position_m[2] - last.foot_position_m[leg][2],
                   c.robot.nominal_height_m - 0.022, 0.02);

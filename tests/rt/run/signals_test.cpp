@@ -17,7 +17,7 @@
 namespace sandrunner {
 namespace {
 
-bool comes_true(const std::atomic<bool>& flag) {
+bool comes_true(const std::atomic<int>& flag) {
   for (int n = 0; n < 5000 && !flag; ++n) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -36,9 +36,9 @@ TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
     const auto child = [number] {
       signal(number, SIG_DFL);  // whatever the test's own parent did
       const SignalWatch watch;
-      if (watch.interrupted()) _exit(1);
+      if (watch.interrupts()) _exit(1);
       kill(getpid(), number);
-      if (!comes_true(watch.interrupted())) _exit(2);
+      if (!comes_true(watch.interrupts())) _exit(2);
       kill(getpid(), number);  // the second one does not kill either: it would before this returns
       _exit(0);
     };
@@ -61,7 +61,7 @@ TEST(SignalWatchDeathTest, DoesNotInterruptCallsOfOtherThreads) {
     });
     while (reader_id == 0 || !sleeps(reader_id)) std::this_thread::yield();
     kill(getpid(), SIGINT);
-    const bool flagged = comes_true(watch.interrupted());
+    const bool flagged = comes_true(watch.interrupts());
     if (write(ends[1], "x", 1) != 1) _exit(3);
     reader.join();
     _exit(flagged && undisturbed ? 0 : 1);
@@ -75,7 +75,7 @@ TEST(SignalWatchDeathTest, ClosedPipeIsAnErrorOfTheWrite) {
     int ends[2];
     if (pipe(ends) != 0) _exit(2);
     close(ends[0]);
-    _exit(write(ends[1], "x", 1) == -1 && errno == EPIPE && !watch.interrupted() ? 0 : 1);
+    _exit(write(ends[1], "x", 1) == -1 && errno == EPIPE && !watch.interrupts() ? 0 : 1);
   };
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
 }
@@ -88,7 +88,7 @@ TEST(SignalWatchDeathTest, ATooLargeFileIsAnErrorOfTheWrite) {
     const int file = mkstemp(name);
     unlink(name);
     if (file < 0 || setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(2);
-    _exit(write(file, "x", 1) == -1 && errno == EFBIG && !watch.interrupted() ? 0 : 1);
+    _exit(write(file, "x", 1) == -1 && errno == EFBIG && !watch.interrupts() ? 0 : 1);
   };
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
 }
@@ -136,7 +136,44 @@ TEST(SignalWatchDeathTest, ACrashAfterTheRobotIsGoneCallsItNoMore) {
   EXPECT_EXIT(child(), testing::KilledBySignal(SIGSEGV), "^$");
 }
 
-TEST(SignalWatchDeathTest, WhatWasIgnoredFromTheStartStaysIgnored) {
+TEST(SignalWatchDeathTest, InAScriptsBackgroundInterruptQuitAndTerminateCount) {
+  for (const int number : {SIGINT, SIGQUIT, SIGTERM}) {
+    const auto child = [number] {
+      signal(number, SIG_IGN);  // a shell's &
+      const SignalWatch watch;
+      kill(getpid(), number);
+      _exit(comes_true(watch.interrupts()) ? 0 : 1);
+    };
+    EXPECT_EXIT(child(), testing::ExitedWithCode(0), "") << number;
+  }
+}
+
+TEST(SignalWatchDeathTest, ASecondInterruptCountsButNotTheHangUpsOfOneTerminal) {
+  const auto child = [] {
+    const SignalWatch watch;
+    const auto send = [](int number) {
+      kill(getpid(), number);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    };
+    send(SIGHUP);
+    send(SIGCONT);
+    send(SIGHUP);
+    send(SIGTERM);  // together with them
+    if (watch.interrupts() != 1) _exit(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    send(SIGHUP);
+    if (watch.interrupts() != 1) _exit(2);
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    send(SIGINT);
+    for (int n = 0; n < 5000 && watch.interrupts() != 2; ++n) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    _exit(watch.interrupts() == 2 ? 0 : 3);
+  };
+  EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
+}
+
+TEST(SignalWatchDeathTest, AHangUpThatWasIgnoredFromTheStartStaysIgnored) {
   const auto child = [] {
     signal(SIGHUP, SIG_IGN);  // nohup
     const SignalWatch watch;
@@ -144,7 +181,7 @@ TEST(SignalWatchDeathTest, WhatWasIgnoredFromTheStartStaysIgnored) {
     // What the watch waits for it blocks.
     sigset_t blocked;
     pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
-    _exit(watch.interrupted() || sigismember(&blocked, SIGHUP) != 0 ? 1 : 0);
+    _exit(watch.interrupts() || sigismember(&blocked, SIGHUP) != 0 ? 1 : 0);
   };
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
 }

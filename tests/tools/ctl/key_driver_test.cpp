@@ -90,11 +90,11 @@ TEST(KeyDriverTest, AChangeOfScaleDoesNotReviveAnExpiredKey) {
 }
 
 TEST(KeysFromTest, LeavesSpecialKeysOutAndLowersLetters) {
-  EXPECT_EQ(keys_from("wW "), (std::vector<char>{'w', 'w', ' '}));
-  EXPECT_EQ(keys_from("\x1b[Aw\x1b[1;5Cs\x1bOPd"), (std::vector<char>{'w', 's', 'd'}));
-  EXPECT_EQ(keys_from("\x1b"), (std::vector<char>{kKeyEscape}));
-  EXPECT_EQ(keys_from("\x1b["), std::vector<char>{});
-  EXPECT_EQ(keys_from("\x1b\x1b[A"), (std::vector<char>{kKeyEscape}));
+  EXPECT_EQ(KeyReader().keys("wW "), (std::vector<char>{'w', 'w', ' '}));
+  EXPECT_EQ(KeyReader().keys("\x1b[Aw\x1b[1;5Cs\x1bOPd"), (std::vector<char>{'w', 's', 'd'}));
+  EXPECT_EQ(KeyReader().keys("\x1b"), (std::vector<char>{kKeyEscape}));
+  EXPECT_EQ(KeyReader().keys("\x1b["), std::vector<char>{});
+  EXPECT_EQ(KeyReader().keys("\x1b\x1b[A"), (std::vector<char>{kKeyEscape}));
 }
 
 // Asks every `step_ns` from `from_ns` until before `to_ns`; returns the times at which it sent.
@@ -149,6 +149,19 @@ TEST(CommandPacerTest, SteeringAgainDuringTheZerosGoesOn) {
   sent(pacer, std::nullopt, 60 * kMs, 150 * kMs, kMs);
   EXPECT_EQ(sent(pacer, wanted, 150 * kMs, 250 * kMs, kMs).size(), 2u);
   EXPECT_EQ(sent(pacer, std::nullopt, 250 * kMs, 2000 * kMs, kMs).size(), 5u);
+}
+
+TEST(KeyReaderTest, PastedTextPressesNoKey) {
+  KeyReader reader;
+  EXPECT_EQ(reader.keys("w\x1b[200~rgf \x03\x1b[Arg\x1b[201~x"), (std::vector<char>{'w', 'x'}));
+  EXPECT_EQ(reader.keys("a"), (std::vector<char>{'a'}));
+  // However the reads cut it, but for the first ESC, which is a key.
+  const std::string pasted = "\x1b[200~rgf\x1brgf\x1b[201~";
+  for (std::size_t cut = 2; cut < pasted.size(); ++cut) {
+    EXPECT_EQ(reader.keys(pasted.substr(0, cut)), std::vector<char>{}) << cut;
+    EXPECT_EQ(reader.keys(pasted.substr(cut)), std::vector<char>{}) << cut;
+  }
+  EXPECT_EQ(reader.keys("a"), (std::vector<char>{'a'}));
 }
 
 }  // namespace

@@ -53,23 +53,24 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
   const struct {
     std::vector<const char*> words;
     const char* part;
-  } kCases[] = {{{}, "subcommand"},
-                {{"fly"}, "subcommand"},
-                {{"status", "--domain", "231"}, "--domain: found 231, expected 0 to 230"},
-                {{"status", "--domain", "x"}, "--domain"},
-                {{"status", "--interface", ""}, "--interface"},
-                {{"status", "--cmd-vel", "pose"}, "--cmd-vel: found 'pose'"},
-                {{"cmd", "1", "0"}, "WZ is required"},
-                {{"cmd", "1", "0", "fast"}, "WZ"},
-                {{"cmd", "nan", "0", "0"}, "VX: found nan"},
-                {{"cmd", "0", "1e9", "0"}, "VY: found 1000000000, expected at most 5 m/s"},
-                {{"cmd", "0", "0", "inf"}, "WZ: found inf"},
-                {{"cmd", "1", "0", "0", "--for", "0"}, "--for: found 0"},
-                {{"cmd", "1", "0", "0", "--for", "nan"}, "--for: found nan"},
-                {{"mode", "jump"}, "mode: found 'jump', expected arm, stand, walk, stop, damp"},
-                {{"mode"}, "REQUEST is required"},
-                {{"watch", "rt/nothing"}, "watch: found 'rt/nothing', expected rt/joint_states,"},
-                {{"watch", "rt/odom", "--count", "-1"}, "--count: found -1"}};
+  } kCases[] = {
+      {{}, "subcommand"},
+      {{"fly"}, "subcommand"},
+      {{"status", "--domain", "231"}, "--domain: found 231, expected 0 to 230"},
+      {{"status", "--domain", "x"}, "--domain"},
+      {{"status", "--interface", ""}, "--interface"},
+      {{"status", "--cmd-vel", "pose"}, "--cmd-vel: found 'pose'"},
+      {{"cmd", "1", "0"}, "WZ is required"},
+      {{"cmd", "1", "0", "fast"}, "WZ"},
+      {{"cmd", "nan", "0", "0"}, "VX: found nan"},
+      {{"cmd", "0", "1e9", "0"}, "VY: found 1000000000, expected at most 5 m/s"},
+      {{"cmd", "0", "0", "inf"}, "WZ: found inf"},
+      {{"cmd", "1", "0", "0", "--for", "0"}, "--for: found 0"},
+      {{"cmd", "1", "0", "0", "--for", "nan"}, "--for: found nan"},
+      {{"mode", "jump"}, "mode: found 'jump', expected arm, stand, walk, stop, lie, damp"},
+      {{"mode"}, "REQUEST is required"},
+      {{"watch", "rt/nothing"}, "watch: found 'rt/nothing', expected rt/joint_states,"},
+      {{"watch", "rt/odom", "--count", "-1"}, "--count: found -1"}};
   for (const auto& c : kCases) {
     try {
       parse(c.words);

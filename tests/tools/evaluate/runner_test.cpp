@@ -140,7 +140,7 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     ConfigTree tree;
     sim::add_terrain_layer(tree, ground);
     const ProcessConfig config = read_process_config(tree, &policy.spec());
-    const std::atomic<bool> interrupt{false};
+    const std::atomic<int> interrupt{false};
     const CommandSource command("1.5,0,0");
     sim::Simulator simulator(config.robot, config.simulator);
     const RunResult process = run_in_lockstep({.robot = simulator,
@@ -151,7 +151,7 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
                                                .scene = scene_of(config, policy.spec().name),
                                                .progress = {},
                                                .tap = {},
-                                               .interrupt = interrupt});
+                                               .interrupts = interrupt});
     ASSERT_TRUE(process.survived);
     const sandrunner::RunFigures& p = process.figures;
     const MotionFigures& motion = p.motion.value();

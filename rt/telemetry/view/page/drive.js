@@ -8,7 +8,7 @@ const kEvery_ms = 50, kZeros = 3, kDeadZone = 0.1;
 const kFull = { vx: 1, vy: 0.5, wz: 1 };
 const kKeys = { w: ['vx', 1], s: ['vx', -1], a: ['vy', 1], d: ['vy', -1], q: ['wz', 1], e: ['wz', -1] };
 const kRequestKeys = { ' ': 'stop', r: 'arm', g: 'stand', f: 'walk', x: 'damp' };
-const kRequests = ['arm', 'stand', 'walk', 'stop', 'damp', 'reset_fault'];
+const kRequests = ['arm', 'stand', 'walk', 'stop', 'lie', 'damp', 'disarm', 'reset_fault'];
 const element = (id) => document.getElementById(id);
 const beyondDeadZone = (way) => Math.sign(way) * Math.max(Math.abs(way) - kDeadZone, 0) / (1 - kDeadZone);
 

@@ -106,7 +106,7 @@ export class Live {
     if (run.live || run.frames.count < 2) return;
     run.live = this;
     if (!tellsTruth(run.frames)) {
-      run.hello.note = 'This robot does not tell what really is: all that is shown is measured or estimated.';
+      run.hello.note = `${run.hello.note} This robot does not tell what really is: all that is shown is measured or estimated.`.trim();
     }
     this.begin(this.run);
   }

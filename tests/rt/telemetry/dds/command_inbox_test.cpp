@@ -185,7 +185,7 @@ TEST(CommandInboxTest, RepliesSayWhyARequestIsRefused) {
   refused("walk", "the robot does not stand, stand comes first");
   refused("stand", "the drives are off, arm comes first");
   refused("reset_fault", "no fault is latched");
-  refused("dance", "unknown, expected arm, stand, walk, stop, damp or reset_fault");
+  refused("dance", "unknown, expected arm, stand, walk, stop, lie, damp, disarm or reset_fault");
   // Stop makes no robot stand up.
   EXPECT_TRUE(asker.ask("stop").accepted);
   ASSERT_TRUE(setup.robot.go_on());
@@ -205,7 +205,7 @@ TEST(CommandInboxTest, RepliesSayWhyARequestIsRefused) {
 }
 
 TEST(CommandInboxTest, WithoutAPolicyNobodyWalks) {
-  LiveSetup setup(test_config(), false);
+  LiveSetup setup(test_config(), "no policy to walk with");
   Peer peer(setup.config);
   Asker asker(peer);
   EXPECT_TRUE(asker.ask("arm").accepted);
@@ -220,7 +220,7 @@ TEST(CommandInboxTest, ARequestToAControllerThatDoesNotRunIsRefusedAndNotDoneLat
        {std::pair("arm", ModeRequest::kNone), {"damp", ModeRequest::kDamp}}) {
     DdsParticipant participant(config);
     RemoteOperator op(config.stale_ticks());
-    OperatorDesk desk(op, config.stale_s, true);
+    OperatorDesk desk(op, config.stale_s, nullptr);
     CommandInbox inbox(participant, config, "example@here", desk);
     Peer peer(config);
     EXPECT_STREQ(Asker(peer).ask(request).reason, "the controller does not answer");
@@ -233,7 +233,7 @@ TEST(CommandInboxTest, ADampThatWaitsForTheControllerIsNotReplacedByAWalk) {
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
   RemoteOperator op(config.stale_ticks());
-  OperatorDesk desk(op, config.stale_s, true);
+  OperatorDesk desk(op, config.stale_s, nullptr);
   CommandInbox inbox(participant, config, "example@here", desk);
   Peer peer(config);
   Asker asker(peer);

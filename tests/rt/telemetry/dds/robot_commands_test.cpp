@@ -45,7 +45,7 @@ class RobotCommandsTest : public testing::Test {
             &policy_.spec())),
         participant_(config_.dds),
         op_(config_.dds.stale_ticks()),
-        desk_(op_, config_.dds.stale_s, true),
+        desk_(op_, config_.dds.stale_s, nullptr),
         inbox_(participant_, config_.dds, "raibo@here", desk_),
         telemetry_(participant_, config_.dds, config_.robot.description, &desk_),
         peer_(config_.dds) {}

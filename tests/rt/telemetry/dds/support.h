@@ -198,11 +198,11 @@ class LiveRobot {
 
 /// The robot's whole side of the commands.
 struct LiveSetup {
-  explicit LiveSetup(const DdsConfig& config_in = test_config(), bool can_walk = true)
+  explicit LiveSetup(const DdsConfig& config_in = test_config(), const char* no_walk = nullptr)
       : config(config_in),
         participant(config),
         op(config.stale_ticks()),
-        desk(op, config.stale_s, can_walk, std::chrono::seconds(5)),
+        desk(op, config.stale_s, no_walk, std::chrono::seconds(5)),
         inbox(participant, config, "example@here", desk),
         robot(op, config) {}
 

@@ -74,7 +74,7 @@ struct HandTest : testing::Test {
                  if (recorder) recorder->note(tick, kind, text);
                });
              },
-         .interrupt = interrupt});
+         .interrupts = interrupt});
   }
 
   /// Mean depth of the feet that touch the ground, m, from one tick to another.
@@ -102,7 +102,7 @@ struct HandTest : testing::Test {
   std::optional<ViewServer> server{std::in_place, 0,
                                    ViewServer::Parts{.feed = feed, .hand = &*hand}};
   std::optional<WebPage> page;
-  std::atomic<bool> interrupt{false};
+  std::atomic<int> interrupt{false};
   std::unique_ptr<Recorder> recorder;
   std::vector<TickRecord> ticks;
   std::vector<std::string> notes;
@@ -170,7 +170,7 @@ TEST_F(HandTest, APushIsHalfAMetrePerSecondBetweenTwoTicksAndTheNextTickKnowsOfI
 }
 
 TEST_F(HandTest, ARobotThatHasFallenWithAFaultStandsAgainByTheWaysOfTheModeMachine) {
-  OperatorDesk desk(remote, 60.0, true);
+  OperatorDesk desk(remote, 60.0, nullptr);
   bool fallen = false;
   std::vector<Mode> modes;
   simulator.reset_lying();

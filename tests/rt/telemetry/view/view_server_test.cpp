@@ -38,7 +38,7 @@ struct ViewServerTest : testing::Test {
     return R"({"say":"hello","key":")" + with_key + "\"}";
   }
 
-  std::atomic<bool> interrupt{false};
+  std::atomic<int> interrupt{false};
   ViewFeed feed{{}, example_robot()};
   ViewPace pace{interrupt};
   ViewServer server{0, {.feed = feed, .pace = &pace}};
@@ -188,7 +188,7 @@ TEST_F(ViewServerTest, ARunWithoutADeskTakesNoCommands) {
 
 TEST_F(ViewServerTest, APageIsOneOfTheOperators) {
   RemoteOperator op(1200);
-  OperatorDesk desk(op, 60.0, true);
+  OperatorDesk desk(op, 60.0, nullptr);
   const ViewServer driven(0, {.feed = feed, .desk = &desk});
   const std::string url = driven.url();
   const int its_port = std::stoi(url.substr(url.find(':', 6) + 1));
@@ -230,7 +230,7 @@ TEST_F(ViewServerTest, APortThatIsTakenIsSaidInOneLine) {
 }
 
 TEST(ViewPaceTest, APauseHoldsTheTicksAndStepsLetSoManyPass) {
-  std::atomic<bool> interrupt{false};
+  std::atomic<int> interrupt{false};
   ViewPace pace(interrupt);
   pace.pause(true);
   std::atomic<int> ticks{0};
