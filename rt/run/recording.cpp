@@ -59,12 +59,9 @@ std::string black_box_lines(const BlackBoxResult& r) {
                          kBlackBoxFiles);
   }
   if (r.dropped > 0) {
-    lines +=
-        fmt::format("black box: {} ticks LOST{}\n", r.dropped,
-                    r.behind_lost ? fmt::format("; the run is verified up to the first of them "
-                                                "only, before tick {}",
-                                                *r.behind_lost)
-                                  : "");
+    lines += fmt::format(
+        "black box: {} ticks LOST{}\n", r.dropped,
+        r.lost_from ? fmt::format("; from tick {} on the run is not verified", *r.lost_from) : "");
   }
   if (r.difference) {
     lines += fmt::format("black box: the run DIFFERS from its replay at tick {}: {}\n",

@@ -207,8 +207,8 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
   if (player->observer && drawn > 0) write_plots(*player, arguments.plot_dir);
   const bool cut = !contents.complete && contents.damage.empty();
   if (cut) fmt::print("the recording was cut: it is read up to its last chunk\n");
-  if (contents.lost > 0) {
-    fmt::print("{} ticks were lost while recording: NOT COMPARED\n", contents.lost);
+  if (contents.lost > 0) {  // which of them were skipped slots stood in the lost ones
+    fmt::print("up to {} ticks were lost while recording: NOT COMPARED\n", contents.lost);
   }
   if (!player->replay) {
     throw InputError(fmt::format(

@@ -38,9 +38,9 @@ struct BlackBoxResult {
   std::vector<BlackBoxFile> files;
   std::uint64_t left_out = 0;  ///< faults without a file, beyond kBlackBoxFiles
   std::uint64_t dropped = 0;   ///< ticks that came faster than they could be compressed
-  /// The first tick behind lost ones; empty: none was lost before another. What is behind it is not
+  /// The first tick that was lost before others; empty: none was. What is behind it is not
   /// verified, and files that begin later have no start.
-  std::optional<std::uint64_t> behind_lost;
+  std::optional<std::uint64_t> lost_from;
   /// The first tick at which the run did not do what follows from its inputs. Files that begin
   /// later have no start.
   std::optional<ReplayDifference> difference;
