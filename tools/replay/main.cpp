@@ -205,10 +205,14 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
   const RecordingContents contents = read_recording(arguments.file, visitor);
 
   if (player->observer && drawn > 0) write_plots(*player, arguments.plot_dir);
-  const bool cut = !contents.complete && contents.damage.empty();
-  if (cut) fmt::print("the recording was cut: it is read up to its last chunk\n");
-  if (contents.lost > 0) {  // which of them were skipped slots stood in the lost ones
-    fmt::print("up to {} ticks were lost while recording: NOT COMPARED\n", contents.lost);
+  std::string lacks = contents.damage;
+  if (lacks.empty() && !contents.complete) {
+    lacks =
+        fmt::format("{}: the recording was cut, it is read up to its last chunk", arguments.file);
+  } else if (lacks.empty() && contents.lost > 0) {
+    // Which of them were slots that the loop skipped stood in the lost ones.
+    lacks = fmt::format("{}: up to {} ticks were lost while recording, they are not compared",
+                        arguments.file, contents.lost);
   }
   if (!player->replay) {
     throw InputError(fmt::format(
@@ -226,7 +230,7 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
                contents.ticks == 0 ? "no ticks"
                                    : fmt::format("none to compare in this range, it ends at {}",
                                                  seconds(last_tick)));
-    if (contents.damage.empty()) return kExitRobotFailed;
+    if (lacks.empty()) return kExitRobotFailed;
   } else {
     fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared,
                player->replay->policy_steps());
@@ -235,8 +239,8 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     fmt::print("{} ticks behind lost ones have no state to start from: NOT COMPARED\n",
                not_compared);
   }
-  if (!contents.damage.empty()) throw InputError(contents.damage);
-  return cut || contents.lost > 0 ? kExitBadInput : kExitOk;
+  if (!lacks.empty()) throw InputError(lacks);
+  return kExitOk;
 }
 
 int run(int argc, char** argv) {
