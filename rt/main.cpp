@@ -59,9 +59,15 @@ void show_progress(const RunSample& s) {
 
 std::string recording_line(const RecordingResult& r, const std::string& dir) {
   if (r.ticks == 0 && r.stopped_because.empty()) return "recorded nothing: no tick ran\n";
+  if (r.removed) return fmt::format("NOT RECORDED: {}/run.mcap was removed during the run\n", dir);
+  const std::string lost =
+      r.dropped > 0 ? fmt::format(
+                          "; {} ticks LOST, a replay compares nothing behind the first of "
+                          "them",
+                          r.dropped)
+                    : "";
   return fmt::format("recorded {} ticks, {:.1f} MB, in {}/run.mcap{}{}\n", r.ticks,
-                     1e-6 * static_cast<double>(r.bytes), dir,
-                     r.dropped > 0 ? fmt::format("; {} LOST", r.dropped) : "",
+                     1e-6 * static_cast<double>(r.bytes), dir, lost,
                      r.stopped_because.empty() ? "" : "; STOPPED: " + r.stopped_because);
 }
 
@@ -341,6 +347,10 @@ int run(int argc, char** argv) {
     }
   } catch (const InputError&) {
     not_written = std::current_exception();
+  }
+  if (recorded.removed && !not_written) {
+    not_written = std::make_exception_ptr(InputError(
+        fmt::format("--record: {}/run.mcap was removed during the run", options->record_dir)));
   }
   if (recorded.failed && !not_written) {
     not_written = std::make_exception_ptr(

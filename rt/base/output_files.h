@@ -13,8 +13,9 @@ void prepare_folder(const std::string& folder, const std::string& option);
 
 /// A file that gets its name when it is whole. What it holds is written beside it, in
 /// `path`.part, and flushed to the disk before the file is renamed. If it is not kept, the part is
-/// removed, and a file that had the name before is as it was. Throws InputError with the path and
-/// the system's reason if the file cannot be made, written or renamed.
+/// removed, and a file that had the name before is as it was. Links of either name are replaced,
+/// not followed. Throws InputError with the path and the system's reason if the file cannot be
+/// made, written or renamed.
 class WholeFile {
  public:
   /// Makes the part: a place that cannot be written is found here, before the work.

@@ -81,8 +81,7 @@ std::optional<ReplayDifference> Replay::check(const TickRecord& recorded) {
   const std::uint64_t tick = recorded.input.sensors.tick;
   const std::uint64_t expected = next_tick_ + recorded.skipped;
   if (tick != expected) {
-    return ReplayDifference{
-        tick, fmt::format("recording has a gap: expected tick {}, found {}", expected, tick)};
+    return ReplayDifference{tick, fmt::format("tick: recorded {}, expected {}", tick, expected)};
   }
   next_tick_ = tick + 1;
   if (auto difference = check_policy(recorded)) return difference;
@@ -92,8 +91,11 @@ std::optional<ReplayDifference> Replay::check(const TickRecord& recorded) {
   if (output_.release_policy != 0 && policy_) released_.push_back(output_.policy_input);
   TickRecord computed = recorded;
   computed.output = output_;
+  computed.counters = controller_.state().gate.counters;
+  static_assert(offsetof(TickRecord, counters) ==
+                offsetof(TickRecord, output) + sizeof(ControllerOutput));
   return first_difference(recorded, computed, offsetof(TickRecord, output),
-                          sizeof(ControllerOutput));
+                          sizeof(ControllerOutput) + sizeof(GateCounters));
 }
 
 ReplayState Replay::state() const noexcept {

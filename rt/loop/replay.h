@@ -20,6 +20,13 @@ struct ReplayDifference {
   std::string what;  ///< field, recorded and computed value
 };
 
+/// Ticks that are missing before `recorded` in a recording that should go on with `next_tick`.
+/// Slots that the loop skipped are not missing.
+inline std::uint64_t missing_before(const TickRecord& recorded, std::uint64_t next_tick) noexcept {
+  const std::uint64_t tick = recorded.input.sensors.tick, expected = next_tick + recorded.skipped;
+  return tick > expected ? tick - expected : 0;
+}
+
 /// All that a replay carries over from tick to tick: with it, a recording that begins in the middle
 /// of a run replays like a whole one. All members are free of padding.
 struct ReplayState {
@@ -53,9 +60,10 @@ class Replay {
   /// `policy` may be null, as in the run.
   Replay(const ControllerConfig& config, Mode start, Policy* policy);
 
-  /// One recorded tick, in order. Returns the first difference; nothing if all agrees. Records that
-  /// are missing before it (ticks dropped from the recording) make the rest incomparable: that is
-  /// reported as a difference too. Slots that the loop skipped are no gap.
+  /// One recorded tick, in order: policy output, controller output and gate counters are compared.
+  /// Returns the first difference; nothing if all agrees. Behind missing ticks (missing_before())
+  /// nothing can be compared until a state is restored: that is for the caller to detect, and a
+  /// record with a wrong tick is a difference here.
   std::optional<ReplayDifference> check(const TickRecord& recorded);
 
   /// Before the next tick. After a difference it is not that of the recorded run any more.
@@ -65,6 +73,7 @@ class Replay {
   /// What the step functions gave for the tick checked last.
   const ControllerOutput& output() const noexcept { return output_; }
   std::uint64_t ticks() const noexcept { return ticks_; }
+  std::uint64_t next_tick() const noexcept { return next_tick_; }
   std::uint64_t policy_steps() const noexcept { return policy_steps_; }
 
  private:

@@ -65,8 +65,14 @@ CommandVerdict OperatorDesk::drive(const Twist& twist, std::uint64_t publisher,
 
 RequestOutcome OperatorDesk::request(std::string_view name, const OperatorId& who,
                                      const Objection& objection) {
-  const std::lock_guard lock(mutex_);
-  const std::string refusal = is_request(name) ? follow(name, who, objection)
+  Lock turn(one_by_one_, std::defer_lock);
+  std::string objected;
+  if (!calms(name)) {
+    turn.lock();
+    if (objection) objected = objection();
+  }
+  Lock lock(mutex_);
+  const std::string refusal = is_request(name) ? follow(name, who, objected, lock)
                                                : fmt::format("unknown, expected {}", kRequestNames);
   ++(refusal.empty() ? counts_.requests_accepted : counts_.requests_refused);
   RequestOutcome outcome{refusal.empty(), refusal};
@@ -87,19 +93,17 @@ std::string OperatorDesk::last_request() const {
 }
 
 std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
-                                 const Objection& objection) {
-  // A stop or damp waits for a controller that does not answer; until the controller has taken it,
-  // nothing but a damp replaces it.
-  const bool waiting = calming_number_ > operator_.considered();
-  if (waiting && name != "damp") return kNoAnswer;
+                                 const std::string& objected, Lock& lock) {
+  // Until the controller has taken a stop or damp, nothing but a damp replaces it.
+  while (calming_number_ > operator_.considered() && name != "damp") {
+    if (!wait_for(calming_number_, calming_deadline_, lock)) return kNoAnswer;
+  }
   const RequestDecision decision = decide(name, operator_.mode(), no_walk_);
   if (decision.refusal) return decision.refusal;
   if (!decision.calms && gate_.held(clock_ns(CLOCK_MONOTONIC)) && who != holder_) {
     return "another operator drives the robot";
   }
-  if (!decision.calms && objection) {
-    if (std::string why = objection(); !why.empty()) return why;
-  }
+  if (!decision.calms && !objected.empty()) return objected;
   if (decision.calms) {
     asked_.velocity = {};
     ++asked_.velocity_number;
@@ -107,24 +111,36 @@ std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
   if (decision.request != ModeRequest::kNone) {
     asked_.request = decision.request;
     ++asked_.request_number;
-    if (decision.calms) calming_number_ = asked_.request_number;
   }
   operator_.ask(asked_);
-  const auto deadline = std::chrono::steady_clock::now() + answer_;
-  while (operator_.considered() != asked_.request_number) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      // An operator who was refused must not see the robot move later; a stop or damp still holds.
-      if (!decision.calms) {
-        asked_.request = ModeRequest::kNone;
-        ++asked_.request_number;
-        operator_.ask(asked_);
-      }
-      return kNoAnswer;
-    }
-    std::this_thread::sleep_for(kLookEvery);
+  const std::uint64_t number = asked_.request_number;
+  const Time deadline = std::chrono::steady_clock::now() + answer_;
+  if (decision.calms) {
+    calming_number_ = number;
+    calming_deadline_ = deadline;
   }
+  if (!wait_for(number, deadline, lock)) {
+    // An operator who was refused must not see the robot move later; a stop or damp still holds,
+    // and so does one that came meanwhile.
+    if (!decision.calms && asked_.request_number == number) {
+      asked_.request = ModeRequest::kNone;
+      ++asked_.request_number;
+      operator_.ask(asked_);
+    }
+    return kNoAnswer;
+  }
+  if (!decision.calms && asked_.request_number != number) return "a stop or damp came after it";
   const char* const failed = failure(decision.request, operator_.mode());
   return failed ? failed : "";
+}
+
+bool OperatorDesk::wait_for(std::uint64_t number, Time deadline, Lock& lock) const {
+  lock.unlock();
+  while (operator_.considered() < number && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  lock.lock();
+  return operator_.considered() >= number;
 }
 
 }  // namespace sandrunner

@@ -34,7 +34,8 @@ struct CommandCounts {
 /// Where all that operators ask for comes together, by whatever way, in front of the control
 /// thread. One of them holds the velocity command; while somebody does, requests are accepted from
 /// that operator alone, but for stop and damp, which anybody may ask for. For ordinary threads, any
-/// number of them.
+/// number of them. While one waits for the controller's answer, stop and damp, velocities and the
+/// counts do not wait behind it.
 class OperatorDesk {
  public:
   /// Why nothing that may move the robot is to be accepted by this way now; empty: nothing.
@@ -63,17 +64,26 @@ class OperatorDesk {
   std::string last_request() const;
 
  private:
-  // Why not; empty: done.
-  std::string follow(std::string_view name, const OperatorId& who, const Objection& objection);
+  using Lock = std::unique_lock<std::mutex>;
+  using Time = std::chrono::steady_clock::time_point;
+
+  // Why not; empty: done. `lock` is of `mutex_`, and given up while it waits. `objected`: the
+  // objection's.
+  std::string follow(std::string_view name, const OperatorId& who, const std::string& objected,
+                     Lock& lock);
+  // Waits until the controller has considered the request of this number; false: in vain.
+  bool wait_for(std::uint64_t number, Time deadline, Lock& lock) const;
 
   RemoteOperator& operator_;
   const char* const no_walk_;
   const std::chrono::milliseconds answer_;
-  mutable std::mutex mutex_;  // of all that follows
+  std::mutex one_by_one_;     // of requests that do not end the motion, until they are answered
+  mutable std::mutex mutex_;  // of all that follows; locked behind the other, and never for long
   CommandGate gate_;
   OperatorId holder_{};  // of the velocity that was accepted last
   OperatorRequests asked_;
   std::uint64_t calming_number_ = 0;  // of the latest stop or damp
+  Time calming_deadline_{};           // when it should have been considered
   CommandCounts counts_;
   std::string last_request_;
 };

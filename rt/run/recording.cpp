@@ -58,7 +58,11 @@ std::string black_box_lines(const BlackBoxResult& r) {
     lines += fmt::format("black box: {} more faults have no file, a run has {}\n", r.left_out,
                          kBlackBoxFiles);
   }
-  if (r.dropped > 0) lines += fmt::format("black box: {} ticks LOST\n", r.dropped);
+  if (r.dropped > 0) {
+    lines += fmt::format(
+        "black box: {} ticks LOST{}\n", r.dropped,
+        r.lost_from ? fmt::format("; from tick {} on the run is not verified", *r.lost_from) : "");
+  }
   if (r.difference) {
     lines += fmt::format("black box: the run DIFFERS from its replay at tick {}: {}\n",
                          r.difference->tick, r.difference->what);

@@ -80,7 +80,8 @@ for program in "$bin"/*; do
 done
 for program in "${programs[@]}"; do
   cp "$program" "$guest/usr/bin/"
-  { ldd "$program" 2>/dev/null || true; } | grep -o '/[^ ]*' | while read -r library; do
+  # A static program has none.
+  { ldd "$program" 2>/dev/null | grep -o '/[^ ]*' || true; } | while read -r library; do
     mkdir -p "$guest${library%/*}"
     cp -L "$library" "$guest$library"
   done

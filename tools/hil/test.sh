@@ -9,7 +9,7 @@
 #   cost      what a control tick costs with twelve drives on four buses in torque mode; its system calls
 #   check     `sandrunner check --move`, each joint turned by a hand: one has the wrong sign, two are swapped
 #   record    a recording made over CAN, replayed here
-#   parallel  two processors in the host's time: functional, nothing of time is judged
+#   parallel  two processors in the host's time: what needs no walk, which an emulated machine is too slow for
 #   full      all of these
 # Files are left in build/hil.
 set -euo pipefail
@@ -94,8 +94,7 @@ record)
 parallel)
   machine=(--parallel)
   guest parallel 600 "can_test --gtest_brief=1 --gtest_filter='CanSocket*' &&
-    imu_test --gtest_brief=1 && sandrunner-hil runs --only swapped-ids,wrong-scale $faults &&
-    { sandrunner-hil runs --only walks-moteus --walk 2 --out /out || echo 'not judged: this machine is too slow'; }"
+    imu_test --gtest_brief=1 && sandrunner-hil runs --only swapped-ids,wrong-scale $faults"
   ;;
 full)
   for each in short walk faults cost check record parallel; do

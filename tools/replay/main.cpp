@@ -50,8 +50,8 @@ std::optional<Arguments> parse(int argc, char** argv) {
   CLI::App app(
       "Replays a recording: computes every control and policy step again from the recorded inputs "
       "and compares the outputs bit by bit. Exit code 0: all agree; 1: the first difference is "
-      "printed, or there was nothing to compare; 2: the recording is damaged (what is whole is "
-      "compared all the same).",
+      "printed, or there was nothing to compare; 2: the recording is damaged, cut or lacks ticks "
+      "(what can be compared is compared all the same).",
       "sandrunner-replay");
   app.add_option("FILE", a.file, "recording (run.mcap, black-box-TICK.mcap)")->required();
   app.add_option("--from", a.from_s, "first second that is compared and drawn")->type_name("S");
@@ -124,7 +124,7 @@ struct Player {
   ProcessConfig config;
   std::optional<Policy> policy;
   std::optional<Replay> replay;           ///< nothing: the recording has no state to start from
-  bool in_step = true;                    ///< false: behind damage, until the next state
+  bool in_step = true;                    ///< false: behind lost ticks, until the next state
   std::unique_ptr<RunObserver> observer;  ///< these two: with --plot
   std::optional<ViewPage> page;
   std::optional<ViewFeed> feed;  ///< with --view
@@ -187,10 +187,10 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     // A picture wants the rest too.
     return (!difference && player->replay) || player->observer || player->feed;
   };
-  visitor.lost = [&](std::uint64_t first, std::optional<std::uint64_t> last) {
+  visitor.lost = [&](std::uint64_t first, std::optional<std::uint64_t> last, bool by_damage) {
     player->in_step = false;
-    fmt::print("LOST by damage: tick {} ({}) to {}\n", first, seconds(first),
-               last ? fmt::format("{} ({})", *last, seconds(*last)) : "the end");
+    fmt::print("LOST {}: tick {} ({}) to {}\n", by_damage ? "by damage" : "while recording", first,
+               seconds(first), last ? fmt::format("{} ({})", *last, seconds(*last)) : "the end");
   };
   visitor.state = [&](const ReplayState& state) {
     if (player->in_step || !player->replay) return;
@@ -205,8 +205,14 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
   const RecordingContents contents = read_recording(arguments.file, visitor);
 
   if (player->observer && drawn > 0) write_plots(*player, arguments.plot_dir);
-  if (!contents.complete && contents.damage.empty()) {
-    fmt::print("the recording was cut: it is read up to its last chunk\n");
+  std::string lacks = contents.damage;
+  if (lacks.empty() && !contents.complete) {
+    lacks =
+        fmt::format("{}: the recording was cut, it is read up to its last chunk", arguments.file);
+  } else if (lacks.empty() && contents.lost > 0) {
+    // Which of them were slots that the loop skipped stood in the lost ones.
+    lacks = fmt::format("{}: up to {} ticks were lost while recording, they are not compared",
+                        arguments.file, contents.lost);
   }
   if (!player->replay) {
     throw InputError(fmt::format(
@@ -224,16 +230,16 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
                contents.ticks == 0 ? "no ticks"
                                    : fmt::format("none to compare in this range, it ends at {}",
                                                  seconds(last_tick)));
-    if (contents.damage.empty()) return kExitRobotFailed;
+    if (lacks.empty()) return kExitRobotFailed;
   } else {
     fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared,
                player->replay->policy_steps());
   }
   if (not_compared > 0) {
-    fmt::print("{} ticks behind the damage have no state to start from: NOT COMPARED\n",
+    fmt::print("{} ticks behind lost ones have no state to start from: NOT COMPARED\n",
                not_compared);
   }
-  if (!contents.damage.empty()) throw InputError(contents.damage);
+  if (!lacks.empty()) throw InputError(lacks);
   return kExitOk;
 }
 

@@ -19,7 +19,15 @@
 namespace sandrunner {
 namespace {
 
-constexpr int kRequestDepth = 32;
+constexpr int kReplyDepth = 32;
+// Of all senders together, and the most that one look takes: one that floods the topic must not
+// push out the others' requests before the thread gets to them.
+constexpr int kRequestDepth = 1024;
+constexpr int kMostFollowed = 100;  // of one sender's requests in this time
+constexpr auto kFloodTime = std::chrono::milliseconds(100);
+// A message that was lost comes again sooner than that. What is stamped earlier and comes later is
+// of a clock that was set back.
+constexpr auto kLateTime = std::chrono::seconds(1);
 constexpr std::size_t kMostCalmed = 64;
 // Enough for all that publishers send before the thread gets to it: if only the newest were kept, a
 // publisher that sends right after the holder of the command would silence it and take over.
@@ -56,8 +64,7 @@ CommandInbox::CommandInbox(const DdsParticipant& participant, const DdsConfig& c
           kVelocityDepth, false)),
       requests_(participant.reader("sandrunner/mode_request", sandrunner_ModeRequest_desc,
                                    kRequestDepth, true)),
-      replies_(
-          participant.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, kRequestDepth)),
+      replies_(participant.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, kReplyDepth)),
       texts_(participant.reader("rt/sandrunner/request", std_msgs_msg_dds__String__desc,
                                 kRequestDepth, false)),
       wake_(check_dds(dds_create_guardcondition(participant.entity()), "guard condition")),
@@ -85,29 +92,48 @@ CommandInbox::~CommandInbox() {
 }
 
 void CommandInbox::run() {
+  bool more = false;  // what was left untaken does not trigger again
   while (!end_) {
     dds_attach_t triggered[3];
-    dds_waitset_wait(waitset_, triggered, 3, DDS_INFINITY);
-    take_requests();  // first, because a stop may be among them
-    take_velocity();
+    if (!more) dds_waitset_wait(waitset_, triggered, 3, DDS_INFINITY);
+    more = take_requests();  // first, because a stop may be among them
+    more = take_velocity() || more;
   }
 }
 
-void CommandInbox::take_velocity() {
+bool CommandInbox::take_velocity() {
   // One look at the network for all that has arrived.
   const OperatorDesk::Objection seen = [why_not = objection()] { return why_not; };
-  take(cmd_vel_, [&](const void* message, const dds_sample_info_t& info) {
+  const auto use = [&](const void* message, const dds_sample_info_t& info) {
     const Twist twist = twist_from(
         stamped_ ? static_cast<const geometry_msgs_msg_dds__TwistStamped_*>(message)->twist
                  : *static_cast<const geometry_msgs_msg_dds__Twist_*>(message));
     desk_.drive(twist, info.publication_handle,
                 operator_of(participant_of(cmd_vel_, info.publication_handle)), seen);
-  });
+  };
+  return take(cmd_vel_, use, kVelocityDepth) == kVelocityDepth;
 }
 
-void CommandInbox::take_requests() {
-  take(requests_, [this](const void* message, const dds_sample_info_t& info) {
+// Whether a request is to be followed, or is one too many.
+bool CommandInbox::is_due(std::string_view request, dds_instance_handle_t writer) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - asked_since_ > kFloodTime) {
+    followed_.clear();
+    asked_since_ = now;
+  }
+  int& followed = followed_[writer];
+  // The same stop again, or one after a damp, would change nothing.
+  const bool calming = calms(request) && request != calming_ && calming_ != "damp";
+  if (followed >= kMostFollowed && !calming) return false;
+  ++followed;
+  calming_ = calms(request) ? request : "";
+  return true;
+}
+
+bool CommandInbox::take_requests() {
+  const auto follow = [this](const void* message, const dds_sample_info_t& info) {
     const auto& request = *static_cast<const sandrunner_ModeRequest*>(message);
+    if (!is_due(request.request, info.publication_handle)) return;
     const RequestOutcome outcome = answer(request.request, requests_, info);
     sandrunner_ModeReply reply{};
     reply.id = request.id;
@@ -116,27 +142,33 @@ void CommandInbox::take_requests() {
     copy_text(reply.robot, robot_);
     copy_text(reply.reason, outcome.accepted ? "" : outcome.text);
     dds_write(replies_, &reply);
-  });
-  take(texts_, [this](const void* message, const dds_sample_info_t& info) {
+  };
+  const auto follow_text = [this](const void* message, const dds_sample_info_t& info) {
     const auto& text = *static_cast<const std_msgs_msg_dds__String_*>(message);
-    answer(text.data, texts_, info);
-  });
+    if (is_due(text.data, info.publication_handle)) answer(text.data, texts_, info);
+  };
+  bool more = take(requests_, follow, kRequestDepth) == kRequestDepth;
+  more = take(texts_, follow_text, kRequestDepth) == kRequestDepth || more;
   services_.answer(
       [this](std::string_view request, const dds_guid_t& asker) { return answer(request, asker); });
+  return more;
 }
 
 RequestOutcome CommandInbox::answer(std::string_view request, const dds_guid_t& asker) {
+  calming_.clear();
   return desk_.request(request, operator_of(asker), [this] { return objection(); });
 }
 
 RequestOutcome CommandInbox::answer(std::string_view request, dds_entity_t reader,
                                     const dds_sample_info_t& info) {
   const OperatorId asker = operator_of(participant_of(reader, info.publication_handle));
+  const auto now = std::chrono::steady_clock::now();
   const auto calmed = calmed_.find(asker);
-  const bool late = calmed != calmed_.end() && info.source_timestamp < calmed->second;
+  const bool late = calmed != calmed_.end() && info.source_timestamp < calmed->second.stamp &&
+                    now - calmed->second.arrival < kLateTime;
   if (!late && calms(request)) {
     if (calmed_.size() >= kMostCalmed) calmed_.clear();
-    calmed_[asker] = info.source_timestamp;
+    calmed_[asker] = {info.source_timestamp, now};
   }
   return desk_.request(request, asker, [&] {
     return late ? "was asked for before the latest stop or damp, and came after it" : objection();

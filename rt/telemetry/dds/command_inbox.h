@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <string>
 #include <string_view>
@@ -20,8 +21,9 @@ namespace sandrunner {
 /// sandrunner/mode_reply, as calls of ROS 2's services, or as a std_msgs/String on
 /// rt/sandrunner/request, which is not answered; the desk decides about them all. While another
 /// robot would obey as well, stop and damp are all that is accepted. A message that was lost is
-/// sent again, and what it asks for is refused if its sender has meanwhile asked for a stop or
-/// damp.
+/// sent again, and what it asks for is refused if its sender has asked for a stop or damp within
+/// the last second. Of a flood of requests from one sender, most are ignored without an answer, but
+/// never a stop or damp, so that velocities and other operators are served all the same.
 class CommandInbox {
  public:
   /// `participant` and `desk` must outlive the inbox. `robot`: who answers. Throws InputError.
@@ -32,9 +34,16 @@ class CommandInbox {
   CommandInbox& operator=(const CommandInbox&) = delete;
 
  private:
+  struct Calmed {
+    dds_time_t stamp = 0;  // of the sender's clock, which may be set back at any time
+    std::chrono::steady_clock::time_point arrival;
+  };
+
   void run();
-  void take_velocity();
-  void take_requests();
+  // These return whether there may be more to take.
+  bool take_velocity();
+  bool take_requests();
+  bool is_due(std::string_view request, dds_instance_handle_t writer);
   RequestOutcome answer(std::string_view request, const dds_guid_t& asker);
   RequestOutcome answer(std::string_view request, dds_entity_t reader,
                         const dds_sample_info_t& info);
@@ -46,7 +55,10 @@ class CommandInbox {
   dds_entity_t cmd_vel_, requests_, replies_, texts_, wake_, waitset_;
   TriggerServices services_;
   NeighbourWatch neighbours_;
-  std::map<OperatorId, dds_time_t> calmed_;  // the latest stop or damp of each, by its own clock
+  std::map<dds_instance_handle_t, int> followed_;  // requests of each writer, since `asked_since_`
+  std::chrono::steady_clock::time_point asked_since_{};
+  std::string calming_;                  // the latest request that was followed, if stop or damp
+  std::map<OperatorId, Calmed> calmed_;  // the latest stop or damp of each
   std::atomic<bool> end_{false};
   std::thread thread_;
 };

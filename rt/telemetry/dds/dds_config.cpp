@@ -84,15 +84,16 @@ DdsConfig read_dds_config(ConfigTree& config) {
 std::string cyclone_xml(const DdsConfig& config, const std::string& identity) {
   const bool loopback = config.interface == "lo";
   // Unicast peers only find a participant that has an index of its own, and tools soon use up the
-  // default of ten. The second peer is the port on which DDS stacks listen that expect multicast.
+  // default of ten. Above 119, the ports would be those of the next domain. The second peer is the
+  // port on which DDS stacks listen that expect multicast.
   const std::string network =
       loopback
           ? fmt::format(
                 R"(<General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
  <AllowMulticast>false</AllowMulticast></General>
- <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>20</MaxAutoParticipantIndex>
+ <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>
  <Peers><Peer Address="127.0.0.1"/><Peer Address="127.0.0.1:{}"/></Peers></Discovery>)",
-                7400 + 250 * config.domain)
+                kMostParticipants - 1, 7400 + 250 * config.domain)
           : fmt::format(
                 R"(<General><Interfaces><NetworkInterface name="{}"/></Interfaces></General>)",
                 escaped(config.interface));

@@ -8,6 +8,10 @@
 
 namespace sandrunner {
 
+/// Participants that a domain can have on one computer: DDS gives each two UDP ports, from
+/// 7410 + 250 * domain on. tools/ros2_localhost.sh and .xml say the same to ROS 2.
+inline constexpr int kMostParticipants = 120;
+
 /// Table [dds].
 struct DdsConfig {
   bool enabled = false;

@@ -122,6 +122,14 @@ DdsParticipant::DdsParticipant(const DdsConfig& config, const std::string& ident
   const dds_entity_t result = domain_ < 0 ? domain_ : participant_;
   if (result < 0) {
     if (domain_ >= 0) dds_delete(domain_);
+    if (reason.find("free participant index") != std::string::npos) {
+      throw InputError(fmt::format(
+          "DDS: {}: found {} participants or more on this computer, expected a free place: end "
+          "some "
+          "of them (ROS 2 nodes: `ros2 daemon stop`, fewer processes), or choose another domain: "
+          "dds.domain",
+          where, kMostParticipants));
+    }
     check_dds(result, reason.empty() ? where : fmt::format("{} ({})", where, reason));
   }
 }

@@ -44,12 +44,14 @@ void put(Bytes& to, std::string_view text) {
   put_bytes(to, text.data(), text.size());
 }
 
-/// Opens `path` for writing and creates it if necessary. Throws InputError.
+/// Opens `path` for writing and creates it if necessary; does not follow a symbolic link. Throws
+/// InputError.
 int open_file(const std::string& path, int flags) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0644);
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | flags, 0644);
   if (fd < 0) {
-    throw InputError(one_line(fmt::format("{}: cannot be written ({}), expected a path for an MCAP",
-                                          path, std::strerror(errno))));
+    throw InputError(
+        one_line(fmt::format("{}: cannot be written ({}), expected a path for an MCAP", path,
+                             errno == ELOOP ? "it is a symbolic link" : std::strerror(errno))));
   }
   return fd;
 }

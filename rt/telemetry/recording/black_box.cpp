@@ -105,9 +105,13 @@ void BlackBox::note_faults(const TickQueue::Batch& batch) {
 
 // Returns the state before these ticks.
 std::string BlackBox::replay(const TickQueue::Batch& batch) {
-  if (result_.difference) return {};  // no replay gets past it
+  if (result_.difference || result_.lost_from) return {};  // no replay gets past them
   std::string state = replay_state_bytes(replay_.state());
   for (const TickRecord& tick : batch) {
+    if (missing_before(tick, replay_.next_tick()) > 0) {
+      result_.lost_from = replay_.next_tick();
+      return &tick == &batch.front() ? std::string() : state;
+    }
     result_.difference = replay_.check(tick);
     if (result_.difference) break;
   }

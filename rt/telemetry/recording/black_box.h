@@ -38,8 +38,11 @@ struct BlackBoxResult {
   std::vector<BlackBoxFile> files;
   std::uint64_t left_out = 0;  ///< faults without a file, beyond kBlackBoxFiles
   std::uint64_t dropped = 0;   ///< ticks that came faster than they could be compressed
-  /// The first tick that does not replay: ticks are missing before it, or the run did not do what
-  /// follows from its inputs. Files that begin later have no start.
+  /// The first tick that was lost before others; empty: none was. What is behind it is not
+  /// verified, and files that begin later have no start.
+  std::optional<std::uint64_t> lost_from;
+  /// The first tick at which the run did not do what follows from its inputs. Files that begin
+  /// later have no start.
   std::optional<ReplayDifference> difference;
   std::string stopped_because;  ///< why the black box ended before the run; empty: it did not
   std::size_t peak_bytes = 0;   ///< of the compressed ticks
@@ -100,7 +103,7 @@ class BlackBox {
   TickQueue queue_;
   // Only its thread uses what follows.
   std::optional<Policy> policy_;
-  Replay replay_;  // behind the newest tick, or at the difference
+  Replay replay_;  // behind the newest tick, or at the difference or lost ticks
   std::deque<std::shared_ptr<const Block>> window_;
   std::size_t bytes_ = 0;
   std::deque<Mark> marks_;  // faults whose files are due

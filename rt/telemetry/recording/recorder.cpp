@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/telemetry/recording/recorder.h"
 
+#include <unistd.h>
+
 #include <utility>
 
 #include "rt/core/floating_point.h"
@@ -38,6 +40,7 @@ RecordingResult Recorder::close() {
     thread_.join();
     result_.dropped = queue_.dropped();
     if (writer_) result_.bytes = writer_->bytes_written();
+    result_.removed = writer_ && ::access(path_.c_str(), F_OK) != 0;
   }
   return result_;
 }
@@ -64,6 +67,7 @@ void Recorder::write(const TickQueue::Batch& batch) {
   if (replay_ && writer_->bytes_written() != bytes_at_state_) write_state();
   write_notes();
   writer_->write(batch);
+  // Behind lost ticks it differs too: no state is known there.
   for (const TickRecord& tick : batch) {
     if (replay_ && replay_->check(tick)) replay_.reset();
   }

@@ -28,6 +28,7 @@ struct RecordingResult {
   std::uint64_t bytes = 0;
   std::string stopped_because;  ///< a limit or a full disk; empty: the recording is complete
   bool failed = false;          ///< it was the disk or a lack of memory, not a limit
+  bool removed = false;         ///< somebody removed or renamed the file during the run
 };
 
 /// Writes every tick of a run into a file (recording_writer.h) in a thread of its own.

@@ -90,7 +90,7 @@ class RecordingReader {
     }
     if (!begun_) begin();
     contents_.complete = !wanted_ || reader_.complete();
-    if (lost_ && wanted_ && visitor_.lost) visitor_.lost(next_tick_, std::nullopt);
+    if (lost_ && wanted_ && visitor_.lost) visitor_.lost(next_tick_, std::nullopt, true);
     return std::move(contents_);
   }
 
@@ -159,17 +159,32 @@ class RecordingReader {
     for (std::uint32_t i = 0; i < count && wanted_; ++i) {
       TickRecord record;
       std::memcpy(&record, bytes.data() + i * sizeof record, sizeof record);
-      const std::uint64_t tick = record.input.sensors.tick;
-      // Not every damage costs ticks.
-      if (std::exchange(lost_, false) && tick > next_tick_ && visitor_.lost) {
-        visitor_.lost(next_tick_, tick - 1);
-      }
+      check_place(record);
       if (state_ && visitor_.state) visitor_.state(*state_);
       state_.reset();
-      next_tick_ = tick + 1;
+      next_tick_ = record.input.sensors.tick + 1;
       ++contents_.ticks;
       wanted_ = !visitor_.tick || visitor_.tick(record);
     }
+  }
+
+  /// Reports the ticks that are missing before this one.
+  void check_place(const TickRecord& record) {
+    const std::uint64_t tick = record.input.sensors.tick;
+    const bool by_damage = std::exchange(lost_, false);  // not every damage costs ticks
+    if (by_damage) {
+      if (tick > next_tick_ && visitor_.lost) visitor_.lost(next_tick_, tick - 1, true);
+      return;
+    }
+    const std::uint64_t missing = missing_before(record, next_tick_);
+    // A loop that was held up may skip slots before its first tick.
+    if (contents_.ticks == 0 && tick != next_tick_ && tick != next_tick_ + record.skipped) {
+      fail(path_, fmt::format("metadata '{}': first_tick is {}, but the first tick is {}",
+                              kRunMetadata, next_tick_, tick));
+    }
+    if (missing == 0) return;
+    contents_.lost += missing;
+    if (visitor_.lost) visitor_.lost(next_tick_, next_tick_ + missing - 1, false);
   }
 
   void take_state(CdrReader& cdr) {

@@ -43,7 +43,20 @@ const char* request_name(ModeRequest request) {
   return "none";
 }
 
-McapMap qos() { return {{"offered_qos_profiles", ""}}; }
+// The QoS with which `ros2 bag play` offers a topic, as rosbag2 writes it: a list of one profile,
+// values of the enumerations as numbers, which every release from Humble on reads (later ones write
+// names). 1, 1, 1: keep last, reliable, transient local. Empty: rosbag2's default, which is
+// volatile: a subscriber that comes late, or asks for transient local as RViz and tf2 do, gets
+// nothing.
+constexpr const char* kLatched =
+    "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"
+    "  deadline:\n    sec: 9223372036\n    nsec: 854775807\n"
+    "  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n"
+    "  liveliness: 1\n"
+    "  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n"
+    "  avoid_ros_namespace_conventions: false";
+
+McapMap qos(const char* profiles = "") { return {{"offered_qos_profiles", profiles}}; }
 
 }  // namespace
 
@@ -79,9 +92,9 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
   channels_.ticks = own(kTicksTopic, "sandrunner::TickRecordBatch", tick_idl());
   channels_.states = own(kStatesTopic, "sandrunner::ReplayState", kStateIdl);
   channels_.events = own(kEventsTopic, "sandrunner::Event", kEventIdl);
-  const auto ros = [&](const RosTopic& topic) {
+  const auto ros = [&](const RosTopic& topic, const char* profiles = "") {
     return file_.add_channel(file_.add_schema(topic.schema, "ros2msg", topic.text), topic.topic,
-                             "cdr", qos());
+                             "cdr", qos(profiles));
   };
   channels_.joint_states = ros(joint_state_topic());
   channels_.imu = ros(imu_topic());
@@ -91,7 +104,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
   // What ROS 2 gives to whoever comes later; here it comes first.
   const std::uint64_t begin_ns = time_ns(info.first_tick);
   const auto once = [&](const RosTopic& topic, const CdrWriter& content) {
-    file_.write_message({.channel_id = ros(topic),
+    file_.write_message({.channel_id = ros(topic, kLatched),
                          .sequence = 1,
                          .log_time_ns = begin_ns,
                          .publish_time_ns = begin_ns,

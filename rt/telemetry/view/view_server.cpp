@@ -66,6 +66,7 @@ nlohmann::ordered_json ground_of(const GroundNow& ground) {
 }
 
 class Page;
+class Visitor;
 
 // What all connections share; used by the server's thread alone.
 struct Hub {
@@ -74,6 +75,7 @@ struct Hub {
   int sockets = 0;
   std::uint64_t pages_so_far = 0;
   std::vector<Page*> pages;
+  std::vector<Visitor*> visitors;  // in the order in which they came
 
   std::string state() const {
     const ViewPace::Status pace = parts.pace ? parts.pace->status() : ViewPace::Status();
@@ -276,14 +278,26 @@ class Page : public std::enable_shared_from_this<Page> {
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
   Visitor(Hub& hub, Tcp::socket socket)
-      : hub_(hub), place_(hub), stream_(std::move(socket)), parser_(std::in_place) {}
+      : hub_(hub), place_(hub), stream_(std::move(socket)), parser_(std::in_place) {
+    hub_.visitors.push_back(this);
+  }
+  ~Visitor() { std::erase(hub_.visitors, this); }
+  Visitor(const Visitor&) = delete;
+  Visitor& operator=(const Visitor&) = delete;
+
+  // Gives its place to somebody else.
+  void leave() {
+    std::erase(hub_.visitors, this);
+    place_.reset();
+    stream_.close();
+  }
 
   void begin() {
     parser_->header_limit(kViewHeaderBytes);
     stream_.expires_after(kViewHeaderTime);
     http::async_read_header(stream_, buffer_, *parser_,
                             [self = shared_from_this()](Error error, auto) {
-                              if (!error) self->answer();
+                              if (!error && self->place_) self->answer();
                             });
   }
 
@@ -298,7 +312,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
                                        .websocket = websocket::is_upgrade(request)});
     if (verdict.status == 101 && hub_.pages.size() < kViewPages) {
       stream_.expires_never();
-      std::make_shared<Page>(hub_, std::move(stream_), std::move(place_))->begin(request);
+      std::make_shared<Page>(hub_, std::move(stream_), std::move(*place_))->begin(request);
       return;
     }
     response_.version(11);
@@ -323,7 +337,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
   }
 
   Hub& hub_;
-  Place place_;
+  std::optional<Place> place_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kViewHeaderBytes + 1024};
   std::optional<http::request_parser<http::empty_body>> parser_;
@@ -335,7 +349,11 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
 class ViewServer::Implementation {
  public:
   Implementation(int port, const Parts& parts)
-      : hub_{.parts = parts, .key = make_view_key(), .run = make_view_key(), .pages = {}},
+      : hub_{.parts = parts,
+             .key = make_view_key(),
+             .run = make_view_key(),
+             .pages = {},
+             .visitors = {}},
         io_(1),
         timer_(io_) {
     listen(asio::ip::address_v4::loopback(), port);
@@ -381,6 +399,8 @@ class ViewServer::Implementation {
         refused_.push_back(&acceptor);
         return;
       }
+      // A browser's request is there at once: whoever has kept the server waiting longest goes.
+      if (hub_.sockets >= kViewSockets && !hub_.visitors.empty()) hub_.visitors.front()->leave();
       if (hub_.sockets < kViewSockets) {
         Error ignored;
         socket.set_option(Tcp::no_delay(true), ignored);

@@ -42,6 +42,14 @@ TEST(WriteFileTest, PathAndReasonAreNamedAndNothingIsLeft) {
   EXPECT_EQ(folder.number_of_files(), 0u);
 }
 
+TEST(WriteFileTest, PartThatAKilledProgramLeftIsReplaced) {
+  const TemporaryFolder folder;
+  write_file(folder.path("file.part"), "left over, and longer");
+  write_file(folder.path("file"), "new");
+  EXPECT_EQ(read_file(folder.path("file")), "new");
+  EXPECT_EQ(folder.number_of_files(), 1u);
+}
+
 TEST(WriteFileTest, OldContentSurvivesADiskThatIsFull) {
   const TemporaryFolder folder;
   const std::string path = folder.path("file");
@@ -57,6 +65,18 @@ TEST(WriteFileTest, OldContentSurvivesADiskThatIsFull) {
   EXPECT_EQ(error, path + ": cannot be written (File too large)");
   EXPECT_EQ(read_file(path), "old");
   EXPECT_EQ(folder.number_of_files(), 1u);
+}
+
+TEST(WholeFileTest, LinksAreReplacedAndNotFollowed) {
+  const TemporaryFolder folder;
+  const std::string victim = folder.path("victim"), path = folder.path("file");
+  write_file(victim, "precious");
+  std::filesystem::create_symlink(victim, path + ".part");
+  std::filesystem::create_symlink(victim, path);
+  write_file(path, "new");
+  EXPECT_EQ(read_file(victim), "precious");
+  EXPECT_EQ(read_file(path), "new");
+  EXPECT_EQ(folder.number_of_files(), 2u);
 }
 
 TEST(WholeFileTest, WhatIsNotKeptIsGone) {

@@ -129,12 +129,31 @@ TEST_F(ReplayTest, ContinuesFromTheStateOfAnotherReplay) {
   }
 }
 
-TEST_F(ReplayTest, MissingTickIsNamed) {
-  std::vector<TickRecord> cut(ticks().begin(), ticks().begin() + 1000);
-  cut.erase(cut.begin() + 500);
-  const auto difference = replay(cut, noisy_config(), Mode::kPassive);
+TEST_F(ReplayTest, GateCounterIsComparedAndNamed) {
+  std::vector<TickRecord> spoilt(ticks().begin(), ticks().begin() + 1000);
+  spoilt[100].counters.torque_clamped += 7;
+  const auto difference = replay(spoilt, noisy_config(), Mode::kPassive);
   ASSERT_TRUE(difference);
-  EXPECT_EQ(difference->tick, 501u);
+  EXPECT_EQ(difference->tick, 100u);
+  EXPECT_EQ(difference->what, "ticks_torque_clamped: recorded 7, computed 0");
+}
+
+TEST_F(ReplayTest, MissingTicksAreCountedAndSkippedSlotsAreNot) {
+  TickRecord record;
+  record.input.sensors.tick = 500;
+  EXPECT_EQ(missing_before(record, 500), 0u);
+  EXPECT_EQ(missing_before(record, 460), 40u);
+  record.skipped = 40;
+  EXPECT_EQ(missing_before(record, 460), 0u);
+  EXPECT_EQ(missing_before(record, 459), 1u);
+}
+
+TEST_F(ReplayTest, RepeatedTickIsADifference) {
+  std::vector<TickRecord> twice(ticks().begin(), ticks().begin() + 1000);
+  twice[500] = twice[499];
+  const auto difference = replay(twice, noisy_config(), Mode::kPassive);
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(difference->what, "tick: recorded 499, expected 500");
 }
 
 }  // namespace

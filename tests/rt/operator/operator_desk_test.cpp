@@ -138,5 +138,29 @@ TEST_F(OperatorDeskTest, OperatorsInManyThreadsLeaveOneHolder) {
   EXPECT_EQ(desk.counts().accepted, 1000u);
 }
 
+// The controller is this thread, which does not say for long that it has considered anything.
+TEST(OperatorDeskOfASlowControllerTest, StopAndDampAndTheCountsDoNotWaitBehindAnotherRequest) {
+  RemoteOperator op{1'000'000'000'000};
+  OperatorDesk desk{op, 60.0, true, std::chrono::seconds(20)};
+  std::uint64_t tick = 0;
+  const auto comes = [&](ModeRequest request) {
+    return wait_until([&] { return op.command(tick++).request == request; });
+  };
+  op.command(tick++);
+  RequestOutcome armed, damped;
+  std::thread first([&] { armed = desk.request("arm", kPage); });
+  EXPECT_TRUE(comes(ModeRequest::kArm));
+  EXPECT_EQ(desk.drive(forward(0.0), 2, kPeer), CommandVerdict::kAccepted);
+  EXPECT_EQ(desk.counts().accepted, 1u);
+  EXPECT_EQ(desk.last_request(), "");
+  std::thread second([&] { damped = desk.request("damp", kPeer); });
+  EXPECT_TRUE(comes(ModeRequest::kDamp));
+  op.advance({.mode = Mode::kPassive});
+  first.join();
+  second.join();
+  EXPECT_EQ(armed.text, "a stop or damp came after it");
+  EXPECT_EQ(damped.text, "mode passive");
+}
+
 }  // namespace
 }  // namespace sandrunner

@@ -35,6 +35,12 @@ struct Walking : LiveSetup {
   dds_entity_t twist;
 };
 
+sandrunner_ModeRequest request_of(const std::string& name) {
+  sandrunner_ModeRequest request{};
+  name.copy(request.request, sizeof request.request - 1);
+  return request;
+}
+
 TEST(CommandInboxTest, NothingMovesUntilItIsAskedFor) {
   LiveSetup setup;
   Peer peer(setup.config);
@@ -132,17 +138,55 @@ TEST(CommandInboxTest, OneThatSendsRightAfterTheHolderDoesNotSilenceIt) {
 TEST(CommandInboxTest, WhatWasLostOnTheWayDoesNotOvertakeTheStopAfterIt) {
   Walking setup;
   const dds_time_t before = dds_time();
-  EXPECT_TRUE(setup.asker.ask("stop").accepted);
-  ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
   const auto again = setup.first.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc);
-  sandrunner_ModeRequest walk{};
-  std::string("walk").copy(walk.request, sizeof walk.request - 1);
+  const sandrunner_ModeRequest walk = request_of("walk");
+  EXPECT_TRUE(setup.asker.ask("stop").accepted);
   dds_write_ts(again, &walk, before);  // as it comes when it is sent once more
   ASSERT_TRUE(wait_until([&] { return setup.desk.counts().requests_refused == 1; }));
   EXPECT_NE(setup.desk.last_request().find("before the latest stop"), std::string::npos);
-  EXPECT_EQ(setup.robot.mode(), Mode::kStand);
+  ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
   dds_write_ts(again, &walk, dds_time());
   EXPECT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kWalk; }));
+}
+
+TEST(CommandInboxTest, OperatorWhoseClockIsSetBackAfterAStopIsObeyedAgainSoon) {
+  Walking setup;
+  const auto ahead = setup.first.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc);
+  const sandrunner_ModeRequest stop = request_of("stop");
+  const auto before = std::chrono::steady_clock::now();
+  dds_write_ts(ahead, &stop, dds_time() + DDS_SECS(60));
+  ASSERT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
+  EXPECT_TRUE(wait_until([&] { return setup.asker.ask("walk").accepted; }));
+  EXPECT_GE(std::chrono::steady_clock::now() - before, std::chrono::seconds(1));
+}
+
+TEST(CommandInboxTest, FloodOfRequestsFromOnePeerLeavesTheOthersAnsweredAndVelocitiesRead) {
+  Walking setup;
+  const auto many = setup.first.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc);
+  std::atomic<bool> end{false};
+  std::thread flood([&] {
+    const sandrunner_ModeRequest arm = request_of("arm");  // refused: the drives are on
+    while (!end) dds_write(many, &arm);
+  });
+  Asker other(setup.second);
+  for (const char* request : {"walk", "walk", "walk", "walk", "walk"}) {
+    EXPECT_TRUE(other.ask(request).accepted);
+  }
+  const std::uint64_t before = setup.desk.counts().accepted;
+  for (int i = 0; i < 20; ++i) drive(setup.twist, 0.5);
+  EXPECT_TRUE(wait_until([&] { return setup.desk.counts().accepted == before + 20; }));
+  EXPECT_TRUE(other.ask("damp").accepted);
+  end = true;
+  flood.join();
+}
+
+TEST(CommandInboxTest, StopBehindAFloodOfRequestsOfItsOwnSenderIsFollowed) {
+  Walking setup;
+  const auto many = setup.first.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc);
+  const sandrunner_ModeRequest walk = request_of("walk"), stop = request_of("stop");
+  for (int i = 0; i < 500; ++i) dds_write(many, &walk);
+  dds_write(many, &stop);
+  EXPECT_TRUE(wait_until([&] { return setup.robot.mode() == Mode::kStand; }));
 }
 
 TEST(CommandInboxTest, StopAndDampAreTakenFromOneThatDoesNotHoldTheCommand) {

@@ -6,6 +6,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/telemetry/dds/participant.h"
+#include "tests/rt/telemetry/dds/support.h"
 
 namespace sandrunner {
 namespace {
@@ -59,6 +60,25 @@ TEST(DdsConfigTest, AnInterfaceThatDoesNotExistIsNamedInOneLine) {
     EXPECT_THAT(e.what(), testing::Not(testing::HasSubstr("\n")));
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // and the library prints nothing
+}
+
+TEST(DdsConfigTest, RobotStartsBesideAHundredParticipants) {
+  const DdsConfig config = test_config();
+  const TakenPorts others(config.domain, 100);
+  EXPECT_NO_THROW(DdsParticipant participant(config));
+}
+
+TEST(DdsConfigTest, DomainWithoutAFreePlaceIsNamedWithTheWayOut) {
+  const DdsConfig config = test_config();
+  const TakenPorts others(config.domain, kMostParticipants);
+  try {
+    DdsParticipant participant(config);
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr(" on interface lo: found 120 participants"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("dds.domain"));
+    EXPECT_THAT(e.what(), testing::Not(testing::HasSubstr("\n")));
+  }
 }
 
 }  // namespace

@@ -101,7 +101,9 @@ TEST(FastDdsTest, ACallInTheBytesOfRmwCycloneddsIsAnsweredAndTheNodeIsListed) {
 }
 
 TEST(FastDdsTest, RmwFastrtpsUnderRos2LocalhostFindsTheRobotThroughItsDefaultInterface) {
-  LiveSetup setup;
+  const DdsConfig config = test_config();
+  const TakenPorts others(config.domain, 40);  // the robot has an index behind them
+  LiveSetup setup(config);
   Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
   // By now the robot has announced itself twice, and does so again in 8 s only.
   sleep_s(0.3);

@@ -2,6 +2,8 @@
 // A peer in the same process, and a robot that follows the commands.
 #pragma once
 
+#include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -45,6 +47,30 @@ inline DdsConfig test_config() {
   }
   return config;
 }
+
+/// The ports of a domain's first `count` participants, taken: as if there were so many already.
+class TakenPorts {
+ public:
+  TakenPorts(int domain, int count) {
+    for (int port = 7410 + 250 * domain; port < 7410 + 250 * domain + 2 * count; ++port) {
+      sockets_.push_back(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+      sockaddr_in address{};
+      address.sin_family = AF_INET;
+      address.sin_port = htons(static_cast<std::uint16_t>(port));
+      const int bound =
+          bind(sockets_.back(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+      EXPECT_EQ(bound, 0) << port;
+    }
+  }
+  ~TakenPorts() {
+    for (const int socket : sockets_) close(socket);
+  }
+  TakenPorts(const TakenPorts&) = delete;
+  TakenPorts& operator=(const TakenPorts&) = delete;
+
+ private:
+  std::vector<int> sockets_;
+};
 
 inline void sleep_s(double duration_s) {
   std::this_thread::sleep_for(std::chrono::duration<double>(duration_s));

@@ -37,6 +37,7 @@ TEST(TwoProcessesTest, RmwCycloneddsUnderRos2LocalhostFindsTheRobotThroughItsDef
   for (const std::string& added : {std::string(), index}) {  // Humble; since Iron
     SCOPED_TRACE(added);
     const DdsConfig config = test_config();
+    const TakenPorts others(config.domain, 40);  // more than the default of either
     DdsParticipant participant(config);
     Telemetry telemetry(participant, config, example_robot(), nullptr);
     sleep_s(0.3);  // the robot has announced itself twice, and does so again in 8 s only
@@ -46,6 +47,17 @@ TEST(TwoProcessesTest, RmwCycloneddsUnderRos2LocalhostFindsTheRobotThroughItsDef
                            "'\"$CYCLONEDDS_URI\" stock 4"});
     publish_for(telemetry, 0, 4.0);
     EXPECT_GE(number_after(peer.wait().out, "odom"), 100.0);
+  }
+}
+
+TEST(TwoProcessesTest, Ros2LocalhostFindsItsProfileFromBashAndZshInAnyFolder) {
+  for (const std::string shell : {"bash", "zsh"}) {
+    if (run_shell("command -v " + shell).code != 0) continue;
+    const Ended ended = run_shell("cd / && " + shell +
+                                  " -c 'source " SANDRUNNER_ROS2_LOCALHOST
+                                  " && head -c 5 \"$FASTDDS_DEFAULT_PROFILES_FILE\"'");
+    EXPECT_EQ(ended.code, 0) << shell << ": " << ended.err;
+    EXPECT_EQ(ended.out, "<?xml") << shell;
   }
 }
 

@@ -243,8 +243,8 @@ TEST_F(BlackBoxTest, TicksLostBeforeTheWindowLeaveAFileThatCannotBeReplayed) {
   open(dir());
   walk_to(24000, {20000});
   const BlackBoxResult result = box_->close();
-  ASSERT_TRUE(result.difference);
-  EXPECT_EQ(result.difference->tick, 5040u);
+  EXPECT_FALSE(result.difference) << result.difference->what;
+  EXPECT_EQ(result.lost_from, 5000u);
   ASSERT_EQ(result.files.size(), 1u);
   EXPECT_FALSE(result.files[0].has_start);
   std::uint64_t last = 0;
@@ -259,13 +259,51 @@ TEST_F(BlackBoxTest, TicksLostBeforeTheWindowLeaveAFileThatCannotBeReplayed) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
 }
 
-TEST_F(BlackBoxTest, TicksLostWithinTheWindowAreNamed) {
+TEST_F(BlackBoxTest, TicksLostWithinTheWindowAreReportedAsLostAndNotAsADifference) {
   lost_ = {18000, 18040};
   open(dir());
   walk_to(24000, {20000});
-  EXPECT_TRUE(box_->close().files.at(0).has_start);
-  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 1);
-  expect_one_line("recording has a gap: expected tick 18000, found 18040");
+  const BlackBoxResult result = box_->close();
+  EXPECT_FALSE(result.difference) << result.difference->what;
+  EXPECT_EQ(result.lost_from, 18000u);
+  EXPECT_TRUE(result.files.at(0).has_start);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 2);
+  std::uint64_t first = 0;
+  read_ticks(path(20000), [&](const TickRecord& tick) {
+    first = tick.input.sensors.tick;
+    return false;
+  });
+  EXPECT_EQ(output(), "LOST while recording: tick 18000 (4.50000 s) to 18039 (4.50975 s)\n" +
+                          std::to_string(18000 - first) + " ticks and " +
+                          std::to_string((18000 - first) / kTicksPerPolicyStep) +
+                          " policy steps compared: every bit agrees\n"
+                          "5960 ticks behind lost ones have no state to start from: NOT COMPARED\n"
+                          "sandrunner-replay: " +
+                          path(20000) +
+                          ": up to 40 ticks were lost while recording, they are not compared\n");
+}
+
+TEST_F(BlackBoxTest, BatchesLostOnTheWayLeaveNoStateBehindThem) {
+  lost_ = {8000, 12000};  // blocks as they are dropped when the queue is full
+  open(dir());
+  walk_to(28000, {20000});
+  const BlackBoxResult result = box_->close();
+  EXPECT_FALSE(result.difference) << result.difference->what;
+  EXPECT_EQ(result.lost_from, 8000u);
+  EXPECT_FALSE(result.files.at(0).has_start);
+  EXPECT_EQ(read_ticks(path(20000)).info.first_tick, 12000u);
+}
+
+TEST_F(BlackBoxTest, FirstTickThatTheFileDoesNotBeginWithIsRefused) {
+  open(dir());
+  walk_to(24000, {20000});
+  box_->close();
+  for (const std::uint64_t wrong : {std::uint64_t{0}, std::uint64_t{40}, ~std::uint64_t{0}}) {
+    rewrite(path(20000), folder_.path("wrong.mcap"),
+            [&](RecordingInfo& info) { info.first_tick = wrong; }, {});
+    EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("wrong.mcap")), 2) << output();
+    expect_one_line("first_tick is " + std::to_string(wrong) + ", but the first tick is ");
+  }
 }
 
 TEST_F(BlackBoxTest, FileThatCannotBeWrittenIsReportedAndTheBlackBoxGoesOn) {

@@ -110,7 +110,7 @@ class RecordingProgramTest : public testing::Test {
       const std::uint64_t lost = std::stoull(spans[0][2]) - std::stoull(spans[0][1]) + 1;
       EXPECT_GT(lost, 40u);
       EXPECT_LT(lost, 2200u);  // half a second, the most that a chunk holds
-      const auto left_out = matches_in(text, "([0-9]+) ticks behind the damage");
+      const auto left_out = matches_in(text, "([0-9]+) ticks behind lost ones");
       const std::uint64_t not_compared = left_out.empty() ? 0 : std::stoull(left_out[0][1]);
       EXPECT_LE(not_compared, next) << text;
       EXPECT_NE(text.find(std::to_string(ticks - lost - not_compared) + " ticks and "),

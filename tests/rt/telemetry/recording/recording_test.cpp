@@ -15,6 +15,7 @@
 #include "tests/support/small_robot.h"
 #include "tests/support/text_match.h"
 #include "tests/support/unless_stalled.h"
+#include "tests/support/wait_until.h"
 
 namespace sandrunner {
 namespace {
@@ -230,6 +231,36 @@ TEST_F(RecordingTest, CutRecordingReadsUpToItsLastWholeChunk) {
   EXPECT_FALSE(contents.complete);
   EXPECT_GT(ticks, 100u);
   EXPECT_LT(ticks, 2000u);
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("cut.mcap")), 2);
+  EXPECT_EQ(output(), std::to_string(ticks) + " ticks and " +
+                          std::to_string(ticks / kTicksPerPolicyStep) +
+                          " policy steps compared: every bit agrees\nsandrunner-replay: " +
+                          folder_.path("cut.mcap") +
+                          ": the recording was cut, it is read up to its last chunk\n");
+}
+
+// ROS 2's player offers a topic as its channel says. RViz and tf2 ask for transient local here.
+TEST_F(RecordingTest, TopicsThatComeOnceAreOfferedTransientLocal) {
+  record();
+  McapReader reader(path());
+  while (reader.next()) {
+  }
+  int latched = 0;
+  for (const auto& [id, channel] : reader.channels()) {
+    const std::string profiles = channel.metadata.at("offered_qos_profiles");
+    if (channel.topic != "/tf_static" && channel.topic != "/robot_description") {
+      EXPECT_EQ(profiles, "") << channel.topic;
+      continue;
+    }
+    ++latched;
+    EXPECT_EQ(profiles.find("- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"), 0u);
+    for (const char* key :
+         {"deadline:\n    sec: ", "lifespan:\n    sec: ", "liveliness: 1\n",
+          "liveliness_lease_duration:\n    sec: ", "avoid_ros_namespace_conventions: false"}) {
+      EXPECT_NE(profiles.find(std::string("\n  ") + key), std::string::npos) << key;
+    }
+  }
+  EXPECT_EQ(latched, 2);
 }
 
 TEST_F(RecordingTest, DamagedChunkCostsItsOwnSpanOnly) {
@@ -266,10 +297,9 @@ TEST_F(RecordingTest, NothingComparedIsNoSuccess) {
             "s\n");
   const std::string bytes = read_file(path());
   write_file(path(), bytes.substr(0, chunks_of(bytes)[0].first + 100));
-  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --plot '" + folder_.path("plots") + "'"), 1);
-  EXPECT_EQ(output(),
-            "the recording was cut: it is read up to its last chunk\n"
-            "NOTHING COMPARED: the recording has no ticks\n");
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --plot '" + folder_.path("plots") + "'"), 2);
+  EXPECT_EQ(output(), "NOTHING COMPARED: the recording has no ticks\nsandrunner-replay: " + path() +
+                          ": the recording was cut, it is read up to its last chunk\n");
   EXPECT_FALSE(std::filesystem::exists(folder_.path("plots")));
 }
 
@@ -298,6 +328,31 @@ TEST_F(RecordingTest, RunThatIsRefusedLeavesTheRecordingOfTheRunBefore) {
   // Nor does one that ends before its first tick.
   Recorder(path(), {}, {}, true).close();
   EXPECT_EQ(read_file(path()), before);
+}
+
+TEST_F(RecordingTest, LinkInPlaceOfTheRecordingIsRefusedAndNotFollowed) {
+  const std::string victim = folder_.path("victim");
+  write_file(victim, "precious");
+  std::filesystem::create_symlink(victim, path());
+  EXPECT_EQ(
+      run(SANDRUNNER_PROGRAM, "--start walk --duration 0.1 --record '" + folder_.path("") + "'"),
+      2);
+  EXPECT_NE(output().find("run.mcap: cannot be written (it is a symbolic link)"), std::string::npos)
+      << output();
+  EXPECT_EQ(read_file(victim), "precious");
+}
+
+TEST_F(RecordingTest, FolderThatIsRemovedDuringTheRunIsReported) {
+  const std::string gone = folder_.path("gone");
+  ChildProcess robot({SANDRUNNER_PROGRAM, "--clock", "realtime", "--start", "walk", "--duration",
+                      "2", "--record", gone});
+  ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(gone + "/run.mcap"); }));
+  std::filesystem::remove_all(gone);
+  const Ended ended = robot.wait();
+  EXPECT_NE(ended.code, 0);
+  EXPECT_NE(ended.out.find("NOT RECORDED: " + gone + "/run.mcap was removed"), std::string::npos)
+      << ended.out;
+  EXPECT_EQ(ended.out.find("recorded "), std::string::npos) << ended.out;
 }
 
 TEST_F(RecordingTest, LimitOfTimeEndsTheRecording) {

@@ -75,15 +75,20 @@ TEST_F(ViewServerTest, AHeaderInDripsEndsAfterItsTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, kViewHeaderTime + std::chrono::seconds(4));
 }
 
-TEST_F(ViewServerTest, The33rdSocketIsClosedAndAPlaceThatIsFreeAgainIsGiven) {
-  std::vector<std::unique_ptr<Client>> clients;
-  for (int i = 0; i < kViewSockets; ++i) clients.push_back(std::make_unique<Client>(port));
-  EXPECT_EQ(Client(port).rest(), "");
-  clients.clear();
-  // The server notices the ends in its own time.
-  std::string page;
-  for (int tries = 0; tries < 1000 && page.empty(); ++tries) page = get("/");
-  EXPECT_TRUE(page.starts_with("HTTP/1.1 200 "));
+TEST_F(ViewServerTest, SocketsThatAskForNothingLockNoPageOut) {
+  WebPage open(port);
+  std::vector<std::unique_ptr<Client>> silent;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 2 * kViewSockets; ++i) {
+    silent.push_back(std::make_unique<Client>(port));
+    silent.back()->send("GET / HTTP/1.1\r\nHost: local");
+  }
+  EXPECT_TRUE(get("/").starts_with("HTTP/1.1 200 "));
+  EXPECT_TRUE(WebPage(port).answer.starts_with("HTTP/1.1 101 "));
+  EXPECT_EQ(silent.front()->rest(), "");  // the oldest of them went
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kViewHeaderTime);
+  open.say(hello(""));
+  EXPECT_EQ(open.hear().kind, 1);  // and no page that was there
 }
 
 TEST_F(ViewServerTest, TheNinthPageIsRefused) {
