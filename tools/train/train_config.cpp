@@ -85,12 +85,6 @@ void check_blocks(const TrainConfig& c) {
         "learner.block_envs = {}",
         special, block_envs));
   }
-  if (c.task.ground.rigid_envs == block_envs) {
-    throw InputError(fmt::format(
-        "training config: ground.rigid_envs = {}, expected less than learner.block_envs: faster "
-        "commands open as robots on soil follow",
-        block_envs));
-  }
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
   } else {
     const Reward earned = reward(s, config_.reward, cost_ramp_);
     rollout.reward(t, env) = earned.value;
-    window.add_step(s, earned, kind, curriculum_.speed_mps, config_.reward);
+    window.add_step(s, earned, kind, decisive_kind(), curriculum_.speed_mps, config_.reward);
   }
   ++e.step;
   rollout.reset(t + 1, env) = 0;
@@ -191,10 +191,11 @@ WindowStats Task::end_window(double transitions) {
 void Task::advance_curriculum(const WindowStats& w) {
   const CommandSettings& c = config_.command;
   const GroundSettings& g = config_.ground;
-  if (w.top_steps > 0.0 && w.top_kernel > c.gate_kernel && w.falls[1] < c.gate_falls) {
+  const int kind = decisive_kind();
+  if (w.top_steps > 0.0 && w.top_kernel > c.gate_kernel && w.falls[kind] < c.gate_falls) {
     curriculum_.speed_mps = std::min(curriculum_.speed_mps + c.speed_step_mps, c.speed_max_mps);
   }
-  if (w.kernel[1] > g.gate_kernel && w.falls[1] < g.gate_falls) {
+  if (w.kernel[kind] > g.gate_kernel && w.falls[kind] < g.gate_falls) {
     curriculum_.ground = std::min(curriculum_.ground + g.open_step, 1.0);
   }
 }

@@ -195,8 +195,6 @@ TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
   expect_refused("a", {"--set", "command.backward_mps=200"}, "command.backward_mps");
   expect_refused("a", {"--set", "policy.kp_nmprad=201"}, "the robot 'raibo' takes at most 200");
   expect_refused("a", {"--set", "command.zero_share=0.8"}, "command.in_place_share = 1.05");
-  expect_refused("a", {"--set", "ground.rigid_envs=64", "--set", "ground.patchy_envs=0"},
-                 "ground.rigid_envs = 64");
   expect_refused("a", {"--set", "learner.block_envs=40", "--set", "run.envs=80"},
                  "learner.block_envs = 40");
   expect_refused("a", {"--set", "learner.critic=[128.7]"}, "learner.critic: 128.7");
