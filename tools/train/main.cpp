@@ -30,9 +30,10 @@ int run(int argc, char** argv) {
   bool resume = false, explain = false;
   CLI::App app{"Trains a policy from random weights on randomised deformable ground.",
                "sandrunner-train"};
-  app.add_option("--out", options.out,
-                 "folder for checkpoint.bin, policy.safetensors, curve.csv, curve.html, curve.png "
-                 "(required)")
+  app.add_option(
+         "--out", options.out,
+         "folder for checkpoint.bin, policy.safetensors, best.safetensors, curve.csv, curve.html, "
+         "curve.png (required)")
       ->type_name("DIR");
   app.add_option(
          "--config", config_file,

@@ -42,6 +42,26 @@ constexpr Column kColumns[] = {
     {"estimate_height_rms_m", [](R r) { return r.estimate_height_rms_m; }},
     {"command_speed_mps", [](R r) { return r.command_speed_mps; }},
     {"ground_open", [](R r) { return r.ground_open; }},
+    {"battery_alive", [](R r) { return r.battery.alive; }},
+    {"battery_error", [](R r) { return r.battery.error; }},
+    {"battery_cost_of_transport", [](R r) { return r.battery.cost_of_transport; }},
+    {"battery_too_fast", [](R r) { return r.battery.too_fast; }},
+    {"battery_drift_mps", [](R r) { return r.battery.drift_mps; }},
+    {"battery_yaw_drift_radps", [](R r) { return r.battery.yaw_drift_radps; }},
+    {"battery_score", [](R r) { return r.score; }},
+    {"battery_alive_1", [](R r) { return r.battery.alive_at[0]; }},
+    {"battery_alive_2", [](R r) { return r.battery.alive_at[1]; }},
+    {"battery_alive_3", [](R r) { return r.battery.alive_at[2]; }},
+    {"battery_alive_4", [](R r) { return r.battery.alive_at[3]; }},
+    {"battery_alive_5", [](R r) { return r.battery.alive_at[4]; }},
+    {"battery_cost_1", [](R r) { return r.battery.cost_of_transport_at[0]; }},
+    {"battery_cost_2", [](R r) { return r.battery.cost_of_transport_at[1]; }},
+    {"battery_cost_3", [](R r) { return r.battery.cost_of_transport_at[2]; }},
+    {"battery_cost_4", [](R r) { return r.battery.cost_of_transport_at[3]; }},
+    {"battery_cost_5", [](R r) { return r.battery.cost_of_transport_at[4]; }},
+    {"battery_share", [](R r) { return r.battery_share; }},
+    {"late_penalties", [](R r) { return r.late; }},
+    {"settled", [](R r) { return r.settled; }},
     {"body_height_m", [](R r) { return r.window.body_height_m; }},
     {"torque_squared_nm2", [](R r) { return r.window.torque_squared; }},
     {"power_w", [](R r) { return r.window.power_w; }},
@@ -66,6 +86,15 @@ struct Panel {
   std::array<Line, 2> lines;  // the second may have no name
 };
 constexpr Panel kPanels[] = {
+    {"Battery: runs without a fall",
+     "share",
+     {{{"all", "battery_alive"}, {"fastest forward", "battery_alive_5"}}}},
+    {"Battery: tracking error", "of the command", {{{"error", "battery_error"}}}},
+    {"Battery: cost of transport", "forward", {{{"mean", "battery_cost_of_transport"}}}},
+    {"Battery: a joint too fast", "share of time", {{{"too fast", "battery_too_fast"}}}},
+    {"Late penalties and settling",
+     "share",
+     {{{"late penalties", "late_penalties"}, {"settled", "settled"}}}},
     {"Reward", "a step", {{{"reward", "reward"}}}},
     {"Velocity tracking", "kernel, 0 to 1", {{{"rigid", "kernel_rigid"}, {"soil", "kernel_soil"}}}},
     {"Falls",
@@ -169,29 +198,40 @@ void Progress::load(const learner::Checkpoint& checkpoint) {
 std::string Progress::line(const ProgressRow& r, double eta_s) {
   const WindowStats& w = r.window;
   return fmt::format(
-      "{:6.2f} M {:3.0f} k/s  reward {:.3f} track {:.2f}  falls {:.2f} {:4.1f} Hz  trot {:+.2f}  "
-      "std {:.2f} {:.1f} m/s {:3.0f} min",
-      r.transitions / 1e6, r.transitions_per_s / 1e3, w.reward, w.kernel[1], w.falls[1],
-      w.stride_hz, w.diagonal, r.action_std, r.command_speed_mps, eta_s / 60.0);
+      "{:6.2f} M {:3.0f} k/s {:4.1f} Hz trot {:+.2f}  alive {:.3f} error {:.2f} cost {:.2f} "
+      "fast {:.3f} late {:.2f} {:3.0f} min",
+      r.transitions / 1e6, r.transitions_per_s / 1e3, w.stride_hz, w.diagonal, r.battery.alive,
+      r.battery.error, r.battery.cost_of_transport, r.battery.too_fast, r.late, eta_s / 60.0);
+}
+
+std::string Progress::summary(const BatteryFigures& f) {
+  return fmt::format(
+      "alive {:.3f}, error {:.3f}, cost of transport {:.3f}, too fast {:.4f}, drift "
+      "{:.3f} m/s and {:.3f} rad/s",
+      f.alive, f.error, f.cost_of_transport, f.too_fast, f.drift_mps, f.yaw_drift_radps);
 }
 
 const char* Progress::explanation() {
-  return "A line of progress, of the last update's steps:\n"
+  return "A line of progress. Of the last update's steps:\n"
          "  M        transitions so far, millions; a transition is 10 ms of one robot\n"
          "  k/s      transitions a second, thousands\n"
-         "  reward   mean of a step\n"
-         "  track    how well the commanded velocity is kept on soil, 0 to 1\n"
-         "  falls    of a robot on soil in 4 s, under noise, pushes and all commands that are "
-         "open\n"
          "  Hz       strides a second\n"
-         "  trot     correlation of diagonal feet in the air: 1 is a trot, below 0 they take "
-         "turns\n"
-         "  std      noise of the actions, in units of the network's output\n"
-         "  m/s      fastest command that is drawn; opens as the robots follow\n"
+         "  trot     correlation of diagonal feet in the air: 1 is a trot, below 0 they alternate\n"
+         "Of the latest battery, a fixed set of runs of the averaged policy without noise or "
+         "pushes:\n"
+         "  alive    share of the runs without a fall\n"
+         "  error    of the steady velocity, relative to the commanded one\n"
+         "  cost     cost of transport, mean over the forward speeds\n"
+         "  fast     share of time in which a joint is above its speed limit\n"
+         "And of the schedule:\n"
+         "  late     share of the late penalties: rises while the battery is passed\n"
          "  min      minutes left\n"
-         "curve.csv has a row for each update: all of these, hard ground besides, and each term of "
-         "the\nreward by its name (reward_...); curve.png draws the most telling ones, curve.html "
-         "all of them\nand, in 3D, a run of the policy as it is.\n";
+         "curve.csv has a row for each update: all of these, the battery's figures for each "
+         "forward "
+         "speed\n(battery.forward_share, slowest first), reward, tracking and falls under noise "
+         "and "
+         "pushes, and\neach term of the reward by its name (reward_...); curve.png draws the most "
+         "telling ones,\ncurve.html all of them and, in 3D, a run of the policy as it is.\n";
 }
 
 void Progress::write(const std::string& dir) const {

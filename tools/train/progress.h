@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/train/battery.h"
 #include "tools/train/data/checkpoint.h"
 #include "tools/train/task/window_stats.h"
 
@@ -17,6 +18,10 @@ struct ProgressRow {
   WindowStats window;
   double estimate_vx_rms_mps = 0, estimate_height_rms_m = 0;
   double command_speed_mps = 0, ground_open = 0;  ///< the curricula
+  BatteryFigures battery;                         ///< the latest
+  double score = 0;
+  double battery_share = 0;      ///< of the process's core time, 0 to 1
+  double late = 0, settled = 0;  ///< share of the late penalties, of the settling
   double learning_rate = 0, kl = 0, action_std = 0, asymmetry = 0, explained_variance = 0;
 };
 
@@ -30,6 +35,8 @@ class Progress {
 
   /// One line for a person, of at most 100 characters; `eta_s`: seconds left.
   static std::string line(const ProgressRow& row, double eta_s);
+  /// The battery's figures for a person, in one line.
+  static std::string summary(const BatteryFigures& figures);
   /// What its parts mean, for `--explain`.
   static const char* explanation();
   /// Writes curve.csv and curve.png into `dir`. Throws InputError.

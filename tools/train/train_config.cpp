@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "rt/base/errors.h"
@@ -20,6 +21,23 @@ constexpr NumberSetting<R> kRun[] = {
     {"settle_kl_share", &R::settle_kl_share, 1e-3, 1.0},
     {"settle_action_std", &R::settle_action_std, 1e-3, 10.0},
     {"settle_soft_reset_share", &R::settle_soft_reset_share, 0.0, 1.0},
+};
+
+using B = BatterySettings;
+constexpr NumberSetting<B> kBattery[] = {
+    {"duration_s", &B::duration_s, 1.0, 60.0},
+    {"softest_flat_npm3", &B::softest_flat_npm3, 1.0, 1e10},
+    {"softest_cone_npm3", &B::softest_cone_npm3, 1.0, 1e10},
+    {"tracked_error", &B::tracked_error, 0.0, 100.0},
+    {"too_fast_weight", &B::too_fast_weight, 0.0, 1e3},
+    {"drift_weight", &B::drift_weight, 0.0, 1e3},
+};
+
+using G = GateSettings;
+constexpr NumberSetting<G> kGate[] = {
+    {"least_alive", &G::least_alive, 0.0, 1.0},
+    {"rise_share", &G::rise_share, 1e-3, 1.0},
+    {"back_rate", &G::back_rate, 0.0, 100.0},
 };
 
 using L = learner::LearnerConfig;
@@ -65,6 +83,25 @@ learner::LearnerConfig read_learner_config(ConfigTree& config) {
   return l;
 }
 
+void read_battery(ConfigTree& config, BatterySettings& battery) {
+  battery.every_updates = read_integer(config, "battery.every_updates", 0, 1 << 20);
+  battery.runs = read_integer(config, "battery.runs", 1, 1000);
+  read_numbers(config, "battery", kBattery, battery);
+  require_key(config, "battery.forward_share");
+  std::ranges::copy(config.numbers("battery.forward_share", {}, kForwardSpeeds, 0.01, 1.0),
+                    battery.forward_share.begin());
+}
+
+void read_gate(ConfigTree& config, const BatterySettings& battery, GateSettings& gate) {
+  require_key(config, "gate.enabled");
+  gate.enabled = config.flag("gate.enabled", true);
+  read_numbers(config, "gate", kGate, gate);
+  if (gate.enabled && battery.every_updates == 0) {
+    throw InputError(
+        "training config: battery.every_updates = 0, expected at least 1, or gate.enabled = false");
+  }
+}
+
 // What one table asks of another.
 void check_blocks(const TrainConfig& c) {
   const int block_envs = c.learner.block_envs;
@@ -85,12 +122,6 @@ void check_blocks(const TrainConfig& c) {
         "learner.block_envs = {}",
         special, block_envs));
   }
-  if (c.task.ground.rigid_envs == block_envs) {
-    throw InputError(fmt::format(
-        "training config: ground.rigid_envs = {}, expected less than learner.block_envs: faster "
-        "commands open as robots on soil follow",
-        block_envs));
-  }
 }
 
 }  // namespace
@@ -99,6 +130,8 @@ TrainConfig read_train_config(ConfigTree& config) {
   TrainConfig c;
   c.run.envs = read_integer(config, "run.envs", 1, 1 << 20);
   read_numbers(config, "run", kRun, c.run);
+  read_battery(config, c.battery);
+  read_gate(config, c.battery, c.gate);
   c.window = read_integer(config, "learner.window", 1, 4096);
   c.learner = read_learner_config(config);
   c.task = read_task_config(config);

@@ -4,7 +4,9 @@
 #include <string>
 
 #include "rt/base/config_tree.h"
+#include "tools/train/battery.h"
 #include "tools/train/learner/learner.h"
+#include "tools/train/penalty_gate.h"
 #include "tools/train/task/task_config.h"
 
 namespace sandrunner::train {
@@ -23,6 +25,8 @@ struct RunSettings {
 /// All settings of a training.
 struct TrainConfig {
   RunSettings run;
+  BatterySettings battery;
+  GateSettings gate;
   int window = 0;  ///< policy steps of 10 ms between updates
   learner::LearnerConfig learner;
   TaskConfig task;

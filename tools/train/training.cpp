@@ -84,11 +84,18 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       task_(config.task, robot, {config.run.envs, config.learner.block_envs}, options.seed),
       learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
                options.seed, pool_, Task::symmetry()),
+      gate_(config.gate, config.battery.tracked_error, config.run.transitions,
+            config.run.settle_share, config.task.reward.prior_start_transitions),
       checkpoint_path_(checkpoint_path(options.out)),
       config_hash_(learner::fnv1a(config.effective, learner::kHashStart ^ options.seed)),
       robot_hash_(hash_of(robot)),
       builds_(build_commit()),
-      processors_(processor_name()) {}
+      processors_(processor_name()) {
+  if (config.battery.every_updates > 0) {
+    battery_.emplace(config.battery, config.task, config.learner.block_envs, robot,
+                     learner_.layout(), pool_);
+  }
+}
 
 void Training::start() {
   pool_.run(learner_.blocks(),
@@ -96,7 +103,7 @@ void Training::start() {
 }
 
 void Training::go_on_from(PolicyFile policy) {
-  require_scales(policy, policy_file());
+  require_scales(policy, policy_file(snapshot(), learner_.averaged()));
   for (std::vector<float>* rows :
        {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
     const std::vector<float> joints = *rows;
@@ -143,14 +150,24 @@ void Training::resume() {
 void Training::restore(const learner::Checkpoint& checkpoint) {
   learner_.load(checkpoint);
   task_.load(checkpoint);
+  gate_.load(checkpoint);
   progress_.load(checkpoint);
+  checkpoint.get("battery.figures", &figures_, 1);
+  checkpoint.get("battery.best", &best_, 1);
+  best_parameters_.resize(best_.transitions > 0.0 ? learner_.averaged().size() : 0);
+  checkpoint.get("battery.best_parameters", best_parameters_.data(), best_parameters_.size());
+  best_is_written_ = best_parameters_.empty();  // a file may be missing, or later than this
 }
 
 void Training::save() {
   learner::Checkpoint checkpoint;
   learner_.save(checkpoint);
   task_.save(checkpoint);
+  gate_.save(checkpoint);
   progress_.save(checkpoint);
+  checkpoint.put("battery.figures", &figures_, 1);
+  checkpoint.put("battery.best", &best_, 1);
+  checkpoint.put("battery.best_parameters", best_parameters_.data(), best_parameters_.size());
   const double cpu_s = cpu_before_s_ + cpu_seconds();
   checkpoint.put("run.cpu_seconds", &cpu_s, 1);
   checkpoint.put("run.robot", &robot_hash_, 1);
@@ -163,8 +180,14 @@ void Training::save() {
   }
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
-  const PolicyFile policy = policy_file();
+  const PolicyFile policy = policy_file(snapshot(), learner_.averaged());
   write_policy_file(options_.out + "/policy.safetensors", policy);
+  if (!best_is_written_) {
+    PolicyFile best = policy_file(best_, best_parameters_);
+    best.spec.provenance["battery"] = Progress::summary(best_.battery);
+    write_policy_file(options_.out + "/best.safetensors", best);
+    best_is_written_ = true;
+  }
   progress_.write(options_.out);
   pool_.run(1, [&](int, int) {
     write_file(options_.out + "/curve.html",
@@ -200,7 +223,13 @@ void Training::run(const std::atomic<bool>& interrupted) {
       continue;
     }
     const double done = transitions();
-    const WindowStats window = task_.end_window(done);
+    if (battery_ &&
+        (learner_.updates() == 1 || done >= all ||
+         learner_.updates() % static_cast<std::uint64_t>(config_.battery.every_updates) == 0)) {
+      run_battery();
+    }
+    gate_.advance(done);
+    const WindowStats window = task_.end_window(done, gate_.late());
     const ProgressRow row = make_row(window, update, t1_s - t0_s, t2_s - t0_s);
     progress_.add(row);
     const double rate = (done - before) / (t2_s - start_s);
@@ -213,15 +242,34 @@ void Training::run(const std::atomic<bool>& interrupted) {
   if (transitions() > before) save();
 }
 
+// Measures the averaged policy; keeps it if it is the best so far.
+void Training::run_battery() {
+  const double before_s = cpu_seconds();
+  figures_ = battery_->run(learner_.averaged());
+  battery_cpu_s_ += cpu_seconds() - before_s;
+  gate_.judge(figures_);
+  if (best_parameters_.empty() ||
+      score_of(figures_, config_.battery) > score_of(best_.battery, config_.battery)) {
+    best_ = snapshot();
+    best_parameters_ = learner_.averaged();
+    best_is_written_ = false;
+  }
+}
+
+Snapshot Training::snapshot() const {
+  return {.transitions = static_cast<double>(learner_.transitions()),
+          .core_hours = (cpu_before_s_ + cpu_seconds()) / 3600.0,
+          .command_speed_mps = task_.curriculum().speed_mps,
+          .battery = figures_};
+}
+
 // In the last part smaller and smaller updates, less and less noise, and more starts: the policy
 // settles.
 void Training::settle() {
   const RunSettings& run = config_.run;
   const learner::LearnerConfig& learner = config_.learner;
-  const double to_go = run.transitions - static_cast<double>(learner_.transitions());
-  const double left =
-      std::clamp(to_go / std::max(run.transitions * run.settle_share, 1.0), 0.0, 1.0);
-  learner_.set_symmetry_weight(learner.loss.symmetry_weight * task_.late());
+  const double left = gate_.unsettled();
+  learner_.set_symmetry_weight(learner.loss.symmetry_weight * gate_.late());
   learner_.set_kl_target(std::max(left, run.settle_kl_share) * learner.kl_target);
   learner_.set_action_std_most(run.settle_action_std *
                                std::pow(learner.action_std_start / run.settle_action_std, left));
@@ -258,6 +306,11 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   r.estimate_height_rms_m = update.estimate_rms[0] * static_cast<double>(deviation[0]);
   r.command_speed_mps = task_.curriculum().speed_mps;
   r.ground_open = task_.curriculum().ground;
+  r.battery = figures_;
+  r.score = score_of(figures_, config_.battery);
+  r.battery_share = battery_cpu_s_ / cpu_seconds();
+  r.late = gate_.late();
+  r.settled = 1.0 - gate_.unsettled();
   r.learning_rate = update.learning_rate;
   r.kl = update.kl;
   r.action_std = update.action_std;
@@ -266,7 +319,8 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   return r;
 }
 
-PolicyFile Training::policy_file() const {
+PolicyFile Training::policy_file(const Snapshot& snapshot,
+                                 const std::vector<float>& parameters) const {
   PolicyFile file;
   const PolicySettings& policy = config_.task.policy;
   PolicySpec& spec = file.spec;
@@ -281,7 +335,7 @@ PolicyFile Training::policy_file() const {
   spec.torque_limit_nm = *std::ranges::max_element(robot_.model.torque_limit_nm);
   spec.yaw_command_clip_mps2 = config_.task.command.centripetal_mps2;
   const CommandRange commands = task_.command_range();
-  spec.envelope = {.forward_mps = commands.forward_mps,
+  spec.envelope = {.forward_mps = snapshot.command_speed_mps,
                    .backward_mps = commands.backward_mps,
                    .lateral_mps = commands.lateral_mps,
                    .yaw_radps = commands.yaw_radps,
@@ -293,23 +347,22 @@ PolicyFile Training::policy_file() const {
     spec.estimate_mean[i] = scales.estimate_mean[i];
     spec.estimate_variance[i] = scales.estimate_deviation[i] * scales.estimate_deviation[i];
   }
-  spec.provenance = {
-      {"config", config_.effective},
-      {"robot", robot_.description.name},
-      {"seed", std::to_string(options_.seed)},
-      {"threads", std::to_string(options_.threads)},
-      {"transitions", std::to_string(learner_.transitions())},
-      {"core_hours", fmt::format("{:.3f}", (cpu_before_s_ + cpu_seconds()) / 3600.0)},
-      {"processor", processors_},
-      {"commit", builds_},
-      {"origin", origin_}};
+  spec.provenance = {{"config", config_.effective},
+                     {"robot", robot_.description.name},
+                     {"seed", std::to_string(options_.seed)},
+                     {"threads", std::to_string(options_.threads)},
+                     {"transitions", fmt::format("{:.0f}", snapshot.transitions)},
+                     {"core_hours", fmt::format("{:.3f}", snapshot.core_hours)},
+                     {"processor", processors_},
+                     {"commit", builds_},
+                     {"origin", origin_}};
   NetworkParameters& p = file.parameters;
   p.observation_clip = scales.clip;
   p.observation_mean.assign(scales.mean.begin(), scales.mean.end());
   for (const float d : scales.inverse_deviation) {
     p.observation_variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
   }
-  const auto tensors = learner::policy_tensors(learner_.layout(), learner_.averaged());
+  const auto tensors = learner::policy_tensors(learner_.layout(), parameters);
   for (const NamedTensor& to : tensors_of(p)) {
     for (const learner::PolicyTensor& from : tensors) {
       if (from.name == to.name) *to.values = from.values;

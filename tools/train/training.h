@@ -3,11 +3,15 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "policy/policy_file.h"
 #include "sim/robot/robot_model.h"
+#include "tools/train/battery.h"
 #include "tools/train/learner/learner.h"
+#include "tools/train/penalty_gate.h"
 #include "tools/train/progress.h"
 #include "tools/train/task/task.h"
 #include "tools/train/train_config.h"
@@ -15,10 +19,16 @@
 namespace sandrunner::train {
 
 struct TrainingOptions {
-  std::string
-      out;  ///< folder for checkpoint.bin, policy.safetensors, curve.csv, curve.html, curve.png
+  std::string out;  ///< folder for checkpoint.bin, policies, curve.csv, curve.html, curve.png
   int threads = 1;
   std::uint64_t seed = 1;  ///< of weights and environments
+};
+
+/// When a policy was taken from a training, and what was measured of it.
+struct Snapshot {
+  double transitions = 0.0, core_hours = 0.0;
+  double command_speed_mps = 0.0;  ///< fastest command that was drawn
+  BatteryFigures battery;
 };
 
 /// One training: task, learner, learning curve, and the files in which they are kept.
@@ -48,10 +58,12 @@ class Training {
   void restore(const learner::Checkpoint& checkpoint);
   void step_window();
   void settle();
+  void run_battery();
+  Snapshot snapshot() const;
   void fall_back();
   ProgressRow make_row(const WindowStats& window, const learner::UpdateStats& update,
                        double simulation_s, double total_s) const;
-  PolicyFile policy_file() const;
+  PolicyFile policy_file(const Snapshot& snapshot, const std::vector<float>& parameters) const;
 
   TrainConfig config_;
   sim::Robot robot_;
@@ -59,12 +71,19 @@ class Training {
   WorkerPool pool_;
   Task task_;
   learner::Learner learner_;
+  PenaltyGate gate_;
+  std::optional<Battery> battery_;
+  BatteryFigures figures_;  // of the latest battery
+  Snapshot best_;           // with transitions 0: none yet
+  std::vector<float> best_parameters_;
+  bool best_is_written_ = true;
   Progress progress_;
   std::string checkpoint_path_;
   std::uint64_t config_hash_, robot_hash_;
   std::string origin_ = "sandrunner-train, from random weights";
   std::string builds_, processors_;  // of this process and those it continues, separated by commas
   double cpu_before_s_ = 0.0;        // core time of those before
+  double battery_cpu_s_ = 0.0;       // core time of this process in the battery
   double saved_at_s_ = 0.0;          // wall time of the last checkpoint
   int fallbacks_ = 0;                // since then
 };

@@ -2,6 +2,7 @@
 // Task: what is drawn at random, and resets.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rt/core/command_shaping.h"
 #include "sim/lanes/random.h"
@@ -185,7 +186,7 @@ void Task::new_robot(int env, Env& e) {
                       drive.switch_tick / kStepsPerAction - 1.0f};
 }
 
-void Task::hard_reset(int env, Env& e) {
+void Task::hard_reset(int env, Env& e, double nominal_share) {
   const EpisodeSettings& s = config_.episode;
   new_robot(env, e);
   new_command(env, e);
@@ -197,7 +198,7 @@ void Task::hard_reset(int env, Env& e) {
   e.drift = {};
   // Some start exactly as a robot that has stood up, and is then told to go: their first step has
   // to break the symmetry.
-  const double off = uniform(env, e) < s.reset_nominal_share ? 0.0 : 1.0;
+  const double off = uniform(env, e) < nominal_share ? 0.0 : 1.0;
   e.command = e.target;
   if (off == 0.0) {
     e.command = {};
@@ -237,6 +238,19 @@ void Task::hard_reset(int env, Env& e) {
   fresh.sums = {};
   fresh.report = {};
   batch_.set_robot(env, fresh);
+}
+
+void Task::begin_trial(int env, const Trial& trial) {
+  Env& e = envs_[static_cast<std::size_t>(env)];
+  e = {};
+  hard_reset(env, e, trial.nominal_start ? 1.0 : 0.0);
+  e.terrain = *trial.terrain;
+  batch_.set_terrain(env, e.terrain);
+  e.command = {};
+  e.target = trial.command;
+  e.stand_steps_left = static_cast<std::int32_t>(kPolicyHz * trial.stand_s);
+  e.command_steps_left = std::numeric_limits<std::int32_t>::max();
+  e.drive.switch_tick = static_cast<float>(std::round(trial.latency_s * kSimulationHz));
 }
 
 // The robot goes on as it is, perhaps on other ground.

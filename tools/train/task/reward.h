@@ -24,20 +24,18 @@ namespace sandrunner::train {
 /// Table `reward` of training.toml. Weights are rewards a step, before `scale`; those of the costs
 /// are per unit of what is charged.
 struct RewardSettings {
-  double scale = 0;                       ///< of the whole, before the critic sees it
-  double cost_weight = 0;                 ///< of all costs
-  double cost_ramp_start = 0;             ///< factor of the costs at the start of the training
-  double cost_ramp_transitions = 0;       ///< transitions at which that factor is 1
-  double cost_end = 0;                    ///< factor of the costs at the end
-  double cost_end_start_transitions = 0;  ///< transitions from which it rises to that
-  double cost_end_transitions = 0;        ///< transitions at which it has
-  double energy_end = 0;                  ///< factor of the energy besides, at the end
-  double base_vertical_end = 0;           ///< factor of base_vertical besides, at the end
-  double speed_excess_end = 0;            ///< factor of speed_excess besides, at the end
-  double precise_drift_end = 0;           ///< factor of precise_drift_weight at the end
-  double height_end_m = 0;                ///< height_m at the end
-  double prior_start_transitions = 0;     ///< transitions from which the prior fades ...
-  double prior_end_transitions = 0;       ///< ... and at which it is gone
+  double scale = 0;                    ///< of the whole, before the critic sees it
+  double cost_weight = 0;              ///< of all costs
+  double cost_ramp_start = 0;          ///< factor of the costs at the start of the training
+  double cost_ramp_transitions = 0;    ///< transitions at which that factor is 1
+  double cost_end = 0;                 ///< factor of the costs at the end
+  double energy_end = 0;               ///< factor of the energy besides, at the end
+  double base_vertical_end = 0;        ///< factor of base_vertical besides, at the end
+  double speed_excess_end = 0;         ///< factor of speed_excess besides, at the end
+  double precise_drift_end = 0;        ///< factor of precise_drift_weight at the end
+  double height_end_m = 0;             ///< height_m at the end
+  double prior_start_transitions = 0;  ///< transitions from which the prior fades ...
+  double prior_end_transitions = 0;    ///< ... and at which it is gone
 
   double velocity_weight = 0;
   double velocity_width = 0;             ///< of the squared error, m^2/s^2
@@ -96,8 +94,6 @@ inline constexpr NumberSetting<RewardSettings> kRewardSettings[] = {
     {"cost_ramp_start", &RewardSettings::cost_ramp_start, 0.0, kNoLimit},
     {"cost_ramp_transitions", &RewardSettings::cost_ramp_transitions, 1.0, 1e12},
     {"cost_end", &RewardSettings::cost_end, 0.0, kNoLimit},
-    {"cost_end_start_transitions", &RewardSettings::cost_end_start_transitions, 0.0, 1e12},
-    {"cost_end_transitions", &RewardSettings::cost_end_transitions, 0.0, 1e12},
     {"energy_end", &RewardSettings::energy_end, 0.0, kNoLimit},
     {"base_vertical_end", &RewardSettings::base_vertical_end, 0.0, kNoLimit},
     {"speed_excess_end", &RewardSettings::speed_excess_end, 0.0, kNoLimit},
@@ -165,13 +161,12 @@ struct CostRamp {
   double grown(double end) const { return 1.0 + (end - 1.0) * late; }
 };
 
-/// Those after so many transitions.
-inline CostRamp cost_ramp_at(const RewardSettings& r, double transitions) {
+/// Those after so many transitions, with this share of the late penalties.
+inline CostRamp cost_ramp_at(const RewardSettings& r, double transitions, double late) {
   const auto passed = [&](double start, double end) {  // 0 to exactly 1
     return std::clamp((transitions - start) / std::max(end - start, 1.0), 0.0, 1.0);
   };
   const double rise = std::min(transitions / r.cost_ramp_transitions, 1.0);
-  const double late = passed(r.cost_end_start_transitions, r.cost_end_transitions);
   return {
       .all = r.cost_ramp_start + (1.0 - r.cost_ramp_start) * rise + (r.cost_end - 1.0) * late,
       .late = late,

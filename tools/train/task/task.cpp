@@ -40,11 +40,11 @@ Task::Task(const TaskConfig& config, const sim::Robot& robot, const TaskShape& s
       envs_(static_cast<std::size_t>(shape.envs)),
       sums_(static_cast<std::size_t>(shape.envs / shape.block_envs)),
       curriculum_{config.command.speed_start_mps, 0.0},
-      cost_ramp_(cost_ramp_at(config.reward, 0.0)),
+      cost_ramp_(cost_ramp_at(config.reward, 0.0, 0.0)),
       tilt_end_cos_(std::cos(config.episode.tilt_end_deg * std::numbers::pi / 180.0)) {
   for (int env = 0; env < shape.envs; ++env) {
     Env& e = envs_[static_cast<std::size_t>(env)];
-    hard_reset(env, e);
+    hard_reset(env, e, config_.episode.reset_nominal_share);
     // Episodes out of step with each other.
     e.step = static_cast<std::int32_t>(uniform(env, e) * config.episode.length_s * kPolicyHz);
   }
@@ -149,14 +149,14 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
   } else {
     const Reward earned = reward(s, config_.reward, cost_ramp_);
     rollout.reward(t, env) = earned.value;
-    window.add_step(s, earned, kind, curriculum_.speed_mps, config_.reward);
+    window.add_step(s, earned, kind, decisive_kind(), curriculum_.speed_mps, config_.reward);
   }
   ++e.step;
   rollout.reset(t + 1, env) = 0;
   if (fell) {
     rollout.end(t, env) = learner::End::kTerminated;
     window.add_fall(kind);
-    hard_reset(env, e);
+    hard_reset(env, e, config_.episode.reset_nominal_share);
     rollout.reset(t + 1, env) = 1;
   } else if (e.step >= static_cast<std::int32_t>(config_.episode.length_s * kPolicyHz)) {
     rollout.end(t, env) = learner::End::kTimeout;
@@ -164,7 +164,7 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
     if (uniform(env, e) < config_.episode.soft_reset_share) {
       soft_reset(env, e, state.rigid.position.x);
     } else {
-      hard_reset(env, e);
+      hard_reset(env, e, config_.episode.reset_nominal_share);
       rollout.reset(t + 1, env) = 1;
     }
   } else {
@@ -176,7 +176,7 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
   }
 }
 
-WindowStats Task::end_window(double transitions) {
+WindowStats Task::end_window(double transitions, double late) {
   WindowSums all;
   for (WindowSums& sums : sums_) {
     all.add(sums);
@@ -184,17 +184,18 @@ WindowStats Task::end_window(double transitions) {
   }
   const WindowStats w = all.means();
   advance_curriculum(w);
-  cost_ramp_ = cost_ramp_at(config_.reward, transitions);
+  cost_ramp_ = cost_ramp_at(config_.reward, transitions, late);
   return w;
 }
 
 void Task::advance_curriculum(const WindowStats& w) {
   const CommandSettings& c = config_.command;
   const GroundSettings& g = config_.ground;
-  if (w.top_steps > 0.0 && w.top_kernel > c.gate_kernel && w.falls[1] < c.gate_falls) {
+  const int kind = decisive_kind();
+  if (w.top_steps > 0.0 && w.top_kernel > c.gate_kernel && w.falls[kind] < c.gate_falls) {
     curriculum_.speed_mps = std::min(curriculum_.speed_mps + c.speed_step_mps, c.speed_max_mps);
   }
-  if (w.kernel[1] > g.gate_kernel && w.falls[1] < g.gate_falls) {
+  if (w.kernel[kind] > g.gate_kernel && w.falls[kind] < g.gate_falls) {
     curriculum_.ground = std::min(curriculum_.ground + g.open_step, 1.0);
   }
 }

@@ -38,6 +38,16 @@ struct TaskShape {
   int envs = 0, block_envs = 0;
 };
 
+/// An episode whose command and ground are given instead of drawn: the robot starts near its
+/// nominal pose, stands, and then gets the command, which rises as a robot's does.
+struct Trial {
+  const sim::Terrain<float>* terrain = nullptr;  ///< one patch, level
+  std::array<float, 3> command{};                ///< vx, vy (m/s), yaw rate (rad/s)
+  double stand_s = 0.0;                          ///< before the command rises
+  double latency_s = 0.0;                        ///< of the action
+  bool nominal_start = false;  ///< exactly in the nominal pose, at rest; else disturbed
+};
+
 /// Trotting on randomised ground: the environments of the training. Robots live in a Batch; a block
 /// of environments is stepped by one thread. Same seed and actions: same bits, for any number of
 /// threads and width of the batch.
@@ -58,15 +68,23 @@ class Task {
   /// what observe(t + 1) would.
   void step(int block, int t, learner::Rollout& rollout);
 
+  /// Starts this trial in an environment, with the same draws each time. Should the robot fall or
+  /// the episode end, others follow, with commands and grounds that are drawn.
+  void begin_trial(int env, const Trial& trial);
+  /// vx, vy (m/s), yaw rate (rad/s) that a robot has been commanded for the next step.
+  const std::array<float, 3>& command(int env) const {
+    return envs_[static_cast<std::size_t>(env)].command;
+  }
+  const sim::Batch& batch() const { return batch_; }
+
   /// Means over the window just done; clears its sums and advances the curricula and the ramp of
-  /// the costs. `transitions`: since the start of the training.
-  WindowStats end_window(double transitions);
+  /// the costs. `transitions`: since the start of the training; `late`: share of the late penalties
+  /// from now on, 0 to 1.
+  WindowStats end_window(double transitions, double late);
   const Curriculum& curriculum() const { return curriculum_; }
   CommandRange command_range() const;
   /// Of the episodes that end in time, those whose robot goes on as it is.
   void set_soft_reset_share(double share) { config_.episode.soft_reset_share = share; }
-  /// 0 to 1: how far the costs have risen to their values at the end of the training.
-  double late() const { return cost_ramp_.late; }
 
   void save(learner::Checkpoint& checkpoint) const;
   void load(const learner::Checkpoint& checkpoint);
@@ -103,6 +121,8 @@ class Task {
   double uniform(int env, Env& e, double low, double high) const;
   double normal(int env, Env& e) const;
   bool is_rigid(int env) const { return env % block_envs_ < config_.ground.rigid_envs; }
+  /// The kind of ground by which the curricula go: soil, if there is any.
+  int decisive_kind() const { return config_.ground.rigid_envs < block_envs_ ? 1 : 0; }
   bool is_patchy(int env) const {
     return env % block_envs_ >= block_envs_ - config_.ground.patchy_envs;
   }
@@ -112,7 +132,7 @@ class Task {
                                   std::array<float, kGroundFeatures>& features) const;
   void new_ground(int env, Env& e, float x_m);
   void new_robot(int env, Env& e);
-  void hard_reset(int env, Env& e);
+  void hard_reset(int env, Env& e, double nominal_share);
   void soft_reset(int env, Env& e, float x_m);
   bool push(int env, Env& e, sim::RobotState<float>& state) const;
   bool loosen(int env, Env& e, sim::RobotState<float>& state) const;

@@ -172,8 +172,6 @@ TaskConfig read_task_config(ConfigTree& config) {
   c.robot = read_robot_settings(config);
   c.noise = read_noise_settings(config);
   read_numbers(config, "reward", kRewardSettings, c.reward);
-  require_order("reward.cost_end_start_transitions", c.reward.cost_end_start_transitions,
-                "reward.cost_end_transitions", c.reward.cost_end_transitions);
   require_order("reward.prior_start_transitions", c.reward.prior_start_transitions,
                 "reward.prior_end_transitions", c.reward.prior_end_transitions);
   return c;

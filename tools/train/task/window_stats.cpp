@@ -6,7 +6,7 @@
 
 namespace sandrunner::train {
 
-void WindowSums::add_step(const StepOutcome& s, const Reward& reward, int kind,
+void WindowSums::add_step(const StepOutcome& s, const Reward& reward, int kind, int decisive,
                           double top_speed_mps, const RewardSettings& settings) {
   const double kernel =
       velocity_kernel(s, settings.velocity_width, settings.velocity_width_per_speed2);
@@ -30,7 +30,8 @@ void WindowSums::add_step(const StepOutcome& s, const Reward& reward, int kind,
   if (kind == 0) {
     height_ += s.body_height;
     height_steps_ += 1.0;
-  } else if (s.command[0] > 0.75 * top_speed_mps) {
+  }
+  if (kind == decisive && s.command[0] > 0.75 * top_speed_mps) {
     top_kernel_ += kernel;
     top_steps_ += 1.0;
   }

@@ -16,9 +16,9 @@ struct WindowStats {
   std::array<double, 2> falls{};             ///< per 4 s and robot
   /// Speed along the command over the command, where it is above 0.3 m/s.
   std::array<double, 2> speed_ratio{};
-  double top_kernel = 0.0;      ///< on soil, commands above 3/4 of the curriculum's speed
-  double top_steps = 0.0;       ///< number of steps in that mean
-  double body_height_m = 0.0;   ///< on rigid ground
+  double top_kernel = 0.0;     ///< on decisive ground, commands above 3/4 of the curriculum's speed
+  double top_steps = 0.0;      ///< number of steps in that mean
+  double body_height_m = 0.0;  ///< on rigid ground
   double torque_squared = 0.0;  ///< sum over joints, N^2 m^2
   double power_w = 0.0;
   double stride_hz = 0.0;  ///< lift-offs of a foot per second
@@ -31,9 +31,10 @@ struct WindowStats {
 /// Sums over the steps of a window.
 class WindowSums {
  public:
-  /// A step on ground of this kind (0 rigid, 1 soil). `top_speed_mps`: the curriculum's.
-  void add_step(const StepOutcome& s, const Reward& reward, int kind, double top_speed_mps,
-                const RewardSettings& settings);
+  /// A step on ground of this kind (0 rigid, 1 soil). `top_speed_mps`: the curriculum's, which
+  /// depends on the steps on ground of kind `decisive`.
+  void add_step(const StepOutcome& s, const Reward& reward, int kind, int decisive,
+                double top_speed_mps, const RewardSettings& settings);
   void add_fall(int kind) { falls_[kind] += 1.0; }
   void add(const WindowSums& other);
   WindowStats means() const;

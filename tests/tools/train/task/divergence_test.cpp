@@ -37,7 +37,7 @@ Outcome steps_with(float speed_mps) {
   flush_denormals_to_zero();
   const sim::Robot robot = sim::load_raibo();
   Task task(shipped_task_config(robot), robot, {kFewEnvs, kFewEnvs}, 1);
-  task.end_window(1e12);
+  task.end_window(1e12, 1.0);
   Outcome outcome;
   task.observe(0, 0, outcome.rollout);
   for (int t = 0; t < kFewSteps; ++t) {
@@ -45,7 +45,7 @@ Outcome steps_with(float speed_mps) {
     if (t == kLostStep && speed_mps != 0.0f) set_speed(task, speed_mps);
     task.step(0, t, outcome.rollout);
   }
-  outcome.window = task.end_window(1e12);
+  outcome.window = task.end_window(1e12, 1.0);
   return outcome;
 }
 

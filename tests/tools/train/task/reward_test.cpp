@@ -165,11 +165,11 @@ TEST(RewardTest, LateAFallCostsEvenWherePricesLeaveNothing) {
 
 TEST(RewardTest, PriorFadesToExactlyNothing) {
   const RewardSettings r = shipped_settings();
-  EXPECT_EQ(cost_ramp_at(r, 0.0).prior, 1.0);
-  EXPECT_EQ(cost_ramp_at(r, r.prior_start_transitions).prior, 1.0);
-  EXPECT_GT(cost_ramp_at(r, r.prior_end_transitions - 1e5).prior, 0.0);
-  EXPECT_EQ(cost_ramp_at(r, r.prior_end_transitions).prior, 0.0);
-  EXPECT_EQ(cost_ramp_at(r, 10.0 * r.prior_end_transitions).prior, 0.0);
+  EXPECT_EQ(cost_ramp_at(r, 0.0, 0.0).prior, 1.0);
+  EXPECT_EQ(cost_ramp_at(r, r.prior_start_transitions, 0.0).prior, 1.0);
+  EXPECT_GT(cost_ramp_at(r, r.prior_end_transitions - 1e5, 0.0).prior, 0.0);
+  EXPECT_EQ(cost_ramp_at(r, r.prior_end_transitions, 0.0).prior, 0.0);
+  EXPECT_EQ(cost_ramp_at(r, 10.0 * r.prior_end_transitions, 0.0).prior, 0.0);
   // Whatever the feet do: the reward is the one without its two terms.
   RewardSettings without = r;
   without.diagonality = without.paired_swing = 0.0;
@@ -177,7 +177,7 @@ TEST(RewardTest, PriorFadesToExactlyNothing) {
   s.contact = {false, true, true, false};
   s.air_s = {0.1f, 0.0f, 0.0f, 0.1f};
   const auto value = [&](const RewardSettings& settings, double transitions) {
-    return reward(s, settings, cost_ramp_at(settings, transitions)).value;
+    return reward(s, settings, cost_ramp_at(settings, transitions, 0.0)).value;
   };
   EXPECT_GT(value(r, 0.0), value(without, 0.0));
   EXPECT_EQ(value(r, r.prior_end_transitions), value(without, r.prior_end_transitions));
@@ -189,8 +189,8 @@ TEST(RewardTest, PricesOfEnergyHeaveAndALowBodyRiseLate) {
   s.power = 100.0f;
   s.vz = 0.2f;
   s.body_height = 0.46f;
-  const CostRamp before = cost_ramp_at(r, r.cost_end_start_transitions);
-  const CostRamp after = cost_ramp_at(r, r.cost_end_transitions);
+  const CostRamp before = cost_ramp_at(r, 1e12, 0.0);
+  const CostRamp after = cost_ramp_at(r, 1e12, 1.0);
   EXPECT_NEAR(energy_charged(s, r, after) / energy_charged(s, r, before), r.energy_end, 1e-9);
   EXPECT_NEAR(base_vertical_charged(s, r, after) / base_vertical_charged(s, r, before),
               r.base_vertical_end, 1e-9);

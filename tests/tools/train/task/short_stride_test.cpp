@@ -29,7 +29,7 @@ double charged(double stride_shortest_s) {
   config.reward.cost_weight = config.reward.cost_end = 1.0;
   config.reward.stride_shortest_s = stride_shortest_s;
   Task task(config, robot, {kMarching, kMarching}, 1);
-  task.end_window(1e12);  // prices at their end
+  task.end_window(1e12, 1.0);  // prices at their end
   learner::Rollout rollout{{kMarching, kMarch_steps, Task::privileged_size()}, 1};
   task.observe(0, 0, rollout);
   for (int t = 0; t < kMarch_steps; ++t) {
@@ -40,7 +40,7 @@ double charged(double stride_shortest_s) {
     modes.row(kTrot + 2).setConstant(-2.0f * lift);  // KFE
     task.step(0, t, rollout);
   }
-  const WindowStats w = task.end_window(1e12);
+  const WindowStats w = task.end_window(1e12, 1.0);
   EXPECT_EQ(w.falls[0], 0.0);
   for (std::size_t i = 0; i < kRewardTerms; ++i) {
     if (reward_term_name(i) == std::string_view("short_stride")) return -w.terms[i];
