@@ -87,6 +87,8 @@ struct SensorFrame {
   ImuSample imu;
   std::uint64_t emergency_stop = 0;  ///< 1: somebody presses it
   std::uint64_t drives_cut = 0;      ///< 1: RobotIo::cut_drives was called
+  /// Joints to whose drives another program speaks, bit j for joint j.
+  std::uint64_t foreign_traffic = 0;
 };
 
 /// What both families of drives take. A drive evaluates it with `joint_torque` (joint_pd.h).

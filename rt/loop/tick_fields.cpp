@@ -45,6 +45,7 @@ constexpr std::array kFields = {
     FIELD("imu_tick", input.sensors.imu.tick),
     FIELD("emergency_stop", input.sensors.emergency_stop),
     FIELD("drives_cut", input.sensors.drives_cut),
+    FIELD("foreign_traffic", input.sensors.foreign_traffic),
     FIELD("policy_input_tick", input.policy.input_tick),
     FIELD("policy_episode", input.policy.episode),
     FIELD("policy_sequence", input.policy.sequence),
