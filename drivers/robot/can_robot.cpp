@@ -172,7 +172,14 @@ void CanRobot::exchange(const SafeCommand* command) noexcept {
         ++count;
       }
     }
-    send(static_cast<int>(b), std::span(frames).first(count));
+    const int bus = static_cast<int>(b);
+    const std::span<const CanFrame> sent = std::span(frames).first(count);
+    const auto send_to_bus = [&](std::span<const CanFrame> f) { send(bus, f); };
+    if (command == nullptr) {
+      send(bus, sent);
+    } else {
+      send_unless_cut(cut_, sent, off_frames_[b], send_to_bus);
+    }
   }
 }
 
@@ -185,7 +192,7 @@ void CanRobot::send(int bus, std::span<const CanFrame> frames) noexcept {
 }
 
 void CanRobot::cut_drives() noexcept {
-  cut_.store(true, std::memory_order_relaxed);
+  cut_.store(true);
   for (std::size_t b = 0; b < sockets_.size(); ++b) sockets_[b]->send(off_frames_[b]);
 }
 

@@ -30,6 +30,15 @@ struct BusCounters {
   std::uint64_t errors = 0;            ///< other error frames
 };
 
+/// Sends the `set_points` of one bus and, if `cut` was set until then, its `off` frames after them:
+/// the thread that sets it may have sent its own before these set-points. `send` takes a span.
+template <typename Send>
+void send_unless_cut(const std::atomic<bool>& cut, std::span<const CanFrame> set_points,
+                     std::span<const CanFrame> off, const Send& send) noexcept {
+  if (!cut.load()) send(set_points);
+  if (cut.load()) send(off);
+}
+
 /// How long ago a frame came that the kernel stamped at `stamp_ns`, by a clock that may be stepped:
 /// at most `longest_ns`, the time since there was none.
 constexpr std::int64_t frame_age_ns(std::int64_t stamp_ns, std::int64_t now_ns,
