@@ -121,6 +121,8 @@ TEST_F(HardwareTest, CheckRefusesWhatDoesNotGoTogether) {
   expect_refused("check", "FILE");
   expect_refused("check nosuch.toml", "nosuch.toml");
   expect_refused("check hardware.toml --plan --move", "--move");
+  expect_refused("check hardware.toml --plan --nudge", "--nudge");
+  expect_refused("check hardware.toml --nudge", "hardware.hanging is false, expected true");
   expect_refused("check hardware.toml --zero standing", "standing");
   expect_refused("check hardware.toml --arm", "expected no --hardware, --arm or --dry-run");
 }
