@@ -214,6 +214,7 @@ int check(const Options& options) {
                  .gate = config.controller.gate,
                  .nominal_rad = config.robot.nominal_rad,
                  .move = options.check.move,
+                 .nudge = options.check.nudge,
                  .zero_pose_rad = {},
                  .read = [&](const std::string& text) {
                    return *read_config(options, nullptr, &text).hardware;

@@ -6,12 +6,10 @@
 #include <chrono>
 #include <thread>
 
-#include "rt/base/errors.h"
-
 namespace sandrunner {
 namespace {
 
-constexpr std::chrono::milliseconds kListen{200}, kAnswer{5};
+constexpr std::chrono::milliseconds kAnswer{5};
 
 /// All that has arrived.
 template <typename Use>
@@ -33,34 +31,6 @@ bool has_damiao(const HardwareConfig& config, int bus) {
 }
 
 }  // namespace
-
-CanSockets open_all_ears(const HardwareConfig& config, std::vector<std::string>& problems) {
-  constexpr std::array<CanFilter, 2> kAll = {
-      CanFilter{.id = 0, .mask = 0, .extended = false},
-      CanFilter{.id = 0, .mask = 0, .extended = true},
-  };
-  CanSockets sockets;
-  for (const BusConfig& bus : config.buses) {
-    sockets.push_back(nullptr);
-    try {
-      sockets.back() = std::make_unique<CanSocket>(CanSocketConfig{
-          .interface = bus.interface, .fd = bus.format != CanFormat::kClassic, .filters = kAll});
-    } catch (const InputError& error) {
-      problems.push_back(error.what());
-    }
-  }
-  return sockets;
-}
-
-std::vector<int> frames_of_others(const CanSockets& sockets) {
-  std::this_thread::sleep_for(kListen);
-  std::vector<int> frames(sockets.size());
-  for (std::size_t b = 0; b < sockets.size(); ++b) {
-    if (!sockets[b]) continue;
-    for_each_frame(*sockets[b], [&](const CanFrame& frame) { frames[b] += frame.error ? 0 : 1; });
-  }
-  return frames;
-}
 
 CanFrame scan_frame(const BusConfig& bus, int id) {
   CanFrame frame;

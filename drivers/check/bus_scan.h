@@ -17,14 +17,6 @@ struct ScannedDrive {
   std::uint32_t reply_id = 0;  ///< identifier of its reply
 };
 
-/// Sockets that hear everything. Where one cannot be opened it is null, and why is added to
-/// `problems`.
-CanSockets open_all_ears(const HardwareConfig& config, std::vector<std::string>& problems);
-
-/// Frames that are on each bus while nothing is sent, for 0.2 s. Drives speak only when spoken to:
-/// where there are some, somebody else talks to the drives.
-std::vector<int> frames_of_others(const CanSockets& sockets);
-
 inline constexpr int kMostScannedId = 32;
 
 /// Speaks to the ids 1 to kMostScannedId of every bus, 0.2 s in all; returns who answered, by bus.

@@ -12,8 +12,10 @@
 #include "drivers/check/check_report.h"
 #include "drivers/check/hand_move.h"
 #include "drivers/check/lines.h"
+#include "drivers/check/nudge.h"
 #include "drivers/check/zero.h"
 #include "drivers/robot/bring_up.h"
+#include "drivers/robot/bus_listen.h"
 #include "drivers/robot/bus_plan.h"
 #include "drivers/robot/emergency_stop.h"
 #include "rt/base/clock_ns.h"
@@ -21,29 +23,37 @@
 #include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 #include "rt/base/standard_error.h"
+#include "rt/core/joint_pd.h"
 
 namespace sandrunner {
 namespace {
 
 constexpr int kExchanges = 200;  // a second
 constexpr int kExchangesPerPicture = 20;
+constexpr std::uint64_t kSilent_ticks = kControlHz / 50;
 
 class Check {
  public:
   explicit Check(const CheckTask& task) : task_(task), config_(task.config) {}
 
   int run() {
+    if (task_.nudge && !config_.hanging) {
+      throw InputError(
+          "check --nudge: hardware.hanging is false, expected true: hang the robot so that every "
+          "joint is free, and nobody within reach; then add --set hardware.hanging=true");
+    }
     judge_plan();
-    sockets_ = open_all_ears(config_, findings_.problems);
+    open_buses();
+    open_emergency_stop();
     if (buses_are_ours()) {
       findings_.scanned = scan(config_, sockets_);
       add(scan_problems(config_, task_.robot, findings_.scanned));
       if (task_.move) move_joints();
+      if (task_.nudge) nudge_joints();
       if (task_.zero_pose_rad) calibrate();
     } else {
       for (auto& socket : sockets_) socket.reset();
     }
-    open_emergency_stop();
     measure();
     judge_emergency_stop();
     fmt::print("{}", check_report(config_, task_.robot, task_.gate, findings_));
@@ -63,19 +73,24 @@ class Check {
     }
   }
 
+  /// Where a bus cannot be opened, the others are looked at.
+  void open_buses() {
+    for (const BusConfig& bus : config_.buses) {
+      sockets_.push_back(nullptr);
+      try {
+        sockets_.back() = open_bus(bus);
+      } catch (const InputError& error) {
+        findings_.problems.emplace_back(error.what());
+      }
+    }
+  }
+
   /// Before anything is sent: a robot that runs would fall if its drives were told to be off.
   bool buses_are_ours() {
-    const std::vector<int> frames = frames_of_others(sockets_);
-    bool ours = true;
-    for (std::size_t b = 0; b < frames.size(); ++b) {
-      if (frames[b] == 0) continue;
-      ours = false;
-      findings_.problems.push_back(fmt::format(
-          "{}: {} frames in 0.2 s that nobody asked for: another program talks to the drives; "
-          "nothing was sent",
-          config_.buses[b].interface, frames[b]));
-    }
-    return ours;
+    const std::vector<std::string> problems =
+        traffic_problems(config_, task_.robot, listen(config_, sockets_));
+    add(problems);
+    return problems.empty();
   }
 
   /// Exchanges until the person has typed a line; positions of each exchange, and the line.
@@ -126,6 +141,84 @@ class Check {
     }
   }
 
+  /// False: the robot is not as it has to be before anything is powered.
+  bool may_be_powered() {
+    DriveLook look(config_, sockets_);
+    for (int i = 0; i < kLookExchanges; ++i) look.exchange();
+    std::vector<std::string> problems =
+        drive_problems(config_, task_.robot, task_.gate, sockets_, look.drives());
+    if (emergency_stop_pressed()) problems.push_back(emergency_stop_words());
+    const bool whole = std::ranges::all_of(sockets_, [](const auto& s) { return s != nullptr; });
+    if (problems.empty() && whole) return true;
+    findings_.problems.push_back(
+        fmt::format("nothing was nudged: {}",
+                    problems.empty() ? "a bus could not be opened" : problems.front()));
+    return false;
+  }
+
+  NudgeState nudge_exchange(DriveLook& look, const NudgePoints& points) {
+    NudgePoints told = points;
+    for (int j = 0; j < kNumJoints && config_.mode == DriveMode::kTorque; ++j) {
+      const Drive& d = look.drive(j);
+      if (!told[j]) continue;
+      const JointSetPoint& p = *told[j];  // which the host evaluates
+      told[j] = JointSetPoint{.torque_nm = joint_torque(d.position_rad(), d.velocity_radps(),
+                                                        p.position_rad, p.velocity_radps,
+                                                        p.kp_nmprad, p.kd_nmsprad, p.torque_nm)};
+    }
+    look.exchange_powered(told);
+    NudgeState state;
+    state.time_s = 1e-9 * static_cast<double>(clock_ns(CLOCK_MONOTONIC));
+    for (int j = 0; j < kNumJoints; ++j) {
+      const Drive& d = look.drive(j);
+      state.position_rad[j] = d.position_rad();
+      state.velocity_radps[j] = d.velocity_radps();
+      state.torque_nm[j] = d.torque_nm();
+      state.well[j] = d.fault() == 0 && look.tick() < d.tick() + kSilent_ticks;
+    }
+    state.stop = lines_.next() || lines_.ended() || emergency_stop_pressed();
+    return state;
+  }
+
+  void nudge_joints() {
+    if (!may_be_powered()) return;
+    to_standard_error(
+        "\nEach drive will push its joint a little, by about 0.1 rad. The robot hangs, every joint "
+        "is "
+        "free, nobody is within reach.\nIf another joint moves than the one that is named, or "
+        "another way: press Enter at once, it stops. Enter begins (s and Enter skips it)\n");
+    DriveLook look(config_, sockets_);
+    JointTrace ignored;
+    if (!watch(look, ignored).empty()) return;
+    findings_.powered = true;
+    const NudgeExchange exchange = [&](const NudgePoints& points) {
+      return nudge_exchange(look, points);
+    };
+    JointArray<bool> good{};
+    bool stopped = false;
+    // Each leg from its foot up: what hangs on a joint that is pushed is damped by then.
+    for (int i = 0; i < kNumJoints && !stopped; ++i) {
+      const int j = i + kJointsPerLeg - 1 - 2 * (i % kJointsPerLeg);
+      const double most_nm = std::min(kNudge_nm, task_.gate.torque_limit_nm[j]);
+      to_standard_error(fmt::format("{} moves now so that, seen in the standing pose, {}\n",
+                                    task_.robot.joint_names[j],
+                                    positive_motion(task_.robot, task_.nominal_rad, j)));
+      Nudge result = nudge(j, most_nm, good, exchange);
+      if (result.verdict == Nudge::Verdict::kNotMoved) {
+        to_standard_error(fmt::format("{} moves now the other way: a stop may be near\n",
+                                      task_.robot.joint_names[j]));
+        result = nudge(j, -most_nm, good, exchange);
+      }
+      const std::string verdict = nudge_words(result, j, config_, task_.robot);
+      to_standard_error(verdict + "\n");
+      findings_.nudges.push_back(verdict);
+      good[j] = result.verdict == Nudge::Verdict::kGood;
+      stopped = result.verdict == Nudge::Verdict::kStopped;
+      if (!good[j]) findings_.problems.push_back(verdict);
+    }
+    for (int i = 0; i < kLookExchanges; ++i) look.exchange_powered({});
+  }
+
   void calibrate() {
     std::string pose;
     for (int j = 0; j < kNumJoints; ++j) {
@@ -165,6 +258,11 @@ class Check {
     } catch (const InputError& error) {
       findings_.problems.emplace_back(error.what());
     }
+  }
+
+  /// Or it cannot be read. A robot without one has none pressed.
+  bool emergency_stop_pressed() const {
+    return !config_.emergency_stop.chip.empty() && !(stop_line_ && stop_line_->high() == true);
   }
 
   std::string emergency_stop_words() const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sandrunner check: looks at a robot's buses, drives and IMU before anything is powered.
+// sandrunner check: looks at a robot's buses, drives and IMU before it carries itself.
 #pragma once
 
 #include <functional>
@@ -18,6 +18,7 @@ struct CheckTask {
   GateConfig gate;
   JointArray<double> nominal_rad{};  ///< posture in which directions are explained
   bool move = false;                 ///< a person turns each joint by hand
+  bool nudge = false;                ///< each drive pushes its joint, the robot hanging
   /// The pose in which the robot is held, from which the zeros are computed and written to `path`.
   std::optional<JointArray<double>> zero_pose_rad;
   /// Reads the whole configuration with this text in place of the file: the last judge of zeros.
@@ -26,7 +27,8 @@ struct CheckTask {
 
 /// Does it: prints the report to standard output, and what a person is asked to standard error.
 /// Returns the exit code: 0, or kExitRobotFailed if something is wrong. Throws InputError: zeros
-/// that cannot be, a file that cannot be written, nobody who answers.
+/// that cannot be, a file that cannot be written, nobody who answers, a nudge of a robot that does
+/// not hang.
 int run_check(const CheckTask& task);
 
 }  // namespace sandrunner

@@ -147,11 +147,18 @@ std::string check_report(const HardwareConfig& config, const RobotDescription& r
     for (const std::string& move : findings.moves) text += "  " + move + "\n";
     text += "\n";
   }
-  if (findings.problems.empty()) return text + "nothing is wrong; nothing was powered\n";
-  text += fmt::format("{} wrong; nothing was powered\n",
+  if (!findings.nudges.empty()) {
+    text += "pushed by its own drive\n";
+    for (const std::string& nudge : findings.nudges) text += "  " + nudge + "\n";
+    text += "\n";
+  }
+  const char* const power = findings.powered ? "the drives are off again" : "nothing was powered";
+  if (findings.problems.empty()) return text + fmt::format("nothing is wrong; {}\n", power);
+  text += fmt::format("{} wrong; {}\n",
                       findings.problems.size() == 1
                           ? "1 thing is"
-                          : fmt::format("{} things are", findings.problems.size()));
+                          : fmt::format("{} things are", findings.problems.size()),
+                      power);
   for (const std::string& problem : findings.problems) text += "  " + problem + "\n";
   return text;
 }

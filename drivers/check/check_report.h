@@ -27,6 +27,8 @@ struct CheckFindings {
   std::optional<ImuFindings> imu;     ///< none: it could not be set up
   std::string emergency_stop;         ///< what its switch says
   std::vector<std::string> moves;     ///< what came of each joint turned by hand, a line each
+  std::vector<std::string> nudges;    ///< what came of each joint pushed by its drive, a line each
+  bool powered = false;               ///< drives were enabled
   std::vector<std::string> problems;  ///< a line each
 };
 

@@ -84,9 +84,13 @@ std::string problem_of(const HardwareConfig& config, const GateConfig& gate,
         "{} of {} requests answered; look at its power, its id, its bus, and who else has that id",
         found.replies, found.requests);
   }
+  if (found.commands > 0) {
+    return fmt::format("{} commands of another program to it", found.commands);
+  }
   if (found.replies > found.requests) {
-    return fmt::format("{} answers to {} requests: two drives have that id", found.replies,
-                       found.requests);
+    return fmt::format(
+        "{} answers to {} requests: two drives have that id, or another program speaks to it",
+        found.replies, found.requests);
   }
   const double q = found.position_rad;
   if (q < gate.joint_lower_rad[j] - gate.joint_fault_rad ||
@@ -109,27 +113,6 @@ std::string problem_of(const HardwareConfig& config, const GateConfig& gate,
 }
 
 }  // namespace
-
-CanSockets open_buses(const HardwareConfig& config) {
-  CanSockets sockets;
-  for (std::size_t b = 0; b < config.buses.size(); ++b) {
-    const BusConfig& bus = config.buses[b];
-    std::vector<CanFilter> filters;
-    for (const DriveConfig& drive : config.drives) {
-      if (drive.bus != static_cast<int>(b)) continue;
-      if (drive.protocol == Protocol::kMit) {
-        filters.push_back({.id = drive.mit.reply_id});
-      } else {
-        // Its replies are standard or extended, by its number.
-        filters.push_back({.id = 0, .mask = 0});
-        filters.push_back({.id = 0, .mask = 0, .extended = true});
-      }
-    }
-    sockets.push_back(std::make_unique<CanSocket>(CanSocketConfig{
-        .interface = bus.interface, .fd = bus.format != CanFormat::kClassic, .filters = filters}));
-  }
-  return sockets;
-}
 
 std::vector<std::string> drive_problems(const HardwareConfig& config, const RobotDescription& robot,
                                         const GateConfig& gate, const CanSockets& sockets,

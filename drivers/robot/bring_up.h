@@ -10,10 +10,6 @@
 
 namespace sandrunner {
 
-/// A socket for each bus that receives the replies of its drives. Throws InputError: what CanSocket
-/// refuses.
-CanSockets open_buses(const HardwareConfig& config);
-
 inline constexpr int kLookExchanges = 50;
 
 /// What is wrong with drives that were looked at kLookExchanges times and more, a line each, which

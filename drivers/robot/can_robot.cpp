@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "drivers/robot/bring_up.h"
+#include "drivers/robot/bus_listen.h"
 #include "drivers/robot/bus_plan.h"
 #include "rt/base/clock_ns.h"
 #include "rt/core/joint_pd.h"
@@ -54,8 +55,8 @@ CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
                    const GateConfig& gate)
     : config_(within_capacity(config)),
       emergency_stop_(open_emergency_stop(config.emergency_stop)),
+      sockets_(open_silent_buses(config, robot)),
       imu_(config.imu),
-      sockets_(open_buses(config)),
       counters_(config.buses.size()),
       off_frames_(config.buses.size()) {
   for (int j = 0; j < kNumJoints; ++j) {
@@ -73,9 +74,11 @@ CanRobot::~CanRobot() = default;
 void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   tick_ = tick;
   receive(tick);
+  std::uint64_t foreign = 0;
   for (int j = 0; j < kNumJoints; ++j) {
     const Drive& drive = drives_[j];
     frame.joints.drive_fault[j] = drive.fault();
+    if (drive.has_foreign_traffic(tick)) foreign |= std::uint64_t{1} << j;
     if (drive.replies() == 0) continue;
     frame.joints.position_rad[j] = drive.position_rad();
     frame.joints.velocity_radps[j] = drive.velocity_radps();
@@ -89,6 +92,8 @@ void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   const bool stop = emergency_stop_ && emergency_stop_->pressed(clock_ns(CLOCK_MONOTONIC));
   frame.emergency_stop = stop ? 1 : 0;
   frame.drives_cut = cut_.load(std::memory_order_relaxed) ? 1 : 0;
+  // The drives answer what cut_drives() sends, too.
+  frame.foreign_traffic = frame.drives_cut != 0 ? 0 : foreign;
 }
 
 void CanRobot::receive(std::uint64_t tick) noexcept {
@@ -131,7 +136,13 @@ void CanRobot::take(int bus, const ReceivedFrame& received, std::uint64_t tick, 
   for (int j = 0; j < kNumJoints; ++j) {
     if (config_.drives[j].bus == bus && drives_[j].take(received.frame, when)) return;
   }
-  ++counters.foreign;
+  bool is_command = false;
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (config_.drives[j].bus != bus || !drives_[j].is_command(received.frame)) continue;
+    is_command = true;
+    drives_[j].hear_command(when);
+  }
+  if (!is_command) ++counters.foreign;
 }
 
 void CanRobot::write(const SafeCommand& command) noexcept {
@@ -161,7 +172,14 @@ void CanRobot::exchange(const SafeCommand* command) noexcept {
         ++count;
       }
     }
-    send(static_cast<int>(b), std::span(frames).first(count));
+    const int bus = static_cast<int>(b);
+    const std::span<const CanFrame> sent = std::span(frames).first(count);
+    const auto send_to_bus = [&](std::span<const CanFrame> f) { send(bus, f); };
+    if (command == nullptr) {
+      send(bus, sent);
+    } else {
+      send_unless_cut(cut_, sent, off_frames_[b], send_to_bus);
+    }
   }
 }
 
@@ -174,7 +192,7 @@ void CanRobot::send(int bus, std::span<const CanFrame> frames) noexcept {
 }
 
 void CanRobot::cut_drives() noexcept {
-  cut_.store(true, std::memory_order_relaxed);
+  cut_.store(true);
   for (std::size_t b = 0; b < sockets_.size(); ++b) sockets_[b]->send(off_frames_[b]);
 }
 
@@ -208,10 +226,17 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
   for (int j = 0; j < kNumJoints; ++j) {
     const Drive& d = robot.drives()[j];
     const std::uint64_t missing = d.sent() - std::min(d.sent(), d.replies());
-    if (missing <= 1 && d.last_fault() == 0 && d.bad() == 0) continue;
+    const std::uint64_t foreign = d.foreign_commands() + d.surplus_replies();
+    if (missing <= 1 && d.last_fault() == 0 && d.bad() == 0 && foreign == 0) continue;
     lines += fmt::format("{}: {} of {} commands not answered", description.joint_names[j], missing,
                          d.sent());
     if (d.bad() > 0) lines += fmt::format(", {} replies of a wrong length", d.bad());
+    if (d.foreign_commands() > 0) {
+      lines += fmt::format(", {} COMMANDS OF ANOTHER PROGRAM", d.foreign_commands());
+    }
+    if (d.surplus_replies() > 0) {
+      lines += fmt::format(", {} replies that were not asked for", d.surplus_replies());
+    }
     if (d.last_fault() != 0) lines += "; " + drive_fault_words(config.drives[j], d.last_fault());
     lines += '\n';
   }

@@ -30,6 +30,15 @@ struct BusCounters {
   std::uint64_t errors = 0;            ///< other error frames
 };
 
+/// Sends the `set_points` of one bus and, if `cut` was set until then, its `off` frames after them:
+/// the thread that sets it may have sent its own before these set-points. `send` takes a span.
+template <typename Send>
+void send_unless_cut(const std::atomic<bool>& cut, std::span<const CanFrame> set_points,
+                     std::span<const CanFrame> off, const Send& send) noexcept {
+  if (!cut.load()) send(set_points);
+  if (cut.load()) send(off);
+}
+
 /// How long ago a frame came that the kernel stamped at `stamp_ns`, by a clock that may be stepped:
 /// at most `longest_ns`, the time since there was none.
 constexpr std::int64_t frame_age_ns(std::int64_t stamp_ns, std::int64_t now_ns,
@@ -45,10 +54,10 @@ constexpr std::int64_t frame_age_ns(std::int64_t stamp_ns, std::int64_t now_ns,
 /// told in every exchange to be off, and answers that. Real-time safe once constructed.
 class CanRobot final : public RobotIo {
  public:
-  /// Opens buses and IMU, finds every drive, and compares what drives can tell of themselves with
-  /// the configuration; nothing is enabled. Some seconds at most. Throws InputError, one line: a
-  /// drive that does not answer, other limits than configured, a time-out that is not there, a
-  /// posture that cannot be, an overloaded bus.
+  /// Opens buses and IMU, listens whether another program speaks to the drives, finds every drive,
+  /// and compares what drives can tell of themselves with the configuration; nothing is enabled.
+  /// Some seconds at most. Throws InputError, one line: a drive that does not answer, other limits
+  /// than configured, a time-out that is not there, a posture that cannot be, an overloaded bus.
   CanRobot(const HardwareConfig& config, const RobotDescription& robot, const GateConfig& gate);
   ~CanRobot() override;
 
@@ -73,8 +82,8 @@ class CanRobot final : public RobotIo {
 
   HardwareConfig config_;
   std::unique_ptr<EmergencyStop> emergency_stop_;  // null: there is none
-  ImuThread imu_;  // both before the buses: without them nothing is sent
-  CanSockets sockets_;
+  CanSockets sockets_;  // before the IMU: where another program runs the drives, that is said
+  ImuThread imu_;
   std::vector<BusCounters> counters_;
   JointArray<Drive> drives_;
   std::vector<std::vector<CanFrame>> off_frames_;  ///< of each bus, for cut_drives()

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/can/damiao_registers.h"
+
 namespace sandrunner {
 namespace {
 
@@ -16,6 +18,9 @@ constexpr std::uint64_t kRepliesToEnable = 3;
 /// A Damiao that did not answer so many requests for so long may have been without its supply. Of a
 /// stall of this program alone it is not told by the first.
 constexpr std::uint64_t kRebootRequests = 10, kReboot_ticks = kControlHz / 20;
+/// A request is lost if it was not answered for one to two of these. Adapters that hold frames back
+/// for less deliver no surplus.
+constexpr std::uint64_t kForget_ticks = kControlHz / 10;
 
 /// MIT codes have none for zero: a drive at rest says half a step. Left as it is, a joint that
 /// stands would seem to creep for ever.
@@ -112,8 +117,49 @@ bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
     enable_frame(frame);
   }
   ++sent_;
+  expect_reply(tick);
   if (unanswered_++ == 0) asked_tick_ = tick;
   return true;
+}
+
+bool Drive::is_command(const CanFrame& frame) const noexcept {
+  if (frame.error) return false;
+  if (config_.protocol == Protocol::kMoteus) {
+    MoteusRequest request;
+    return decode_moteus_request(config_.moteus, frame, request) == MoteusStatus::kOk;
+  }
+  DamiaoAccess access;
+  return (!frame.extended && frame.id == config_.mit.motor_id) ||
+         decode_damiao_request(config_.mit, frame, access) == DamiaoStatus::kOk;
+}
+
+void Drive::hear_command(std::uint64_t tick) noexcept {
+  ++foreign_commands_;
+  foreign_until_ = tick + kForeign_ticks;
+}
+
+void Drive::expect_reply(std::uint64_t tick) noexcept {
+  if (tick >= open_since_ + kForget_ticks) {
+    open_old_ = tick < open_since_ + 2 * kForget_ticks ? open_new_ : 0;
+    open_new_ = 0;
+    open_since_ = tick;
+  }
+  ++open_new_;
+}
+
+void Drive::judge_surplus(std::uint64_t tick) noexcept {
+  // The newest first: what was lost is then forgotten with its time.
+  if (open_new_ > 0) {
+    --open_new_;
+  } else if (open_old_ > 0) {
+    --open_old_;
+  } else {
+    // One alone may be a frame that the bus delivered twice.
+    if (surplus_++ > 0 && tick <= surplus_tick_ + kSurplus_ticks) {
+      foreign_until_ = tick + kForeign_ticks;
+    }
+    surplus_tick_ = tick;
+  }
 }
 
 bool Drive::take(const CanFrame& frame, std::uint64_t tick) noexcept {
@@ -121,6 +167,7 @@ bool Drive::take(const CanFrame& frame, std::uint64_t tick) noexcept {
   const bool taken =
       config_.protocol == Protocol::kMit ? take_mit(frame, was_silent) : take_moteus(frame);
   if (!taken) return false;
+  judge_surplus(tick);
   unanswered_ = 0;
   tick_ = tick;
   judge_supply();

@@ -53,6 +53,16 @@ class Drive {
   /// is none that a drive could send (then it counts as bad()).
   bool take(const CanFrame& frame, std::uint64_t tick) noexcept;
 
+  /// Whether some host sends `frame` to this drive. The sockets hear no frame of their own, so it
+  /// is another program's.
+  bool is_command(const CanFrame& frame) const noexcept;
+  /// A frame came that is_command().
+  void hear_command(std::uint64_t tick) noexcept;
+  /// Whether another program spoke to this drive within kForeign_ticks: a command of it was heard,
+  /// or the drive answered twice within kSurplus_ticks what this program did not ask.
+  bool has_foreign_traffic(std::uint64_t tick) const noexcept { return foreign_until_ > tick; }
+  static constexpr std::uint64_t kForeign_ticks = kControlHz, kSurplus_ticks = kControlHz / 100;
+
   /// Its bus went off: nothing is sent until the robot was told to be off.
   void lose_bus() noexcept;
 
@@ -72,6 +82,8 @@ class Drive {
   /// Since it was first told to be off: those that do not say that it is on.
   std::uint64_t replies_off() const noexcept { return replies_off_; }
   std::uint64_t bad() const noexcept { return bad_; }
+  std::uint64_t foreign_commands() const noexcept { return foreign_commands_; }
+  std::uint64_t surplus_replies() const noexcept { return surplus_; }
   bool off() const noexcept { return phase_ == Phase::kOff; }
 
  private:
@@ -88,6 +100,8 @@ class Drive {
   bool take_moteus(const CanFrame& frame) noexcept;
   void judge_power(bool known, bool enabled, bool was_silent) noexcept;
   void judge_supply() noexcept;
+  void expect_reply(std::uint64_t tick) noexcept;
+  void judge_surplus(std::uint64_t tick) noexcept;
   void set(DriveTrouble trouble, bool on) noexcept;
 
   DriveConfig config_;
@@ -105,6 +119,10 @@ class Drive {
   double temperature_degc_, voltage_v_;
   std::uint64_t maker_fault_ = 0, trouble_ = 0, last_fault_ = 0, tick_ = 0;
   std::uint64_t sent_ = 0, replies_ = 0, replies_off_ = 0, bad_ = 0;
+  // Requests that may still be answered, of this kForget_ticks and of those before. A few of the
+  // bring-up may be at the start.
+  std::uint64_t open_new_ = 4, open_old_ = 0, open_since_ = 0;
+  std::uint64_t surplus_ = 0, surplus_tick_ = 0, foreign_commands_ = 0, foreign_until_ = 0;
 };
 
 /// What a joint's drive_fault means, for a person: "rotor over temperature", "switched off

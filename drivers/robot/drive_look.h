@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ using CanSockets = std::vector<std::unique_ptr<CanSocket>>;
 /// What a drive answered while it was looked for.
 struct FoundDrive {
   int requests = 0, replies = 0;
+  int commands = 0;           ///< of other programs, to this drive
   double position_rad = 0.0;  ///< of the joint, newest
   double round_trip_s = 0.0,
          longest_round_trip_s = 0.0;  /// from sending to the kernel's stamp; mean
@@ -43,11 +45,20 @@ class DriveLook {
   /// One request to each drive; returns after kExchange_s.
   void exchange();
 
+  /// The same, but drives with a set-point are enabled, and then get it; after an exchange of the
+  /// robot's own rate. For the nudge alone (drivers/check/nudge.h).
+  void exchange_powered(const JointArray<std::optional<JointSetPoint>>& points);
+
   const JointArray<FoundDrive>& drives() const noexcept { return found_; }
+  const Drive& drive(int j) const noexcept { return drives_[j]; }
+  /// Control ticks since the beginning, as Drive::tick().
+  std::uint64_t tick() const noexcept;
   const std::vector<FoundBus>& buses() const noexcept { return buses_; }
   JointArray<double> position_rad() const noexcept;
 
  private:
+  void send(int j, const CanFrame& frame);
+  void receive(double wait_s);
   void take(std::size_t bus, const ReceivedFrame& received);
 
   const HardwareConfig& config_;
@@ -56,6 +67,7 @@ class DriveLook {
   JointArray<FoundDrive> found_;
   JointArray<std::int64_t> sent_ns_{};
   std::vector<FoundBus> buses_;
+  std::int64_t start_ns_;  ///< CLOCK_MONOTONIC
 };
 
 }  // namespace sandrunner

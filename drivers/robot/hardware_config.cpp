@@ -256,7 +256,10 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
                     "1000, 800, 500, ...)",
                     h.rate_hz, kControlHz));
   }
-  h.drive_timeout_s = config.number("hardware.drive_timeout_s", h.drive_timeout_s, 0.005, 0.1);
+  // A drive that closes no loop holds its last torque until then.
+  const double longest_s = h.mode == DriveMode::kTorque ? 0.05 : 0.1;
+  h.drive_timeout_s =
+      config.number("hardware.drive_timeout_s", h.drive_timeout_s, 0.005, longest_s);
   h.timeout_unverified = config.flag("hardware.timeout_unverified", false);
   h.temperature_limit_degc =
       config.number("hardware.temperature_limit_degc", h.temperature_limit_degc, 0.0, 150.0);

@@ -30,8 +30,8 @@ std::uint64_t seed_of(const std::string& text) {
 CLI::App* add_check(CLI::App& app, Options& o) {
   CLI::App* const check = app.add_subcommand(
       "check",
-      "looks at the buses, drives and IMU of a real robot and reports; powers nothing "
-      "(drivers/robot/README.md)");
+      "looks at the buses, drives and IMU of a real robot and reports; powers nothing without "
+      "--nudge (drivers/robot/README.md)");
   check->fallthrough();
   check->add_option("FILE", o.hardware_path, "TOML with the drives and the IMU, as of --hardware")
       ->required()
@@ -39,6 +39,10 @@ CLI::App* add_check(CLI::App& app, Options& o) {
   CLI::Option* const plan =
       check->add_flag("--plan", o.check.plan, "the load of the buses alone; opens nothing");
   check->add_flag("--move", o.check.move, "asks somebody to turn each joint by hand")
+      ->excludes(plan);
+  check
+      ->add_flag("--nudge", o.check.nudge,
+                 "each drive pushes its joint a little, the robot hanging (hardware.hanging=true)")
       ->excludes(plan);
   check
       ->add_option("--zero", o.check.zero,

@@ -30,7 +30,7 @@ struct Options {
   /// The subcommand `check`; its file is `hardware_path`.
   struct Check {
     bool asked = false;
-    bool plan = false, move = false;
+    bool plan = false, move = false, nudge = false;
     std::string zero;  ///< pose in which the robot is held: "lying", "nominal"; empty: none
   } check;
   std::uint64_t seed = 0;

@@ -28,7 +28,7 @@ struct Wakeups {
 };
 
 Wakeups ours(const ProcessConfig& config, Policy& policy) {
-  const std::atomic<bool> nobody{false};
+  const std::atomic<int> nobody{0};
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command("1,0,0");
   RunScript script(command, {.walk_s = kSample_s, .start_walking = true}, true);

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "drivers/can/can_frame.h"
+#include "drivers/robot/bus_listen.h"
+#include "drivers/robot/drive.h"
 #include "rt/base/clock_ns.h"
 #include "tools/hil/can_link.h"
 
@@ -20,6 +22,7 @@ namespace {
 constexpr std::uint64_t kTicksPerQuestion = 40;
 constexpr double kBusOff_s = 0.1;
 constexpr double kHand_radps = 1.0;
+constexpr double kStandInertia_kgm2 = 0.05, kStandFriction_nmsprad = 0.1;
 
 const char* name_of(EmulatedDrive::State state) noexcept {
   switch (state) {
@@ -45,13 +48,8 @@ Bench::Bench(const ProcessConfig& config, const std::string& imu_device,
       script_(std::move(faults)),
       robot_(config.robot, config.simulator),
       imu_(imu_device, hardware_.imu) {
-  constexpr std::array kEverything = {CanFilter{0, 0, false}, CanFilter{0, 0, true}};
   for (const BusConfig& bus : hardware_.buses) {
-    buses_.push_back({.interface = bus.interface,
-                      .socket = std::make_unique<CanSocket>(
-                          CanSocketConfig{.interface = bus.interface,
-                                          .fd = bus.format != CanFormat::kClassic,
-                                          .filters = kEverything})});
+    buses_.push_back({.interface = bus.interface, .socket = open_bus(bus), .foreign = nullptr});
   }
   for (int j = 0; j < kNumJoints; ++j) {
     drives_.emplace_back(hardware_.drives[j], hardware_.drive_timeout_s);
@@ -70,8 +68,10 @@ double Bench::now_s() const noexcept {
   return 1e-9 * static_cast<double>(clock_ns(CLOCK_MONOTONIC) - start_ns_);
 }
 
-BenchReport Bench::play(const std::function<bool()>& more, pid_t controller) {
+BenchReport Bench::play(const std::function<bool()>& more, pid_t controller,
+                        const std::function<void()>& second) {
   controller_ = controller;
+  second_ = second;
   start_ns_ = clock_ns(CLOCK_MONOTONIC);
   for (tick_ = 0; tick_ % kTicksPerQuestion != 0 || more(); ++tick_) {
     const std::int64_t deadline_ns =
@@ -79,6 +79,7 @@ BenchReport Bench::play(const std::function<bool()>& more, pid_t controller) {
     exchange(deadline_ns);
     const double slot_s = static_cast<double>(tick_ + 1) * kControlPeriod_s;
     make_faults(slot_s);
+    send_foreign();
     step(slot_s);
     observe(slot_s);
     report_.late_longest_us = std::max(report_.late_longest_us, 1e6 * (now_s() - slot_s));
@@ -196,6 +197,18 @@ void Bench::make(const TimedFault& fault, double now_s) {
     case BenchFault::kHot:
       faults.temperature_degc = fault.value;
       break;
+    case BenchFault::kReversed:
+      faults.reversed = true;
+      break;
+    case BenchFault::kForeign:
+      foreign_left_[fault.first] = static_cast<int>(fault.value);
+      break;
+    case BenchFault::kSecond:
+      if (second_) second_();
+      break;
+    case BenchFault::kStand:
+      on_stand_ = free_joints_ = true;
+      break;
     case BenchFault::kBusOff:
       bus.deaf = true;
       bus.back_at_s = now_s + kBusOff_s;
@@ -232,6 +245,35 @@ void Bench::make(const TimedFault& fault, double now_s) {
   }
 }
 
+void Bench::send_foreign() {
+  if (tick_ % (kControlHz / 1000) != 0) return;
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (foreign_left_[j] == 0) continue;
+    --foreign_left_[j];
+    const DriveConfig& drive = hardware_.drives[j];
+    std::unique_ptr<CanSocket>& socket = buses_[drive.bus].foreign;
+    if (!socket) socket = open_bus(hardware_.buses[drive.bus]);
+    CanFrame frame;  // damping, as a controller would that does not walk
+    Drive(drive, hardware_).command_frame({.kd_nmsprad = 2.0}, frame);
+    socket->send({&frame, 1});
+  }
+}
+
+void Bench::turn_on_stand(const JointArray<double>& torque_nm) {
+  for (int j = 0; j < kNumJoints; ++j) {
+    const double most = kHand_radps * kControlPeriod_s;
+    double turned = std::clamp(hand_target_rad_[j] - hand_rad_[j], -most, most);
+    if (free_joints_) {
+      const double friction_nm = kStandFriction_nmsprad * hand_radps_[j];
+      hand_radps_[j] += (torque_nm[j] - friction_nm) / kStandInertia_kgm2 * kControlPeriod_s;
+      turned = hand_radps_[j] * kControlPeriod_s;
+    }
+    hand_rad_[j] += turned;
+    drives_[j].measure(robot_.state().q[j] + hand_rad_[j],
+                       robot_.state().qd[j] + turned / kControlPeriod_s);
+  }
+}
+
 void Bench::step(double now_s) {
   JointArray<double> torque_nm;
   for (int j = 0; j < kNumJoints; ++j) torque_nm[j] = drives_[j].torque_nm(now_s);
@@ -243,13 +285,7 @@ void Bench::step(double now_s) {
     }
   }
   if (!on_stand_) robot_.step(torque_nm);
-  for (int j = 0; j < kNumJoints; ++j) {
-    const double most = kHand_radps * kControlPeriod_s;
-    const double turned = std::clamp(hand_target_rad_[j] - hand_rad_[j], -most, most);
-    hand_rad_[j] += turned;
-    drives_[j].measure(robot_.state().q[j] + hand_rad_[j],
-                       robot_.state().qd[j] + turned / kControlPeriod_s);
-  }
+  turn_on_stand(torque_nm);
   if (tick_ % static_cast<std::uint64_t>(kControlHz / imu_.base_rate_hz()) == 0) {
     imu_.listen();
     imu_.tick(robot_.imu(), (tick_ + 1) * static_cast<std::uint64_t>(kControlPeriod_ns));

@@ -30,15 +30,17 @@ class Bench {
         double walk_s);
 
   /// Plays as long as `more` says so, which is asked in every 40th tick. `controller`: whom to
-  /// kill, 0: nobody.
-  BenchReport play(const std::function<bool()>& more, pid_t controller = 0);
+  /// kill, 0: nobody. `second`: starts a second controller, if given.
+  BenchReport play(const std::function<bool()>& more, pid_t controller = 0,
+                   const std::function<void()>& second = {});
 
  private:
   struct Bus {
     std::string interface;
     std::unique_ptr<CanSocket> socket;
-    bool deaf = false;        ///< off, or down
-    double back_at_s = -1.0;  ///< when it is on again
+    bool deaf = false;                   ///< off, or down
+    double back_at_s = -1.0;             ///< when it is on again
+    std::unique_ptr<CanSocket> foreign;  ///< of another program
   };
   struct Place {
     double x_m, y_m;
@@ -49,6 +51,8 @@ class Bench {
   void answer(Bus& bus, int index);
   void make_faults(double now_s);
   void make(const TimedFault& fault, double now_s);
+  void send_foreign();
+  void turn_on_stand(const JointArray<double>& torque_nm);
   void step(double now_s);
   void observe(double now_s);
   BenchReport report();
@@ -61,11 +65,15 @@ class Bench {
   std::vector<EmulatedDrive> drives_;
   JointArray<double> reboot_end_s_{};
   JointArray<double> hand_rad_{}, hand_target_rad_{};  // by how much hands have turned the joints
-  bool on_stand_ = false;                              // hands work there; nothing else moves
+  JointArray<double> hand_radps_{};
+  bool on_stand_ = false;     // hands work there; nothing else moves
+  bool free_joints_ = false;  // but joints under their drives' torque
+  JointArray<int> foreign_left_{};
   EmulatedRobot robot_;
   ImuLine imu_;
 
   pid_t controller_ = 0;
+  std::function<void()> second_;
   std::int64_t start_ns_ = 0;
   std::uint64_t tick_ = 0;
   double enabled_at_s_ = -1.0;  ///< all drives together

@@ -208,7 +208,7 @@ double EmulatedDrive::torque_nm(double now_s) noexcept {
     torque_nm_ = clamp_to(-config_.moteus.kd_nmsprev / kTurn_rad * velocity_radps_,
                           -kMoteusTimeoutTorque_nm, kMoteusTimeoutTorque_nm);
   }
-  return torque_nm_ * turn();
+  return torque_nm_ * turn() * (faults.reversed ? -1.0 : 1.0);
 }
 
 void EmulatedDrive::reboot() noexcept {

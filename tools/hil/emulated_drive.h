@@ -16,6 +16,7 @@ struct DriveFaults {
   std::uint8_t code = 0;    ///< its own fault: it gives no torque
   double offset_rad = 0.0;  ///< its encoder says so much more, at its output
   double temperature_degc = 35.0;
+  bool reversed = false;                 ///< its torque acts the other way than it says
   double control_mode = kDamiaoMitMode;  ///< a Damiao's: in another it heeds no set-points
 };
 

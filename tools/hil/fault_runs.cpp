@@ -13,13 +13,16 @@ constexpr const char* kNotStarted = "nothing is enabled";
 
 // A drive that hears nothing any more lets go by its own time-out, 50 ms in the examples. The robot
 // stands up when the fault comes, but where another time is given: 6 s after, it walks.
-constexpr std::array<FaultRun, 23> kRuns = {{
+constexpr std::array<FaultRun, 27> kRuns = {{
     {"drive-silent", "a drive says nothing, in Walk", "moteus", "6 silent LF_KFE", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-reboots", "a drive reboots in 0.3 s", "moteus", "1 reboot LF_KFE 0.3", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-resets", "a drive is off at once, and answers", "moteus", "1 reboot RF_HFE 0",
      "drive_fault", "RF_HFE", "switched off by itself", kDamping, 1, 0.006, 0.006},
+    {"drive-resets-mit",
+     "a drive is off at once, in Walk, and answers: MIT layout, whose replies do not tell", "mit",
+     "6 reboot RF_KFE 0", "torque_missing", "RF_KFE", "", kDamping, 1, 0.3, 0.3},
     {"damiao-reboots", "a Damiao reboots in 0.3 s, and with it forgets its time-out", "damiao",
      "1 reboot LF_KFE 0.3", "joints_stale", "LF_KFE", "it has no time-out now", kDamping, 1, 0.005,
      0.052},
@@ -53,6 +56,15 @@ constexpr std::array<FaultRun, 23> kRuns = {{
      "REPEATED", kDamping, 1, 0.014, 0.014},
     {"imu-garbage", "the IMU sends garbage", "moteus", "1 imu-garbage", "imu_stale", "",
      "bytes skipped", kDamping, 1, 0.014, 0.014},
+    {"foreign-mit", "another program sends a drive set-points, in Walk: MIT layout", "mit",
+     "6 foreign RF_HFE 1000", "foreign_traffic", "RF_HFE", "COMMANDS OF ANOTHER PROGRAM", kDamping,
+     1, 0.004, 0.004},
+    {"foreign-moteus", "another program sends a drive set-points, in Walk: moteus", "moteus",
+     "6 foreign RF_HFE 1000", "foreign_traffic", "RF_HFE", "COMMANDS OF ANOTHER PROGRAM", kDamping,
+     1, 0.004, 0.004},
+    {"second-controller", "a second controller is started in Walk, with another IMU", "mit",
+     "6 second", "", "", "expected a silent bus", "walks on; the second refuses, sends nothing", 0,
+     0.0, 0.0},
     {"controller-killed", "SIGKILL to the controller in Walk: moteus", "moteus", "6 kill", "", "",
      "", "the drives' time-out damps", -1, 0.052, 0.052},
     {"controller-killed-mit", "SIGKILL to the controller in Walk: MIT layout", "mit", "6 kill", "",

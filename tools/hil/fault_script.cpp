@@ -24,7 +24,7 @@ struct Kind {
   const char* help;
 };
 
-constexpr std::array<Kind, 19> kKinds = {{
+constexpr std::array<Kind, 23> kKinds = {{
     {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive hears and says nothing"},
     {BenchFault::kReboot, "reboot", Takes::kJointAndNumber, "JOINT S: off, and back after S s"},
     {BenchFault::kLoses, "loses", Takes::kJointAndNumber, "JOINT N: one of N replies is lost"},
@@ -36,6 +36,12 @@ constexpr std::array<Kind, 19> kKinds = {{
     {BenchFault::kTurns, "turns", Takes::kJointAndNumber, "JOINT RAD: a hand turns it, on a stand"},
     {BenchFault::kCode, "code", Takes::kJointAndNumber, "JOINT N: a fault of its own"},
     {BenchFault::kHot, "hot", Takes::kJointAndNumber, "JOINT DEGC: its temperature"},
+    {BenchFault::kReversed, "reversed", Takes::kJoint, "JOINT: its torque acts the other way"},
+    {BenchFault::kForeign, "foreign", Takes::kJointAndNumber,
+     "JOINT N: another program sends it N set-points, at 1 kHz"},
+    {BenchFault::kSecond, "second", Takes::kNothing, "a second controller starts (runs only)"},
+    {BenchFault::kStand, "stand", Takes::kNothing,
+     "on a stand, where each joint turns under its drive's torque"},
     {BenchFault::kBusOff, "bus-off", Takes::kBus, "INTERFACE: off for 0.1 s"},
     {BenchFault::kLinkDown, "link-down", Takes::kBus, "INTERFACE: set down"},
     {BenchFault::kLinkUp, "link-up", Takes::kBus, "INTERFACE: set up"},

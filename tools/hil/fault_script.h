@@ -21,6 +21,10 @@ enum class BenchFault : std::uint8_t {
   kTurns,      ///< on a stand, where nothing else moves: a hand turns a joint by so much, rad
   kCode,       ///< a drive reports this fault of its own
   kHot,        ///< a drive has this temperature, degrees C
+  kReversed,   ///< a drive's torque acts the other way than it says
+  kForeign,    ///< another program sends a drive so many set-points, one a millisecond
+  kSecond,     ///< a second controller is started, if the bench started the first
+  kStand,      ///< on a stand each joint turns under its drive's torque, and nothing else moves
   kBusOff,     ///< a bus goes off, and is on again after 0.1 s
   kLinkDown,   ///< a network interface is set down ...
   kLinkUp,     ///< ... and up

@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 
+#include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "tools/hil/bench.h"
 #include "tools/hil/bench_config.h"
@@ -116,13 +117,20 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
     command.insert(command.end(), {"--set", assignment});
   }
   ControllerProcess controller(command, dir);
+  std::optional<ControllerProcess> second;
+  const auto start_second = [&] {
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {"--set", "hardware.imu.device=/dev/null"});
+    prepare_folder(dir + "/second", "--out");
+    second.emplace(words, dir + "/second");
+  };
   std::uint64_t questions = 0, afterwards = 0;
   const BenchReport report = bench.play(
       [&] {
         if (controller.ended()) ++afterwards;
         return afterwards < kQuestionsAfterwards && ++questions < kMostQuestions;
       },
-      controller.pid());
+      controller.pid(), start_second);
   write_file(dir + "/bench.json", report_json(report, config.robot.description));
 
   RunVerdict verdict;
@@ -134,7 +142,7 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
         ended ? fmt::format("the controller ended with {}, expected {}", *ended, run.exit_code)
               : "the controller does not end");
   }
-  const std::string printed = text_of(dir + "/log.txt");
+  std::string printed = text_of(dir + "/log.txt");
   const Diagnosis found = diagnosis(printed);
   if (found.fault != run.bit) {
     verdict.wrong.push_back(fmt::format("fault '{}', expected '{}'", found.fault, run.bit));
@@ -142,6 +150,11 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
   if (found.joints != words_of(run.joints)) {
     verdict.wrong.push_back(fmt::format("joints {}, expected {}", fmt::join(found.joints, " "),
                                         *run.joints != '\0' ? run.joints : "none"));
+  }
+  if (second) {
+    if (second->ended() != kExitBadInput)
+      verdict.wrong.emplace_back("the second one was not refused");
+    printed += text_of(dir + "/second/log.txt");
   }
   if (printed.find(run.says) == std::string::npos) {
     verdict.wrong.push_back(fmt::format("its output does not say '{}'", run.says));

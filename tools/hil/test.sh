@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/hil/test.sh short|walk|faults|cost|check|record|parallel|full [BIN]: the controller against the bench in the emulated
+# tools/hil/test.sh short|walk|faults|cost|check|nudge|record|parallel|full [BIN]: the controller against the bench in the emulated
 # machine (qemu.sh), with the programs in BIN (default build/release/bin); judges, and prints what was measured.
 #
 #   short     what tools/test.sh runs: tests that need CAN in the kernel, both protocols walk 2 s, some fault runs
@@ -8,6 +8,7 @@
 #   faults    the whole list of fault runs
 #   cost      what a control tick costs with twelve drives on four buses in torque mode; its system calls
 #   check     `sandrunner check --move`, each joint turned by a hand: one has the wrong sign, two are swapped
+#   nudge     `sandrunner check --nudge`, each drive pushes its joint: the torque of one acts the other way
 #   record    a recording made over CAN, replayed here
 #   parallel  two processors in the host's time: what needs no walk, which an emulated machine is too slow for
 #   full      all of these
@@ -85,6 +86,17 @@ check)
     grep -q 'LH_HFE .*: the drive of LH_KFE .* swap them' "$report" &&
     grep -q 'LH_KFE .*: the drive of LH_HFE .* swap them' "$report" && (($(grep -c 'as it should' "$report") == 9))
   ;;
+nudge)
+  guest nudge 600 'sed "s|^device = \"[^\"]*\"|device = \"/tmp/imu\"|" moteus.toml >robot.toml
+    sandrunner-hil --hardware robot.toml --fault "start stand" --fault "start reversed RF_HFE" &
+    sleep 4
+    { echo; sleep 30; } | sandrunner check robot.toml --nudge --set hardware.hanging=true >/out/check.txt 2>/out/asked.txt
+    echo "exit code $?"
+    cat /out/asked.txt /out/check.txt' | tee "$out/nudge.log"
+  report=$out/nudge/check.txt
+  grep -q 'exit code 1' "$out/nudge.log" && grep -q 'RF_HFE .* wrong sign' "$report" &&
+    (($(grep -c 'as they should' "$report") == 11))
+  ;;
 record)
   guest record 900 "sandrunner-hil --hardware moteus.toml --set hardware.imu.device=/tmp/imu & sleep 1;
     sandrunner --hardware moteus.toml --arm --command 1,0,0 --duration 2 --set hardware.imu.device=/tmp/imu \
@@ -97,13 +109,13 @@ parallel)
     imu_test --gtest_brief=1 && sandrunner-hil runs --only swapped-ids,wrong-scale $faults"
   ;;
 full)
-  for each in short walk faults cost check record parallel; do
+  for each in short walk faults cost check nudge record parallel; do
     echo "== $each"
     bash "${BASH_SOURCE[0]}" "$each" "$bin"
   done
   ;;
 *)
-  echo "test.sh: found '$lane', expected short, walk, faults, cost, check, record, parallel or full" >&2
+  echo "test.sh: found '$lane', expected short, walk, faults, cost, check, nudge, record, parallel or full" >&2
   exit 2
   ;;
 esac

@@ -61,6 +61,16 @@ TEST(CheckReportTest, ListsProblemsAndSilentDrives) {
   EXPECT_THAT(report, Not(HasSubstr("nothing is wrong")));
 }
 
+TEST(CheckReportTest, SaysWhatWasPushedAndThatDrivesWereOn) {
+  CheckFindings findings = good_findings();
+  findings.nudges = {"LF_KFE: moved"};
+  findings.powered = true;
+  const std::string report =
+      check_report(example_hardware("mit"), example_robot(), example_gate(), findings);
+  EXPECT_THAT(report, HasSubstr("pushed by its own drive\n  LF_KFE: moved\n"));
+  EXPECT_THAT(report, HasSubstr("nothing is wrong; the drives are off again\n"));
+}
+
 TEST(CheckReportTest, DrivesThatNobodyExpectsAreNamed) {
   const HardwareConfig config = example_hardware("mit");
   CheckFindings findings = good_findings();

@@ -16,6 +16,31 @@ TEST(CanRobotTest, AStepOfTheWallClockMakesNoFrameOlderThanTheTimeSinceThereWasN
   EXPECT_EQ(frame_age_ns(1'000'000, 1'100'000 - kHour_ns, kLongest_ns), 0);
 }
 
+/// What goes out, and whether the drives are cut while it does: of the first bus, the second.
+std::vector<std::uint32_t> sent_to_two_buses(bool cut_before, bool cut_between, bool cut_within) {
+  std::atomic<bool> cut{cut_before};
+  std::array<CanFrame, 1> set_point, off;
+  set_point[0].id = 1;
+  off[0].id = 2;
+  std::vector<std::uint32_t> ids;
+  for (int bus = 0; bus < 2; ++bus) {
+    send_unless_cut(cut, set_point, off, [&](std::span<const CanFrame> frames) {
+      if (cut_within && bus == 1) cut = true;
+      ids.push_back(frames[0].id);
+    });
+    if (cut_between) cut = true;
+  }
+  return ids;
+}
+
+TEST(CanRobotTest, AfterACutNoSetPointIsTheLastThatADriveHears) {
+  using Ids = std::vector<std::uint32_t>;
+  EXPECT_EQ(sent_to_two_buses(false, false, false), (Ids{1, 1}));
+  EXPECT_EQ(sent_to_two_buses(true, false, false), (Ids{2, 2}));
+  EXPECT_EQ(sent_to_two_buses(false, true, false), (Ids{1, 2}));
+  EXPECT_EQ(sent_to_two_buses(false, false, true), (Ids{1, 1, 2}));
+}
+
 /// What the gate sends after joint 4's encoder has jumped.
 SafeCommand after_encoder_jump() {
   GateConfig config;

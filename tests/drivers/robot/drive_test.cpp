@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "drivers/can/damiao_registers.h"
 #include "tests/drivers/robot/example.h"
 
 namespace sandrunner {
@@ -282,6 +283,75 @@ TEST(DriveTest, FramesOfOthersAreNotTakenAndWrongLengthsCounted) {
   EXPECT_TRUE(pair.drive.take(reply, 1));
 }
 
+/// The reply of a drive without a request.
+void answer_unasked(MitPair& pair, std::uint64_t tick) {
+  CanFrame reply;
+  EXPECT_EQ(encode_mit_reply(pair.config().mit, pair.state, reply), MitStatus::kOk);
+  EXPECT_TRUE(pair.drive.take(reply, tick));
+}
+
+TEST(DriveTest, TwoRepliesWithin10MsThatNobodyAskedForAreForeignTraffic) {
+  MitPair pair;
+  for (int i = 0; i < 240; ++i) pair.exchange(nullptr);
+  answer_unasked(pair, 1200);
+  EXPECT_FALSE(pair.drive.has_foreign_traffic(1200)) << "one may have been delivered twice";
+  answer_unasked(pair, 1240);
+  EXPECT_TRUE(pair.drive.has_foreign_traffic(1240));
+  EXPECT_TRUE(pair.drive.has_foreign_traffic(1240 + kControlHz - 1));
+  EXPECT_FALSE(pair.drive.has_foreign_traffic(1240 + kControlHz));
+  EXPECT_EQ(pair.drive.surplus_replies(), 2u);
+}
+
+TEST(DriveTest, RepliesThatAreDeliveredTwiceNowAndThenAreNot) {
+  MitPair pair;
+  for (int i = 0; i < 240; ++i) pair.exchange(nullptr);
+  for (std::uint64_t tick = 1200; tick < 2000; tick += 41) answer_unasked(pair, tick);
+  EXPECT_FALSE(pair.drive.has_foreign_traffic(2000));
+}
+
+TEST(DriveTest, RepliesThatAnAdapterHeldBackAreNot) {
+  MitPair pair;
+  for (int i = 0; i < 240; ++i) pair.exchange(nullptr);
+  for (int i = 0; i < 60; ++i) pair.exchange(nullptr, false);  // 75 ms
+  for (int i = 0; i < 60; ++i) answer_unasked(pair, 1500);
+  EXPECT_EQ(pair.drive.surplus_replies(), 0u);
+}
+
+TEST(DriveTest, LostRepliesHideForeignOnesFor200MsAtMost) {
+  MitPair pair;
+  for (int i = 0; i < 240; ++i) pair.exchange(nullptr, false);
+  for (int i = 0; i < 160; ++i) pair.exchange(nullptr);  // 0.2 s
+  answer_unasked(pair, 2000);
+  answer_unasked(pair, 2000);
+  EXPECT_TRUE(pair.drive.has_foreign_traffic(2000));
+}
+
+TEST(DriveTest, ACommandToItsIdIsForeignTrafficAndAReplyIsNot) {
+  MitPair pair;
+  CanFrame command, reply;
+  ASSERT_EQ(encode_mit_command(pair.config().mit, {}, command), MitStatus::kOk);
+  ASSERT_EQ(encode_mit_reply(pair.config().mit, pair.state, reply), MitStatus::kOk);
+  EXPECT_TRUE(pair.drive.is_command(command));
+  EXPECT_FALSE(pair.drive.is_command(reply));
+  ++command.id;
+  EXPECT_FALSE(pair.drive.is_command(command));
+  command.error = true;
+  --command.id;
+  EXPECT_FALSE(pair.drive.is_command(command));
+  pair.drive.hear_command(7);
+  EXPECT_TRUE(pair.drive.has_foreign_traffic(7));
+  EXPECT_EQ(pair.drive.foreign_commands(), 1u);
+}
+
+TEST(DriveTest, ARequestForADamiaosRegisterIsACommandToItAlone) {
+  MitPair pair("Damiao");
+  CanFrame request;
+  ASSERT_EQ(encode_damiao_request(pair.config().mit, {}, request), DamiaoStatus::kOk);
+  EXPECT_TRUE(pair.drive.is_command(request));
+  ++request.data[0];
+  EXPECT_FALSE(pair.drive.is_command(request));
+}
+
 /// A moteus, and what it answers.
 class MoteusPair {
  public:
@@ -380,6 +450,28 @@ TEST(DriveTest, MoteusGetsTorqueAndATimeOutAloneWhereTheHostClosesTheLoop) {
   EXPECT_NEAR(request.watchdog_s, 0.05, 1e-3);
   EXPECT_EQ(request.kp_scale, 0.0);
   EXPECT_EQ(request.kd_scale, 0.0);
+}
+
+TEST(DriveTest, AMoteusIsCommandedByItsIdAndByTheOneOfAll) {
+  const HardwareConfig config = example_hardware("moteus");
+  const Drive drive(config.drives[1], config);
+  MoteusDrive other = config.drives[1].moteus;
+  other.host_id = 5;
+  CanFrame frame;
+  ASSERT_EQ(encode_moteus_stop(other, kMoteusState, frame), MoteusStatus::kOk);
+  EXPECT_TRUE(drive.is_command(frame)) << "of another host";
+  set_moteus_address({.source = 0, .destination = 127}, frame);
+  EXPECT_TRUE(drive.is_command(frame));
+  set_moteus_address({.source = 0, .destination = 1}, frame);
+  EXPECT_FALSE(drive.is_command(frame));
+  MoteusRequest request;
+  MoteusReply state;
+  state.position_rad = state.velocity_radps = state.torque_nm = 0.0;
+  CanFrame reply;
+  ASSERT_EQ(encode_moteus_query(config.drives[1].moteus, kMoteusState, frame), MoteusStatus::kOk);
+  ASSERT_EQ(decode_moteus_request(config.drives[1].moteus, frame, request), MoteusStatus::kOk);
+  ASSERT_EQ(encode_moteus_reply(config.drives[1].moteus, request, state, reply), MoteusStatus::kOk);
+  EXPECT_FALSE(drive.is_command(reply));
 }
 
 }  // namespace

@@ -71,6 +71,14 @@ TEST(HardwareConfigTest, XsensImuHasItsOwnUsualRate) {
   EXPECT_EQ(imu.quaternion_rate_hz, 400);
 }
 
+TEST(HardwareConfigTest, ADriveThatHoldsATorqueLetsGoWithin50Ms) {
+  EXPECT_EQ(example_hardware("mit", {"hardware.drive_timeout_s=0.1"}).drive_timeout_s, 0.1);
+  EXPECT_THROW(example_hardware("mit", {"hardware.mode=torque", "hardware.drive_timeout_s=0.051"}),
+               InputError);
+  EXPECT_NO_THROW(
+      example_hardware("mit", {"hardware.mode=torque", "hardware.drive_timeout_s=0.05"}));
+}
+
 TEST(HardwareConfigTest, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal("mit", "\"LF_HFE\"", "\"LF_HAA\""), HasSubstr("LF_HAA stands twice"));
   EXPECT_THAT(refusal("mit", "\"LF_HFE\"", "\"LF_TOE\""), HasSubstr("'LF_TOE', expected one of"));

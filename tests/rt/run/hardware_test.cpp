@@ -50,8 +50,6 @@ constexpr Refusal kRefusals[] = {
     {"mit.toml", "sign = 1", "sign = 2", "hardware.drive[0].sign"},
     {"mit.toml", "bus = \"can0\"", "bus = \"can7\"", "bus 'can7' is none of hardware.bus"},
     {"mit.toml", "baud = 921600\nrate_hz = 500", "baud = 115200\nrate_hz = 1000", "115200 baud"},
-    {"mit.toml", "\"/dev/ttyS1\"", "\"/dev/nosuch\"", "/dev/nosuch"},
-    {"mit.toml", "\"/dev/ttyS1\"", "\"hardware.toml\"", "hardware.toml"},
     {"mit.toml", "mode = ", "mood = ", "hardware.mood"},
     {"mit.toml", "mode = ", "emergency_stop.chip = \"/dev/nosuch\"\nmode = ",
      "hardware.emergency_stop.line: found none"},
@@ -121,6 +119,8 @@ TEST_F(HardwareTest, CheckRefusesWhatDoesNotGoTogether) {
   expect_refused("check", "FILE");
   expect_refused("check nosuch.toml", "nosuch.toml");
   expect_refused("check hardware.toml --plan --move", "--move");
+  expect_refused("check hardware.toml --plan --nudge", "--nudge");
+  expect_refused("check hardware.toml --nudge", "hardware.hanging is false, expected true");
   expect_refused("check hardware.toml --zero standing", "standing");
   expect_refused("check hardware.toml --arm", "expected no --hardware, --arm or --dry-run");
 }

@@ -37,6 +37,7 @@ TEST(FaultScriptTest, SaysWhenWhatAndWhere) {
   EXPECT_TRUE(turned.from_start);
   EXPECT_EQ(turned.at_s, 2.5);
   EXPECT_EQ(turned.value, -0.5);
+  EXPECT_EQ(fault("6 foreign RF_HFE 1000").kind, BenchFault::kForeign);
 }
 
 TEST(FaultScriptTest, WhatItDoesNotUnderstandIsNamed) {
