@@ -141,7 +141,7 @@ TEST_F(OperatorDeskTest, OperatorsInManyThreadsLeaveOneHolder) {
 // The controller is this thread, which does not say for long that it has considered anything.
 TEST(OperatorDeskOfASlowControllerTest, StopAndDampAndTheCountsDoNotWaitBehindAnotherRequest) {
   RemoteOperator op{1'000'000'000'000};
-  OperatorDesk desk{op, 60.0, true, std::chrono::seconds(20)};
+  OperatorDesk desk{op, 60.0, nullptr, std::chrono::seconds(20)};
   std::uint64_t tick = 0;
   const auto comes = [&](ModeRequest request) {
     return wait_until([&] { return op.command(tick++).request == request; });

@@ -371,7 +371,7 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   };
   sim::Simulator simulator(config_.robot, config_.simulator);
   Policy policy = policy_;
-  const std::atomic<bool> never{false};
+  const std::atomic<int> never{0};
   SystemClock clock;
   run_realtime(simulator, config_.controller, config_.realtime, Mode::kWalk, &policy, op, never,
                tap, clock);
