@@ -36,7 +36,6 @@ bool frozen_in_motion(const GateConfig& config, const JointState& joints, int j,
   const bool braked = context.mode == Mode::kDamping || context.mode == Mode::kFault;
   if (!same || (!context.stiff && !braked)) {
     m.changed_tick[j] = joints.tick[j];
-    m.changed_target_rad[j] = context.sent_rad[j];
     m.body_motion[j] = 0.0;
     return false;
   }
@@ -48,24 +47,26 @@ bool frozen_in_motion(const GateConfig& config, const JointState& joints, int j,
   return (moves && !(may_rest && speed_radps <= kRest_radps)) || m.body_motion[j] > 1.0;
 }
 
-/// Whether joint j stays where it is while its target moves away: to the bit, or to some counts of
-/// an encoder that is stuck.
+/// Whether joint j has stayed where it is for long since its target moved away: to the bit, or to a
+/// count of an encoder that is stuck.
 bool deaf_to_target(const GateConfig& config, const JointState& joints, int j,
                     const JointContext& context, JointMemory& m) noexcept {
+  const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
+  const double target_rad = context.sent_rad[j];
+  if (!context.stiff || m.changed_tick[j] == joints.tick[j]) {
+    m.frozen_target_rad[j] = target_rad;
+    m.frozen_ticks[j] = 0;
+  } else if (std::fabs(target_rad - m.frozen_target_rad[j]) > config.frozen_told_rad) {
+    m.frozen_ticks[j] += ticks;
+  }
   if (!context.stiff || std::fabs(joints.position_rad[j] - m.still_rad[j]) > kStill_rad) {
     m.still_rad[j] = joints.position_rad[j];
-    m.still_tick[j] = joints.tick[j];
-    m.still_target_rad[j] = context.sent_rad[j];
-    m.still_way_rad[j] = 0.0;
+    m.still_target_rad[j] = target_rad;
+    m.still_ticks[j] = 0;
+  } else if (std::fabs(target_rad - m.still_target_rad[j]) > kStillTarget_rad) {
+    m.still_ticks[j] += ticks;
   }
-  const double way_rad = std::fabs(context.sent_rad[j] - m.still_target_rad[j]);
-  m.still_way_rad[j] = std::max(m.still_way_rad[j], way_rad);
-  const std::uint64_t frozen_ticks = joints.tick[j] - m.changed_tick[j];
-  const bool frozen =
-      context.stiff && frozen_ticks >= config.frozen_ticks &&
-      std::fabs(context.sent_rad[j] - m.changed_target_rad[j]) > config.frozen_told_rad;
-  return frozen || (joints.tick[j] - m.still_tick[j] >= ticks_from_s(kStill_s) &&
-                    m.still_way_rad[j] > kStillTarget_rad);
+  return m.frozen_ticks[j] >= config.frozen_ticks || m.still_ticks[j] >= ticks_from_s(kStill_s);
 }
 
 /// Whether the position of joint j has changed by something else than its speed.
@@ -158,7 +159,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       find(torque_missing(config, joints, j, m), Fault::kTorqueMissing);
       find(not_following(joints, j, context, m), Fault::kNotFollowing);
     } else {
-      m.changed_tick[j] = m.still_tick[j] = joints.tick[j];
+      m.changed_tick[j] = joints.tick[j];
       m.still_rad[j] = joints.position_rad[j];
     }
     if (faults != 0) verdict.joints |= joint;

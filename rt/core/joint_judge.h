@@ -22,8 +22,9 @@ inline constexpr double kNotFollowing_rad = 0.6;
 inline constexpr double kNotFollowing_s = 0.05;  ///< ... for this long
 /// Fault: a joint stays within this, a count of a coarse encoder, ...
 inline constexpr double kStill_rad = 0.0005;
-inline constexpr double kStill_s = 0.25;         ///< ... for this long ...
-inline constexpr double kStillTarget_rad = 0.4;  ///< ... while its target moves by this.
+inline constexpr double kStillTarget_rad = 0.4;  ///< ... while its target is this far away from
+                                                 ///< where it was when the joint came to rest, ...
+inline constexpr double kStill_s = 0.1;          ///< ... for this long.
 /// Motion of the body while a joint's values stay the same to the bit, each beyond what a robot at
 /// rest shows: a turn of 0.1 rad or 0.3 m/s of vertical speed are a fault.
 inline constexpr double kBodyRest_radps = 0.1, kBodyTurn_rad = 0.1;
@@ -44,12 +45,12 @@ struct JointMemory {
   JointArray<double> velocity_radps{};
 
   JointArray<std::uint64_t> changed_tick{};  ///< sample since which they have had the same bits
-  JointArray<double> changed_target_rad{};   ///< commanded position then
   JointArray<double> body_motion{};          ///< of the body since then; 1 is too much
-  JointArray<double> still_rad{};            ///< position near which the joint has been ...
-  JointArray<std::uint64_t> still_tick{};    ///< ... since this sample ...
-  JointArray<double> still_target_rad{};     ///< ... at which it was commanded to be here ...
-  JointArray<double> still_way_rad{};        ///< ... and this far away since then, at most
+  JointArray<double> frozen_target_rad{};    ///< commanded position at the last change
+  JointArray<std::uint64_t> frozen_ticks{};  ///< for which it has been far from that
+  JointArray<double> still_rad{};            ///< position near which the joint rests
+  JointArray<double> still_target_rad{};     ///< commanded position when it came there
+  JointArray<std::uint64_t> still_ticks{};   ///< for which that has been far away
   JointArray<double> drift_rad{};            ///< change of position, less the integral of the speed
 
   JointArray<double> commanded_nm{};  ///< torque of the last command, at the values then measured

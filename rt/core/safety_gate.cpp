@@ -335,9 +335,9 @@ SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const Joi
     state.sent = 1;
     state.sent_rad = asked_rad;
     if (!stiff_before) {
-      state.joints.changed_tick = state.joints.still_tick = joints.tick;
+      state.joints.changed_tick = joints.tick;
       state.joints.still_rad = joints.position_rad;
-      state.joints.still_target_rad = state.joints.changed_target_rad = asked_rad;
+      state.joints.still_target_rad = state.joints.frozen_target_rad = asked_rad;
     }
   }
   return SafeCommand{allowed, true, 0};

@@ -110,15 +110,30 @@ TEST_F(SafetyGateTest, AnEncoderThatFreezesInStandIsAFaultOnceTheJointIsToldToMo
     const std::uint64_t found = judge(Mode::kStand);
     wanted.position_rad[4] = target_rad;
     pass(wanted);
+    sensors.joints.torque_nm = state.joints.commanded_nm;
     return found;
   };
   wanted.kp_nmprad.fill(100.0);
   for (int n = 0; n < 4000; ++n) ASSERT_EQ(stand_at(0.6), 0u);
   double target_rad = 0.6;
   std::uint64_t found = 0;
-  while (found == 0 && target_rad < 1.0) found = stand_at(target_rad += 1e-3);
+  while (found == 0 && target_rad < 2.0) found = stand_at(target_rad += 1e-3);
   EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kEncoderFrozen));
-  EXPECT_NEAR(target_rad, 0.6 + config.frozen_told_rad, 0.01);
+  const double later_rad = 1e-3 * static_cast<double>(config.frozen_ticks);
+  EXPECT_NEAR(target_rad, 0.6 + config.frozen_told_rad + later_rad, 0.01);
+}
+
+TEST_F(SafetyGateTest, AJointThatHasRestedForLongHasTimeToFollowATargetThatMovesAtOnce) {
+  const auto stand_at = [&](double target_rad) {
+    const std::uint64_t found = judge(Mode::kStand);
+    wanted.position_rad[4] = target_rad;
+    pass(wanted);
+    sensors.joints.torque_nm = state.joints.commanded_nm;
+    return found;
+  };
+  for (int n = 0; n < 4000; ++n) ASSERT_EQ(stand_at(0.6), 0u);
+  for (std::uint64_t n = 0; n < config.frozen_ticks; ++n) ASSERT_EQ(stand_at(1.2), 0u) << n;
+  EXPECT_EQ(stand_at(1.2), static_cast<std::uint64_t>(Fault::kEncoderFrozen));
 }
 
 TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {

@@ -45,9 +45,8 @@ class Nearest {
             share(joints.torque_missing_ticks[j], ticks_from_s(kTorqueMissing_s)));
       raise(Fault::kEncoderFrozen, joints.body_motion[j]);
       if (gate.sent != 0) {
-        raise(Fault::kEncoderFrozen,
-              std::min(share(joints.sample_tick[j] - joints.still_tick[j], ticks_from_s(kStill_s)),
-                       joints.still_way_rad[j] / kStillTarget_rad));
+        raise(Fault::kEncoderFrozen, share(joints.still_ticks[j], ticks_from_s(kStill_s)));
+        raise(Fault::kEncoderFrozen, share(joints.frozen_ticks[j], limits.frozen_ticks));
       }
       if (gate.sent != 0 && mode == Mode::kStandUp) {
         raise(Fault::kNotFollowing,

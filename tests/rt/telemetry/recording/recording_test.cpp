@@ -381,7 +381,7 @@ TEST_F(RecordingTest, EventsAreModesRequestsAndFaults) {
   EXPECT_EQ(events,
             "mode passive; request arm; mode damping; mode stand_up; request stand; mode stand; "
             "mode walk; request walk; "
-            "request stand; mode stand; mode damping; request damp; ");
+            "request stand; mode stand; request lie; mode damping; ");
 }
 
 // Every topic and field of the layout, e.g. "/odom.twist.twist.linear.x", exists in a recording.
