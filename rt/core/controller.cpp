@@ -44,6 +44,13 @@ double distance(const JointArray<double>& a, const JointArray<double>& b) noexce
   return largest_rad;
 }
 
+/// Tilted by more than 20 degrees: stiff legs would topple a robot that is to lie down.
+bool leans(const ImuSample& imu) noexcept {
+  constexpr double kCosine = 0.93969262078590838;
+  const auto& [w, x, y, z] = imu.orientation_wxyz;
+  return w * w - x * x - y * y + z * z < kCosine * (w * w + x * x + y * y + z * z);
+}
+
 bool is_zero(const VelocityCommand& command) noexcept {
   return command.vx_mps == 0.0 && command.vy_mps == 0.0 && command.wz_radps == 0.0;
 }
@@ -228,6 +235,9 @@ Mode Controller::after_time(Mode mode, const ControllerInput& input) noexcept {
   }
   if (mode == Mode::kStand) {
     if (lost > ticks_from_s(config_.shaping.operator_down_s)) state_.stopping = kStopAndLie;
+    if (state_.stopping == kStopAndLie && leans(input.sensors.imu)) {
+      return next_mode(mode, Event::kRequestDamp);
+    }
     if (motion_done(tick) && state_.stopping == kStopAndLie) {
       if (state_.to_rad == fold_rad_) return next_mode(mode, Event::kLowered);
       begin_lowering(tick);

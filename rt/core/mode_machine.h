@@ -22,7 +22,8 @@
 // robot then stays Passive until somebody asks for more: a reset never re-arms.
 //
 // (3) Stand lowers the body: the legs fold, then it damps. A robot that lies on the ground, as in
-// the first motion of StandUp, goes to Damping at once.
+// the first motion of StandUp, goes to Damping at once, and so does one that leans by more than 20
+// degrees, as stiff legs would topple it.
 //
 // (4) While the body is lowered, Stand raises it again, and Walk is ignored until that is done.
 #pragma once

@@ -354,6 +354,29 @@ TEST(LieTest, ARisingRobotGoesDownAgainFromWhereItIs) {
   EXPECT_EQ(loop.output.mode, Mode::kDamping);
 }
 
+TEST(LieTest, ARobotThatLeansIsDampedAtOnce) {
+  FakeLoop loop;
+  loop.reach(Mode::kStand);
+  loop.request(ModeRequest::kLie);
+  loop.run_s(0.5);
+  ASSERT_EQ(loop.output.mode, Mode::kStand);
+  // Slowly, as an attitude that jumps is a fault.
+  double angle_rad = 0.0;
+  loop.spoil = [&](ControllerInput& seen) {
+    constexpr double kRate_radps = 2.0;
+    angle_rad += kRate_radps * kControlPeriod_s;
+    seen.sensors.imu.orientation_wxyz = {std::cos(0.5 * angle_rad), std::sin(0.5 * angle_rad), 0.0,
+                                         0.0};
+    seen.sensors.imu.angular_velocity_radps[0] = kRate_radps;
+    for (double& q : seen.sensors.joints.position_rad) {
+      q += seen.sensors.tick % 2 == 0 ? kTremble_rad : -kTremble_rad;
+    }
+  };
+  while (loop.output.mode == Mode::kStand && angle_rad < 1.0) loop.tick();
+  EXPECT_EQ(loop.output.mode, Mode::kDamping) << fault_name(loop.output.first_fault);
+  EXPECT_NEAR(angle_rad, 20.0 * 3.14159265 / 180.0, 0.01);
+}
+
 TEST(LieTest, WalkIsIgnoredUntilStandHasRaisedTheRobotAgain) {
   FakeLoop loop;
   loop.reach(Mode::kStand);
