@@ -20,15 +20,13 @@ void PenaltyGate::judge(const BatteryFigures& figures) {
 
 void PenaltyGate::advance(double transitions) {
   const double rise = (transitions - state_.transitions) / (settings_.rise_share * transitions_);
-  const bool settled_before = unsettled() < 1.0;
   state_.transitions = transitions;
   if (!settings_.enabled || state_.passed > 0.0) {
     if (transitions > wait_transitions_) state_.late += rise;
   } else {
     state_.late -= settings_.back_rate * rise;
   }
-  state_.late = std::clamp(state_.late, 0.0, state_.most);
-  if (!settled_before && unsettled() < 1.0) state_.most = state_.late;
+  state_.late = std::clamp(state_.late, 0.0, 1.0);
 }
 
 double PenaltyGate::unsettled() const {

@@ -15,8 +15,7 @@ struct GateSettings {
 };
 
 /// The late penalties wait for performance: their share rises while the latest battery was survived
-/// and tracked, and goes back while it was not. While the training settles, in its last part, it
-/// does not rise above what it had reached by then.
+/// and tracked, and stays or goes back while it was not.
 class PenaltyGate {
  public:
   /// A training of `transitions`, the last `settle_share` of which it settles. `tracked_error`:
@@ -41,7 +40,6 @@ class PenaltyGate {
   struct State {
     double transitions = 0.0;
     double late = 0.0;
-    double most = 1.0;    // of `late`
     double passed = 0.0;  // 1: the latest battery
   };
 

@@ -52,7 +52,7 @@ TEST(PenaltyGateTest, NothingRisesBeforeTheGaitPriorFades) {
   EXPECT_NEAR(gate.late(), 0.1, 1e-12);
 }
 
-TEST(PenaltyGateTest, WhileATrainingSettlesPenaltiesDoNotRiseAboveWhatTheyWere) {
+TEST(PenaltyGateTest, PenaltiesGoOnRisingWhileATrainingSettles) {
   PenaltyGate gate = make_gate();
   gate.advance(55.0);
   gate.judge(kPassed);
@@ -62,15 +62,23 @@ TEST(PenaltyGateTest, WhileATrainingSettlesPenaltiesDoNotRiseAboveWhatTheyWere) 
   gate.advance(61.0);
   EXPECT_NEAR(gate.late(), 0.6, 1e-12);
   EXPECT_NEAR(gate.unsettled(), 39.0 / 40.0, 1e-12);
-  gate.judge(kFalls);
-  gate.advance(65.0);
-  EXPECT_NEAR(gate.late(), 0.4, 1e-12);
-  gate.judge(kPassed);
   gate.advance(80.0);
-  EXPECT_NEAR(gate.late(), 0.6, 1e-12);
+  EXPECT_EQ(gate.late(), 1.0);
   gate.advance(100.0);
-  EXPECT_NEAR(gate.late(), 0.6, 1e-12);
   EXPECT_EQ(gate.unsettled(), 0.0);
+}
+
+TEST(PenaltyGateTest, WithoutAWayBackPenaltiesWaitWhereTheyAre) {
+  GateSettings settings = kSettings;
+  settings.back_rate = 0.0;
+  PenaltyGate gate = make_gate(settings);
+  gate.judge(kPassed);
+  gate.advance(5.0);
+  gate.advance(8.0);
+  EXPECT_NEAR(gate.late(), 0.3, 1e-12);
+  gate.judge(kFalls);
+  gate.advance(50.0);
+  EXPECT_NEAR(gate.late(), 0.3, 1e-12);
 }
 
 TEST(PenaltyGateTest, SwitchedOffItGoesByTheShareOfTheTraining) {
