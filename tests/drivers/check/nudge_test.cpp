@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/drivers/robot/example.h"
-#include "tools/hil/emulated_drive.h"
+#include "tools/hil/emulated/emulated_drive.h"
 
 namespace sandrunner {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/hil/emulated_drive.h"
+#include "tools/hil/emulated/emulated_drive.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "drivers/can/can_frame.h"
-#include "drivers/can/damiao_registers.h"
+#include "drivers/drives/mit/damiao_registers.h"
 #include "drivers/robot/hardware_config.h"
 
 namespace sandrunner::hil {
