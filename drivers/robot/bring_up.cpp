@@ -8,7 +8,7 @@
 #include <optional>
 #include <thread>
 
-#include "drivers/can/damiao_registers.h"
+#include "drivers/drives/mit/damiao_registers.h"
 #include "drivers/robot/drive.h"
 #include "rt/base/errors.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "drivers/can/damiao_registers.h"
+#include "drivers/drives/mit/damiao_registers.h"
 
 namespace sandrunner {
 namespace {

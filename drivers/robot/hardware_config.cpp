@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "drivers/can/mit_models.h"
+#include "drivers/drives/mit/mit_models.h"
 #include "rt/base/errors.h"
 
 namespace sandrunner {

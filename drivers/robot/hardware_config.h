@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "drivers/can/bus_load.h"
-#include "drivers/can/mit.h"
-#include "drivers/can/moteus.h"
+#include "drivers/drives/mit/mit.h"
+#include "drivers/drives/moteus/moteus.h"
 #include "drivers/imu/imu_config.h"
 #include "drivers/robot/emergency_stop.h"
 #include "rt/base/config_tree.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "drivers/can/damiao_registers.h"
+#include "drivers/drives/mit/damiao_registers.h"
 #include "tests/drivers/robot/example.h"
 
 namespace sandrunner {

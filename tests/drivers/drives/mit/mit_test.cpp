@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/mit.h"
+#include "drivers/drives/mit/mit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "drivers/can/mit_models.h"
-#include "tests/drivers/can/frame_bytes.h"
-#include "tests/drivers/can/random_frame.h"
+#include "drivers/drives/mit/mit_models.h"
+#include "tests/drivers/drives/frame_bytes.h"
+#include "tests/drivers/drives/random_frame.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/mit.h"
+#include "drivers/drives/mit/mit.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/can/nearest_code.h"
+#include "drivers/drives/nearest_code.h"
 
 namespace sandrunner {
 namespace {

@@ -15,7 +15,7 @@
 #include <limits>
 #include <span>
 
-#include "drivers/can/moteus_frame.h"
+#include "drivers/drives/moteus/moteus_frame.h"
 
 namespace sandrunner {
 

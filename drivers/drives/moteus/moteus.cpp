@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/moteus.h"
+#include "drivers/drives/moteus/moteus.h"
 
 #include <algorithm>
 #include <cmath>
