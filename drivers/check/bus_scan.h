@@ -25,8 +25,7 @@ std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
 
 /// The frame with which scan() speaks to `id`.
 CanFrame scan_frame(const BusConfig& bus, int id);
-/// Whether it is what drive `id` answers. `damiao`: such drives are on the bus, whose replies have
-/// a state beside the id.
-bool is_scan_reply(const BusConfig& bus, bool damiao, int id, const CanFrame& frame);
+/// Whether it is what a drive `id` answers on bus `bus` of the configuration.
+bool is_scan_reply(const HardwareConfig& config, int bus, int id, const CanFrame& frame);
 
 }  // namespace sandrunner
