@@ -11,7 +11,7 @@
 
 namespace sandrunner {
 
-/// A drive that answered when it was told to be off (MIT) or was asked for its state (moteus).
+/// A drive that answered when it was asked for its state, or told to be off (encode_probe).
 struct ScannedDrive {
   int id = 0;
   std::uint32_t reply_id = 0;  ///< identifier of its reply
