@@ -4,16 +4,20 @@
 each, if an include points up or to a sibling, if files include each other in a circle, or if what has to know no
 simulator reaches one, by whatever way."""
 
+import fnmatch
 import graphlib
 import pathlib
 import re
 import sys
 
-# From the bottom up. A folder may include those of the lines below its own, not its siblings.
+# From the bottom up. A folder may include those of the lines below its own, not its siblings; "drivers/drives/*" are
+# all folders in drivers/drives.
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
     ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
+    ["drivers/drives"],
+    ["drivers/drives/*"],
     ["drivers/robot"],
     ["drivers/check"],
     ["sim/lanes"],
@@ -29,6 +33,7 @@ LAYERS = [
     ["rt"],
     ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
+    ["tools/hil/emulated"],
     ["tools/bench", "tools/ctl", "tools/evaluate", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
@@ -51,6 +56,12 @@ def read_includes(root):
     return includes
 
 
+def layers(includes):
+    """LAYERS with each pattern replaced by the folders of the tree that it matches."""
+    folders = sorted({folder(file) for file in includes})
+    return [[f for name in layer for f in (fnmatch.filter(folders, name) if "*" in name else [name])] for layer in LAYERS]
+
+
 def way_to(target, start, includes):
     """The shortest chain of includes from `start` to a file whose path begins with `target`; None if there is none."""
     ways, seen = [[start]], {start}
@@ -65,7 +76,7 @@ def way_to(target, start, includes):
 
 
 def mistakes(includes):
-    level = {name: i for i, layer in enumerate(LAYERS) for name in layer}
+    level = {name: i for i, layer in enumerate(layers(includes)) for name in layer}
     for name in sorted({folder(file) for file in includes} - level.keys()):
         yield f"{name}: a folder that is not among LAYERS of tools/include_graph.py"
     for file, found in includes.items():
@@ -84,7 +95,7 @@ def mistakes(includes):
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
     includes = read_includes(root)
-    for layer in LAYERS:
+    for layer in layers(includes):
         for name in layer:
             used = {folder(f) for file, found in includes.items() if folder(file) == name for f in found} - {name}
             print(f"{name} -> {' '.join(sorted(used)) or 'nothing'}")

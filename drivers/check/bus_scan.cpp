@@ -23,38 +23,33 @@ void for_each_frame(CanSocket& socket, const Use& use) {
   }
 }
 
-bool has_damiao(const HardwareConfig& config, int bus) {
-  return std::any_of(config.drives.begin(), config.drives.end(), [&](const DriveConfig& drive) {
-    return drive.bus == bus && drive.protocol == Protocol::kMit &&
-           drive.mit.variant == MitVariant::kDamiao;
-  });
+/// A drive as `like` with another id.
+AnyDrive with_id(const AnyDrive& like, int id, CanFormat format) {
+  AnyDrive drive = like;
+  std::visit([&](auto& d) { set_address(d, id, format); }, drive);
+  return drive;
 }
 
 }  // namespace
 
 CanFrame scan_frame(const BusConfig& bus, int id) {
   CanFrame frame;
-  if (bus.protocol == Protocol::kMit) {
-    MitDrive drive;
-    drive.motor_id = static_cast<std::uint16_t>(id);
-    drive.format = bus.format;
-    drive.limits.velocity_radps = drive.limits.torque_nm = drive.limits.reply_torque_nm = 1.0;
-    encode_mit_special(drive, MitSpecial::kDisable, frame);
-  } else {
-    MoteusDrive drive;
-    drive.id = static_cast<std::uint8_t>(id);
-    encode_moteus_query(drive, kMoteusState, frame);
-  }
+  std::visit([&](const auto& drive) { encode_probe(drive, frame); },
+             with_id(bus.any_drive, id, bus.format));
   return frame;
 }
 
-bool is_scan_reply(const BusConfig& bus, bool damiao, int id, const CanFrame& frame) {
-  if (frame.error) return false;
-  if (bus.protocol == Protocol::kMoteus) {
-    return frame.fd && moteus_address(frame).source == id;
-  }
-  if (frame.extended || frame.length < 6 || frame.length > kMaxClassicBytes) return false;
-  return frame.data[0] == id || (damiao && (frame.data[0] & 0xF) == id);
+bool is_scan_reply(const HardwareConfig& config, int bus, int id, const CanFrame& frame) {
+  const BusConfig& b = config.buses[bus];
+  const auto answers = [&](const AnyDrive& like) {
+    return std::visit([&](const auto& drive) { return is_probe_reply(drive, frame); },
+                      with_id(like, id, b.format));
+  };
+  // Replies may differ within a family: those of the bus's own drives are known as well.
+  return answers(b.any_drive) ||
+         std::any_of(config.drives.begin(), config.drives.end(), [&](const DriveConfig& drive) {
+           return drive.bus == bus && answers(drive.drive);
+         });
 }
 
 std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
@@ -69,11 +64,10 @@ std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
     std::this_thread::sleep_for(kAnswer);
     for (std::size_t b = 0; b < sockets.size(); ++b) {
       if (!sockets[b]) continue;
-      const bool damiao = has_damiao(config, static_cast<int>(b));
       for_each_frame(*sockets[b], [&](const CanFrame& frame) {
         std::vector<ScannedDrive>& drives = answered[b];
         const bool known = !drives.empty() && drives.back().id == id;
-        if (known || !is_scan_reply(config.buses[b], damiao, id, frame)) return;
+        if (known || !is_scan_reply(config, static_cast<int>(b), id, frame)) return;
         drives.push_back({.id = id, .reply_id = frame.id});
       });
     }

@@ -11,7 +11,7 @@
 
 namespace sandrunner {
 
-/// A drive that answered when it was told to be off (MIT) or was asked for its state (moteus).
+/// A drive that answered when it was asked for its state, or told to be off (encode_probe).
 struct ScannedDrive {
   int id = 0;
   std::uint32_t reply_id = 0;  ///< identifier of its reply
@@ -25,8 +25,7 @@ std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
 
 /// The frame with which scan() speaks to `id`.
 CanFrame scan_frame(const BusConfig& bus, int id);
-/// Whether it is what drive `id` answers. `damiao`: such drives are on the bus, whose replies have
-/// a state beside the id.
-bool is_scan_reply(const BusConfig& bus, bool damiao, int id, const CanFrame& frame);
+/// Whether it is what a drive `id` answers on bus `bus` of the configuration.
+bool is_scan_reply(const HardwareConfig& config, int bus, int id, const CanFrame& frame);
 
 }  // namespace sandrunner

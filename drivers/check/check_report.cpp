@@ -51,12 +51,12 @@ std::vector<std::string> scan_problems(const HardwareConfig& config, const Robot
         continue;
       }
       const DriveConfig& configured = config.drives[j];
-      if (configured.protocol != Protocol::kMit || configured.mit.reply_id == drive.reply_id) {
-        continue;
-      }
+      const std::optional<std::uint32_t> expected =
+          std::visit([](const auto& d) { return reply_id(d); }, configured.drive);
+      if (!expected || *expected == drive.reply_id) continue;
       problems.push_back(fmt::format("{} ({} id {}): answers under identifier {}, reply_id is {}",
                                      robot.joint_names[j], bus, drive.id, drive.reply_id,
-                                     configured.mit.reply_id));
+                                     *expected));
     }
   }
   return problems;

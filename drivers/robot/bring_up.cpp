@@ -8,34 +8,22 @@
 #include <optional>
 #include <thread>
 
-#include "drivers/can/damiao_registers.h"
 #include "drivers/robot/drive.h"
 #include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {
 
-/// What a Damiao's register holds after it was written, if `value` is given. Nothing if it does not
-/// answer.
-std::optional<double> damiao_register(const MitDrive& drive, CanSocket& socket, DamiaoRegister reg,
-                                      std::optional<double> value) {
+/// The drive's answer; nothing if there is none.
+std::optional<double> ask(const DriveQuestion& question, CanSocket& socket) {
   for (int attempt = 0; attempt < 5; ++attempt) {
-    const DamiaoAccess access{.operation = value ? DamiaoOperation::kWrite : DamiaoOperation::kRead,
-                              .reg = reg,
-                              .value = value.value_or(0.0)};
-    CanFrame frame;
-    if (encode_damiao_request(drive, access, frame) != DamiaoStatus::kOk) return std::nullopt;
-    if (socket.send({&frame, 1}).status != CanStatus::kOk) continue;
+    if (socket.send({&question.request, 1}).status != CanStatus::kOk) continue;
     for (int wait = 0; wait < 10; ++wait) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
       const CanResult result = socket.receive(received);
       for (int i = 0; i < result.frames; ++i) {
-        DamiaoAccess reply;
-        if (decode_damiao_reply(drive, received[i].frame, reply) == DamiaoStatus::kOk &&
-            reply.reg == reg) {
-          return reply.value;
-        }
+        if (const std::optional<double> value = question.answer(received[i].frame)) return value;
       }
     }
   }
@@ -44,31 +32,12 @@ std::optional<double> damiao_register(const MitDrive& drive, CanSocket& socket, 
 
 /// The protection against a drive whose numbers mean something else: what it can tell, it is asked.
 /// What is wrong, empty if nothing is.
-std::string damiao_problem(const HardwareConfig& config, const MitDrive& drive, CanSocket& socket) {
-  const double timeout = std::round(config.drive_timeout_s / kDamiaoTimeoutUnit_s);
-  const struct {
-    DamiaoRegister reg;
-    const char* what;
-    double configured;
-    bool write;
-  } settings[] = {
-      // In another mode it lets itself be enabled, and follows a target of its own.
-      {DamiaoRegister::kControlMode, "control mode (1: MIT)", kDamiaoMitMode, false},
-      {DamiaoRegister::kPositionMax, "position range (PMAX)", drive.limits.position_rad, false},
-      {DamiaoRegister::kVelocityMax, "velocity range (VMAX)", drive.limits.velocity_radps, false},
-      {DamiaoRegister::kTorqueMax, "torque range (TMAX)", drive.limits.torque_nm, false},
-      {DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, true},
-      // The answer to a write may be an echo.
-      {DamiaoRegister::kTimeout, "time-out (units of 50 us)", timeout, false},
-  };
-  for (const auto& s : settings) {
-    const std::optional<double> told =
-        damiao_register(drive, socket, s.reg, s.write ? std::optional(s.configured) : std::nullopt);
-    if (!told) {
-      return fmt::format("does not tell its {} (register {})", s.what, static_cast<int>(s.reg));
-    }
-    if (std::fabs(*told - s.configured) > 1e-3 * s.configured) {
-      return fmt::format("its {} is {:.6g}, configured is {:.6g}", s.what, *told, s.configured);
+std::string settings_problem(const std::vector<DriveQuestion>& questions, CanSocket& socket) {
+  for (const DriveQuestion& q : questions) {
+    const std::optional<double> told = ask(q, socket);
+    if (!told) return fmt::format("does not tell its {} ({})", q.what, q.source);
+    if (std::fabs(*told - q.expected) > 1e-3 * q.expected) {
+      return fmt::format("its {} is {:.6g}, configured is {:.6g}", q.what, *told, q.expected);
     }
   }
   return "";
@@ -103,11 +72,13 @@ std::string problem_of(const HardwareConfig& config, const GateConfig& gate,
   if (found.fault != 0) {
     return fmt::format("reports a fault: {}", drive_fault_words(drive, found.fault));
   }
-  if (drive.protocol == Protocol::kMoteus) return "";  // told its time-out with each command
-  if (drive.mit.variant == MitVariant::kDamiao) {
-    return damiao_problem(config, drive.mit, *sockets[drive.bus]);
-  }
-  if (config.timeout_unverified) return "";
+  const std::string problem = settings_problem(
+      std::visit([&](const auto& d) { return drive_questions(d, config.drive_timeout_s); },
+                 drive.drive),
+      *sockets[drive.bus]);
+  if (!problem.empty()) return problem;
+  const bool hidden = std::visit([](const auto& d) { return hides_timeout(d); }, drive.drive);
+  if (!hidden || config.timeout_unverified) return "";
   return "cannot tell its time-out over CAN; set it in the drive, then set "
          "hardware.timeout_unverified=true";
 }

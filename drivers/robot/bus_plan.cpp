@@ -20,17 +20,7 @@ FrameShape shape_of(const CanFrame& frame) {
 std::array<FrameShape, 2> shapes_of(const DriveConfig& config, const HardwareConfig& hardware) {
   CanFrame command, reply;
   Drive(config, hardware).command_frame({0.1, 0.1, 1.0, 0.1, 0.1}, command);
-  if (config.protocol == Protocol::kMit) {
-    MitReply state;
-    state.bus_voltage_v = state.temperature_degc = state.rotor_temperature_degc = 0.0;
-    encode_mit_reply(config.mit, state, reply);
-  } else {
-    MoteusReply state;
-    state.position_rad = state.velocity_radps = state.torque_nm = 0.0;
-    MoteusRequest request;
-    decode_moteus_request(config.moteus, command, request);
-    encode_moteus_reply(config.moteus, request, state, reply);
-  }
+  std::visit([&](const auto& drive) { encode_example_reply(drive, command, reply); }, config.drive);
   return {shape_of(command), shape_of(reply)};
 }
 

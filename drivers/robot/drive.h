@@ -18,9 +18,9 @@ enum class DriveTrouble : std::uint64_t {
   kHot = 1u << 10,            ///< above HardwareConfig::temperature_limit_degc
   kVoltage = 1u << 11,        ///< its supply is outside the range
   kBusOff = 1u << 12,         ///< its bus was off since the drives were enabled
-  kForgotTimeout = 1u << 13,  ///< a Damiao whose supply was off, or that was silent for so long
-                              ///< that it may have been: it has no time-out any more. Until the
-                              ///< next start, which tells it one
+  kForgotTimeout = 1u << 13,  ///< a drive that forgets_timeout() and whose supply was off, or that
+                              ///< was silent for so long that it may have been. Until the next
+                              ///< start, which tells it one
 };
 inline constexpr double kEnable_s = 0.1;
 
@@ -70,12 +70,12 @@ class Drive {
   double position_rad() const noexcept { return position_rad_; }
   double velocity_radps() const noexcept { return velocity_radps_; }
   double torque_nm() const noexcept { return torque_nm_; }
-  std::uint64_t fault() const noexcept { return maker_fault_ | trouble_; }
+  std::uint64_t fault() const noexcept { return state_.fault | trouble_; }
   /// The latest that was none of 0, which may be over.
   std::uint64_t last_fault() const noexcept { return last_fault_; }
   std::uint64_t tick() const noexcept { return tick_; }
-  double temperature_degc() const noexcept { return temperature_degc_; }  ///< NaN: it does not say
-  double voltage_v() const noexcept { return voltage_v_; }                ///< NaN: it does not say
+  double temperature_degc() const noexcept { return state_.temperature_degc; }  ///< or NaN
+  double voltage_v() const noexcept { return state_.voltage_v; }                ///< or NaN
 
   std::uint64_t sent() const noexcept { return sent_; }
   std::uint64_t replies() const noexcept { return replies_; }
@@ -89,35 +89,27 @@ class Drive {
  private:
   enum class Phase : std::uint8_t { kOff, kEnabling, kOn, kLost };
 
-  void enable_frame(CanFrame& frame) const noexcept;
   bool has(DriveTrouble trouble) const noexcept {
     return (trouble_ & static_cast<std::uint64_t>(trouble)) != 0;
   }
-  bool is_damiao() const noexcept {
-    return config_.protocol == Protocol::kMit && config_.mit.variant == MitVariant::kDamiao;
-  }
-  bool take_mit(const CanFrame& frame, bool was_silent) noexcept;
-  bool take_moteus(const CanFrame& frame) noexcept;
-  void judge_power(bool known, bool enabled, bool was_silent) noexcept;
+  void judge_power(bool was_silent) noexcept;
   void judge_supply() noexcept;
   void expect_reply(std::uint64_t tick) noexcept;
   void judge_surplus(std::uint64_t tick) noexcept;
   void set(DriveTrouble trouble, bool on) noexcept;
 
   DriveConfig config_;
-  bool torque_only_ = false;
+  DriveTerms terms_;
   double temperature_limit_degc_ = 0.0, voltage_low_v_ = 0.0, voltage_high_v_ = 0.0;
-  double timeout_s_ = 0.0;
-  bool timed_out_ = false;  // moteus: as it said last
 
   Phase phase_ = Phase::kOff;
   std::uint64_t enabling_since_ = 0, replies_at_enable_ = 0;
   std::uint64_t unanswered_ = 0,
                 asked_tick_ = 0;  // exchanges since its last reply, and their first
-  bool cleared_ = false;          // a Damiao's fault, with the frame before
+  bool cleared_ = false;          // its fault, with the frame before
+  DriveState state_;              // the newest, at its output
   double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
-  double temperature_degc_, voltage_v_;
-  std::uint64_t maker_fault_ = 0, trouble_ = 0, last_fault_ = 0, tick_ = 0;
+  std::uint64_t trouble_ = 0, last_fault_ = 0, tick_ = 0;
   std::uint64_t sent_ = 0, replies_ = 0, replies_off_ = 0, bad_ = 0;
   // Requests that may still be answered, of this kForget_ticks and of those before. A few of the
   // bring-up may be at the start.

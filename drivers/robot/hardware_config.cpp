@@ -2,13 +2,15 @@
 #include "drivers/robot/hardware_config.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <optional>
 
-#include "drivers/can/mit_models.h"
 #include "rt/base/errors.h"
 
 namespace sandrunner {
@@ -16,10 +18,24 @@ namespace {
 
 constexpr int kMostBuses = 12;
 constexpr int kLeastRate_hz = 400;  // three exchanges within the gate's ceiling of an age
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-// What the int16 registers of a moteus hold (moteus_frame.h): 1e-4 turns, 2.5e-4 turns/s.
-constexpr double kMoteusPosition_rad = 32767 * 1e-4 * kTurn_rad;
-constexpr double kMoteusSpeed_radps = 32767 * 2.5e-4 * kTurn_rad;
+
+/// The protocols of all families, with a drive of each.
+template <typename... Family>
+std::map<std::string, AnyDrive> families(const std::variant<Family...>&) {
+  return {{Family::kProtocol, Family{}}...};
+}
+
+AnyDrive read_protocol(ConfigTree& t, const std::string& where) {
+  const std::map<std::string, AnyDrive> known = families(AnyDrive{});
+  std::vector<std::string> names;
+  for (const auto& [name, drive] : known) names.push_back(name);
+  const std::string protocol = t.choice("protocol", "", names);
+  if (protocol.empty()) {
+    throw InputError(
+        fmt::format("{}: found no protocol, expected {}", where, fmt::join(names, " or ")));
+  }
+  return known.at(protocol);
+}
 
 BusConfig read_bus(ConfigTree& t, const std::vector<BusConfig>& before) {
   BusConfig bus;
@@ -34,18 +50,16 @@ BusConfig read_bus(ConfigTree& t, const std::vector<BusConfig>& before) {
                                    bus.interface));
     }
   }
-  const std::string protocol = t.choice("protocol", "", {"mit", "moteus"});
-  if (protocol.empty()) {
-    throw InputError(fmt::format("hardware.bus[{}] ({}): found no protocol, expected mit or moteus",
-                                 before.size(), bus.interface));
-  }
-  bus.protocol = protocol == "mit" ? Protocol::kMit : Protocol::kMoteus;
-  const bool moteus = bus.protocol == Protocol::kMoteus;
-  const bool fd = t.flag("fd", moteus);
-  if (moteus && !fd) {
-    throw InputError(
-        fmt::format("hardware.bus[{}] ({}): moteus drives speak CAN FD alone, found fd = false",
-                    before.size(), bus.interface));
+  bus.any_drive =
+      read_protocol(t, fmt::format("hardware.bus[{}] ({})", before.size(), bus.interface));
+  const CanFormats formats =
+      std::visit([](const auto& drive) { return can_formats(drive); }, bus.any_drive);
+  const bool fd = t.flag("fd", !formats.classic);
+  if (!(fd ? formats.fd : formats.classic)) {
+    throw InputError(fmt::format(
+        "hardware.bus[{}] ({}): {} drives speak {} alone, found fd = {}", before.size(),
+        bus.interface, std::visit([](const auto& drive) { return drive.kProtocol; }, bus.any_drive),
+        formats.fd ? "CAN FD" : "classic CAN", fd));
   }
   bus.format = fd ? CanFormat::kFdWithBitRateSwitch : CanFormat::kClassic;
   bus.rates.nominal_hz = t.number("bitrate_bps", bus.rates.nominal_hz, 1e4, 1e6);
@@ -62,69 +76,22 @@ int bus_index(const std::vector<BusConfig>& buses, const std::string& name,
       fmt::format("hardware.drive of {}: bus '{}' is none of hardware.bus", joint, name));
 }
 
-MitDrive read_mit(ConfigTree& t, const std::string& where, CanFormat format) {
-  const std::string name = t.text("model", "");
-  const MitModel* const model = find_mit_model(name);
-  if (model == nullptr) {
-    std::vector<std::string_view> names;
-    for (const MitModel& m : mit_models()) names.push_back(m.name);
-    throw InputError(
-        fmt::format("{}: model '{}', expected one of {}", where, name, fmt::join(names, ", ")));
-  }
-  if (format != CanFormat::kClassic && model->variant != MitVariant::kDamiao) {
-    throw InputError(fmt::format(
-        "{}: {} speaks classic CAN alone, its bus is set to CAN FD (fd = true)", where, name));
-  }
-  MitDrive drive;
-  drive.variant = model->variant;
-  drive.format = format;
-  drive.limits = model->limits;
-  drive.reply_id = static_cast<std::uint16_t>(t.integer("reply_id", 0, 0, 0x7FE));
-  // Whoever has changed them in the drive says so here.
-  MitLimits& l = drive.limits;
-  l.position_rad = t.number("position_rad", l.position_rad, 0.1, 1e3);
-  l.velocity_radps = t.number("velocity_radps", l.velocity_radps, 0.1, 1e3);
-  l.torque_nm = t.number("torque_nm", l.torque_nm, 0.1, 1e3);
-  l.reply_torque_nm = t.number("reply_torque_nm", l.torque_nm, 0.1, 1e3);
-  return drive;
-}
-
-MoteusDrive read_moteus(ConfigTree& t, const std::string& where, double& max_torque_nm) {
-  const auto required = [&](const char* key, double most) {
-    const double value = t.number(key, 0.0, 1e-6, most);
-    if (value == 0.0) {
-      throw InputError(
-          fmt::format("{}: found no {}, expected that of the drive's configuration", where, key));
-    }
-    return value;
-  };
-  MoteusDrive drive;
-  drive.kp_nmprev = required("kp_nmprev", 1e6);
-  drive.kd_nmsprev = required("kd_nmsprev", 1e5);
-  max_torque_nm = required("max_torque_nm", 300.0);
-  return drive;
-}
-
-DriveConfig read_drive(ConfigTree& t, const std::string& joint, const HardwareConfig& hardware) {
+DriveConfig read_joint_drive(ConfigTree& t, const std::string& joint,
+                             const HardwareConfig& hardware) {
   const std::string where = fmt::format("hardware.drive of {}", joint);
   DriveConfig drive;
   drive.bus = bus_index(hardware.buses, t.text("bus", ""), joint);
   const BusConfig& bus = hardware.buses[drive.bus];
-  drive.protocol = bus.protocol;
-  const auto id = static_cast<std::uint8_t>(t.integer("id", 0, 1, 126));
+  const auto id = static_cast<int>(t.integer("id", 0, 1, 126));
   if (id == 0) throw InputError(where + ": found no id, expected 1 to 126");
-  if (bus.protocol == Protocol::kMit) {
-    drive.mit = read_mit(t, where, bus.format);
-    if (drive.mit.variant == MitVariant::kDamiao && id > 15) {
-      throw InputError(
-          fmt::format("{}: id {}, but a Damiao names only 1 to 15 in its replies", where, id));
-    }
-    drive.mit.motor_id = id;
-    drive.max_torque_nm = drive.mit.limits.torque_nm;
-  } else {
-    drive.moteus = read_moteus(t, where, drive.max_torque_nm);
-    drive.moteus.id = id;
-  }
+  drive.drive = bus.any_drive;
+  std::visit(
+      [&](auto& d) {
+        set_address(d, id, bus.format);
+        read_drive(d, t, where);
+      },
+      drive.drive);
+  drive.max_torque_nm = drive.ranges().torque_nm;
   drive.sign = static_cast<int>(t.integer("sign", 1, -1, 1));
   if (drive.sign == 0) throw InputError(where + ": sign 0, expected 1 or -1");
   drive.gear = t.number("gear", 1.0, 0.01, 100.0);
@@ -134,8 +101,7 @@ DriveConfig read_drive(ConfigTree& t, const std::string& joint, const HardwareCo
 
 /// The fastest joint that its drive's replies can tell.
 double reply_speed_radps(const DriveConfig& d) noexcept {
-  const bool mit = d.protocol == Protocol::kMit;
-  return (mit ? d.mit.limits.velocity_radps : kMoteusSpeed_radps) / d.gear;
+  return d.ranges().velocity_radps / d.gear;
 }
 
 /// What a joint may be told must be within what its drive's numbers can say.
@@ -148,18 +114,14 @@ void require_range(const DriveConfig& d, int j, const std::string& joint, double
                     "the drive can be told",
                     joint, what, needed, unit, range));
   };
-  const bool mit = d.protocol == Protocol::kMit;
-  const MitLimits& l = d.mit.limits;
+  const DriveRanges ranges = d.ranges();
   check("torque", torque_scale * gate.torque_limit_nm[j], d.gear * d.max_torque_nm, "N m");
-  check("kp", gate.kp_limit_nmprad,
-        d.gear * d.gear * (mit ? l.kp_nmprad : d.moteus.kp_nmprev / kTurn_rad), "N m/rad");
-  check("kd", gate.kd_limit_nmsprad,
-        d.gear * d.gear * (mit ? l.kd_nmsprad : d.moteus.kd_nmsprev / kTurn_rad), "N m s/rad");
+  check("kp", gate.kp_limit_nmprad, d.gear * d.gear * ranges.kp_nmprad, "N m/rad");
+  check("kd", gate.kd_limit_nmsprad, d.gear * d.gear * ranges.kd_nmsprad, "N m s/rad");
   check("speed", gate.speed_limit_radps[j], reply_speed_radps(d), "rad/s");
   const double farthest_rad = std::max(std::fabs(gate.joint_lower_rad[j] - d.zero_rad),
                                        std::fabs(gate.joint_upper_rad[j] - d.zero_rad));
-  check("position", farthest_rad, (mit ? l.position_rad : kMoteusPosition_rad) / d.gear,
-        "rad from its zero");
+  check("position", farthest_rad, ranges.position_rad / d.gear, "rad from its zero");
 }
 
 void require_one_id_each(const HardwareConfig& h, const RobotDescription& robot) {
@@ -173,10 +135,11 @@ void require_one_id_each(const HardwareConfig& h, const RobotDescription& robot)
                                      robot.joint_names[a], drive.id(), bus, robot.joint_names[b]));
       }
       // Its replies would be commands to the other.
-      if (drive.protocol == Protocol::kMit && drive.mit.reply_id == h.drives[b].id()) {
+      const std::optional<std::uint32_t> reply =
+          std::visit([](const auto& d) { return reply_id(d); }, drive.drive);
+      if (reply && static_cast<int>(*reply) == h.drives[b].id()) {
         throw InputError(fmt::format("hardware.drive of {}: reply_id {} on {} is the id of {}",
-                                     robot.joint_names[a], drive.mit.reply_id, bus,
-                                     robot.joint_names[b]));
+                                     robot.joint_names[a], *reply, bus, robot.joint_names[b]));
       }
     }
   }
@@ -195,7 +158,7 @@ void read_drives(ConfigTree& config, const RobotDescription& robot, const GateCo
     const auto j = static_cast<int>(found - robot.joint_names.begin());
     if (seen[j]) throw InputError(fmt::format("hardware.drive: joint {} stands twice", joint));
     seen[j] = true;
-    h.drives[j] = read_drive(t, joint, h);
+    h.drives[j] = read_joint_drive(t, joint, h);
     require_range(h.drives[j], j, joint, h.torque_scale, gate);
   }
   for (int j = 0; j < kNumJoints; ++j) {

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "drivers/can/bus_load.h"
-#include "drivers/can/mit.h"
-#include "drivers/can/moteus.h"
 #include "drivers/imu/imu_config.h"
+#include "drivers/robot/drive_families.h"
 #include "drivers/robot/emergency_stop.h"
 #include "rt/base/config_tree.h"
 #include "rt/core/gate_config.h"
@@ -17,9 +16,6 @@
 #include "rt/core/robot_description.h"
 
 namespace sandrunner {
-
-/// What a bus speaks.
-enum class Protocol : std::uint8_t { kMit, kMoteus };
 
 /// Who closes the joint's loop.
 enum class DriveMode : std::uint8_t {
@@ -31,7 +27,7 @@ enum class DriveMode : std::uint8_t {
 /// load.
 struct BusConfig {
   std::string interface;
-  Protocol protocol = Protocol::kMit;
+  AnyDrive any_drive;  ///< of the family that the bus carries, its settings not read
   CanFormat format = CanFormat::kClassic;
   BusRates rates;
 };
@@ -39,16 +35,19 @@ struct BusConfig {
 /// One drive and the joint that it moves: joint = sign x drive / gear + zero, torques and gains
 /// accordingly.
 struct DriveConfig {
-  Protocol protocol = Protocol::kMit;
-  int bus = 0;                 ///< index into HardwareConfig::buses
-  MitDrive mit;                ///< if it speaks that ...
-  MoteusDrive moteus;          ///< ... or this
+  int bus = 0;  ///< index into HardwareConfig::buses
+  AnyDrive drive;
   double max_torque_nm = 0.0;  ///< that it can be told, at its output
   int sign = 1;
   double gear = 1.0;      ///< turns of the drive's output for one of the joint
   double zero_rad = 0.0;  ///< joint's position where the drive's is zero
 
-  int id() const noexcept { return protocol == Protocol::kMit ? mit.motor_id : moteus.id; }
+  int id() const noexcept {
+    return std::visit([](const auto& d) { return drive_id(d); }, drive);
+  }
+  DriveRanges ranges() const noexcept {
+    return std::visit([](const auto& d) { return drive_ranges(d); }, drive);
+  }
 };
 
 /// Table [hardware]: the drives of a robot, which joint each moves, and its IMU.
@@ -83,10 +82,10 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
 /// hangs.
 void adapt_gate(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 
-/// What the gate's own settings, which come after that, ask of the drives. A moteus is told the
-/// joint's torque limit and holds it itself, whatever becomes of this computer. Throws InputError
-/// for a time-out that is no longer than the stall that the gate lets pass (drives would let go
-/// without a fault), and for a speed fault above what replies can tell.
+/// What the gate's own settings, which come after that, ask of the drives. A drive whose commands
+/// have a torque limit is told the joint's and holds it itself, whatever becomes of this computer.
+/// Throws InputError for a time-out that is no longer than the stall that the gate lets pass
+/// (drives would let go without a fault), and for a speed fault above what replies can tell.
 void match_gate(const GateConfig& gate, HardwareConfig& hardware);
 
 /// One line for each guard of the robot that the file leaves off: the emergency stop, the range of

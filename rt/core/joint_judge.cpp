@@ -150,7 +150,11 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
           config.encoder_jump_rad +
           config.speed_fault_radps * seconds(joints.tick[j] - m.sample_tick[j]);
       find(way_rad > reach_rad, Fault::kEncoderJump);
-      const bool frozen = frozen_in_motion(config, joints, j, context, rate_per_s, m);
+      // A joint that presses against its stop rests there while the body moves.
+      const bool at_stop = joints.position_rad[j] <= config.joint_lower_rad[j] + kStill_rad ||
+                           joints.position_rad[j] >= config.joint_upper_rad[j] - kStill_rad;
+      const bool frozen =
+          frozen_in_motion(config, joints, j, context, at_stop ? 0.0 : rate_per_s, m);
       const bool deaf = deaf_to_target(config, joints, j, context, m);
       find(frozen || deaf, Fault::kEncoderFrozen);
       if (!driven && mode != Mode::kFault) m.drift_rad[j] = 0.0;

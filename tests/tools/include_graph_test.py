@@ -33,6 +33,12 @@ class IncludeGraphTest(unittest.TestCase):
     def test_siblings_do_not_include_each_other(self):
         self.assertIn("policy/a.h: includes estimator/b.h", errors({"policy/a.h": ["estimator/b.h"], "estimator/b.h": []}))
 
+    def test_families_of_drives_are_siblings_above_what_they_share(self):
+        shared = {"drivers/drives/a.h": [], "drivers/drives/b/c.h": ["drivers/drives/a.h"]}
+        self.assertEqual(errors(shared), "")
+        said = errors(shared | {"drivers/drives/d/e.h": ["drivers/drives/b/c.h"]})
+        self.assertIn("drivers/drives/d/e.h: includes drivers/drives/b/c.h", said)
+
     def test_a_circle_within_a_folder_is_named(self):
         said = errors({"rt/base/a.h": ["rt/base/b.h"], "rt/base/b.h": ["rt/base/a.h"]})
         self.assertIn("a circle: ", said)

@@ -139,7 +139,7 @@ void Bench::make_faults(double now_s) {
   for (int j = 0; j < kNumJoints; ++j) {
     if (reboot_end_s_[j] > 0.0 && now_s >= reboot_end_s_[j]) {
       reboot_end_s_[j] = 0.0;
-      drives_[j].faults.silent = false;
+      drives_[j].faults().silent = false;
     }
   }
   for (Bus& bus : buses_) {
@@ -161,7 +161,7 @@ void Bench::make_faults(double now_s) {
 }
 
 void Bench::make(const TimedFault& fault, double now_s) {
-  DriveFaults& faults = drives_[fault.first].faults;
+  DriveFaults& faults = drives_[fault.first].faults();
   Bus& bus = buses_[std::min<std::size_t>(fault.first, buses_.size() - 1)];
   switch (fault.kind) {
     case BenchFault::kSilent:
@@ -236,7 +236,7 @@ void Bench::make(const TimedFault& fault, double now_s) {
       imu_.fault = ImuFault::kGarbage;
       break;
     case BenchFault::kDead:
-      for (EmulatedDrive& drive : drives_) drive.faults.silent = true;
+      for (EmulatedDrive& drive : drives_) drive.faults().silent = true;
       imu_.unplug();
       break;
     case BenchFault::kKill:
@@ -298,7 +298,7 @@ void Bench::observe(double now_s) {
     const EmulatedDrive& drive = drives_[j];
     on = on && drive.state() == EmulatedDrive::State::kOn;
     walks = walks && std::fabs(drive.kp_nmprad() - walk_kp_) < 0.01 * walk_kp_;
-    const bool hears = !drive.faults.silent && !buses_[hardware_.drives[j].bus].deaf;
+    const bool hears = !drive.faults().silent && !buses_[hardware_.drives[j].bus].deaf;
     damped = damped && (drive.passive() || !hears);
     passive = passive && drive.passive();
     limp = limp && drive.limp();

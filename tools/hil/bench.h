@@ -12,7 +12,7 @@
 #include "drivers/can/can_socket.h"
 #include "rt/run/process_config.h"
 #include "tools/hil/bench_report.h"
-#include "tools/hil/emulated_drive.h"
+#include "tools/hil/emulated/emulated_drive.h"
 #include "tools/hil/emulated_robot.h"
 #include "tools/hil/fault_script.h"
 #include "tools/hil/imu_line.h"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "drivers/imu/imu_config.h"
-#include "drivers/imu/mip_device.h"
 #include "drivers/imu/serial_port.h"
-#include "drivers/imu/xsens_device.h"
+#include "tools/hil/emulated/mip_device.h"
+#include "tools/hil/emulated/xsens_device.h"
 
 namespace sandrunner::hil {
 

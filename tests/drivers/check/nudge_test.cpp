@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/drivers/robot/example.h"
-#include "tools/hil/emulated_drive.h"
+#include "tools/hil/emulated/emulated_drive.h"
 
 namespace sandrunner {
 namespace {
@@ -111,7 +111,7 @@ TEST_P(NudgeTest, AJointThatGoesTheWayOfTheTorqueIsGoodAndEndsBraked) {
 
 TEST_P(NudgeTest, ADriveWhoseTorqueHasTheWrongSignIsFoundAndNeverDamps) {
   HangingRobot robot(GetParam());
-  robot.drives[kKfe].faults.reversed = true;
+  robot.drives[kKfe].faults().reversed = true;
   const Nudge wrong = nudge(kKfe, 2.0, {}, robot.exchange());
   EXPECT_EQ(wrong.verdict, Found::kWrongSign) << robot.words(wrong, kKfe);
   EXPECT_LT(robot.fastest_radps, 3.5);
@@ -162,7 +162,7 @@ TEST_P(NudgeTest, APersonsStopAndADriveThatFallsSilentEndIt) {
   EXPECT_EQ(nudge(kKfe, 2.0, {}, stopped.exchange()).verdict, Found::kStopped);
   EXPECT_TRUE(stopped.all_off());
   HangingRobot silent(GetParam());
-  silent.drives[7].faults.silent = true;
+  silent.drives[7].faults().silent = true;
   const Nudge ended = nudge(kKfe, 2.0, {}, silent.exchange());
   EXPECT_EQ(ended.verdict, Found::kNotWell);
   EXPECT_EQ(ended.other, 7);

@@ -10,8 +10,8 @@
 #include "drivers/imu/device_clock.h"
 #include "drivers/imu/imu_mounting.h"
 #include "drivers/imu/mip.h"
-#include "drivers/imu/mip_device.h"
 #include "tests/drivers/fuzz/fuzz_stream.h"
+#include "tools/hil/emulated/mip_device.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/can/damiao_registers.h"
-#include "drivers/can/mit.h"
+#include "drivers/drives/mit/damiao_registers.h"
+#include "drivers/drives/mit/mit.h"
 #include "tests/drivers/fuzz/fuzz_frame.h"
 
 namespace sandrunner {

@@ -3,7 +3,7 @@
 // that a drive may be given.
 #include <cmath>
 
-#include "drivers/can/moteus.h"
+#include "drivers/drives/moteus/moteus.h"
 #include "tests/drivers/fuzz/fuzz_frame.h"
 
 namespace sandrunner {

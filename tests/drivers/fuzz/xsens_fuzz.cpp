@@ -8,8 +8,8 @@
 
 #include "drivers/imu/imu_reading.h"
 #include "drivers/imu/xsens.h"
-#include "drivers/imu/xsens_device.h"
 #include "tests/drivers/fuzz/fuzz_stream.h"
+#include "tools/hil/emulated/xsens_device.h"
 
 namespace {
 

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "drivers/imu/imu.h"
-#include "drivers/imu/mip_device.h"
-#include "drivers/imu/xsens_device.h"
 #include "rt/base/errors.h"
 #include "tests/drivers/imu/pty.h"
 #include "tests/support/temporary_folder.h"
+#include "tools/hil/emulated/mip_device.h"
+#include "tools/hil/emulated/xsens_device.h"
 
 namespace sandrunner {
 

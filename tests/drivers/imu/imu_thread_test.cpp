@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/imu/mip_device.h"
 #include "tests/drivers/imu/pty.h"
 #include "tests/support/wait_until.h"
+#include "tools/hil/emulated/mip_device.h"
 
 namespace sandrunner {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "drivers/imu/mip_device.h"
+#include "tools/hil/emulated/mip_device.h"
 
 namespace sandrunner::mip {
 namespace {

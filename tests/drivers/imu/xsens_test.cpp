@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "drivers/imu/xsens_device.h"
+#include "tools/hil/emulated/xsens_device.h"
 
 namespace sandrunner::xsens {
 namespace {

@@ -20,7 +20,7 @@ TEST(BusListenTest, ASilentBusIsNoProblem) {
 TEST(BusListenTest, CommandsAndRepliesAreCountedAndTheirJointsNamed) {
   const HardwareConfig config = example_hardware("mit");
   std::vector<HeardBus> heard(config.buses.size());
-  const MitDrive& drive = config.drives[4].mit;
+  const MitDrive& drive = mit_of(config.drives[4]);
   CanFrame frame;
   for (int i = 0; i < 3; ++i) {
     ASSERT_EQ(encode_mit_command(drive, {}, frame), MitStatus::kOk);

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "drivers/can/damiao_registers.h"
+#include "drivers/drives/mit/damiao_registers.h"
 #include "tests/drivers/robot/example.h"
 
 namespace sandrunner {
@@ -20,7 +20,8 @@ class MitPair {
   explicit MitPair(const std::string& model = "AK10-9",
                    const std::vector<std::string>& assignments = {}) {
     config_ = example_hardware("mit", assignments);
-    config_.drives[0].mit.variant = model == "AK10-9" ? MitVariant::kCubeMars : MitVariant::kDamiao;
+    mit_of(config_.drives[0]).variant =
+        model == "AK10-9" ? MitVariant::kCubeMars : MitVariant::kDamiao;
     drive = Drive(config_.drives[0], config_);
     state.temperature_degc = state.rotor_temperature_degc = 30.0;
   }
@@ -36,11 +37,11 @@ class MitPair {
       ADD_FAILURE() << "nothing sent";
       return request;
     }
-    EXPECT_EQ(decode_mit_request(config().mit, frame, request), MitStatus::kOk);
+    EXPECT_EQ(decode_mit_request(mit_of(config()), frame, request), MitStatus::kOk);
     tick_ += 5;
     if (answered) {
       CanFrame reply;
-      EXPECT_EQ(encode_mit_reply(config().mit, state, reply), MitStatus::kOk);
+      EXPECT_EQ(encode_mit_reply(mit_of(config()), state, reply), MitStatus::kOk);
       EXPECT_TRUE(drive.take(reply, tick_));
     }
     return request;
@@ -236,7 +237,7 @@ TEST(DriveTest, SignGearAndZeroTurnTheJointIntoTheDrive) {
   EXPECT_NEAR(pair.drive.position_rad(), 0.3 - 0.5, 2e-4);
   EXPECT_NEAR(pair.drive.velocity_radps(), -1.0, 7e-3);
   EXPECT_NEAR(pair.drive.torque_nm(), -8.0, 0.04);
-  const MitCommand told = pair.exchange(&point).command;
+  const DriveCommand told = pair.exchange(&point).command;
   EXPECT_NEAR(told.position_rad, -2.0 * 0.5, 4e-4);
   EXPECT_NEAR(told.velocity_radps, -2.0, 0.02);
   EXPECT_NEAR(told.kp_nmprad, 10.0, 0.13);
@@ -271,7 +272,7 @@ TEST(DriveTest, HeatIsAFaultAsLongAsItLasts) {
 TEST(DriveTest, FramesOfOthersAreNotTakenAndWrongLengthsCounted) {
   MitPair pair;
   CanFrame reply;
-  ASSERT_EQ(encode_mit_reply(pair.config().mit, pair.state, reply), MitStatus::kOk);
+  ASSERT_EQ(encode_mit_reply(mit_of(pair.config()), pair.state, reply), MitStatus::kOk);
   CanFrame other = reply;
   other.data[0] = 2;
   EXPECT_FALSE(pair.drive.take(other, 1));
@@ -286,7 +287,7 @@ TEST(DriveTest, FramesOfOthersAreNotTakenAndWrongLengthsCounted) {
 /// The reply of a drive without a request.
 void answer_unasked(MitPair& pair, std::uint64_t tick) {
   CanFrame reply;
-  EXPECT_EQ(encode_mit_reply(pair.config().mit, pair.state, reply), MitStatus::kOk);
+  EXPECT_EQ(encode_mit_reply(mit_of(pair.config()), pair.state, reply), MitStatus::kOk);
   EXPECT_TRUE(pair.drive.take(reply, tick));
 }
 
@@ -329,8 +330,8 @@ TEST(DriveTest, LostRepliesHideForeignOnesFor200MsAtMost) {
 TEST(DriveTest, ACommandToItsIdIsForeignTrafficAndAReplyIsNot) {
   MitPair pair;
   CanFrame command, reply;
-  ASSERT_EQ(encode_mit_command(pair.config().mit, {}, command), MitStatus::kOk);
-  ASSERT_EQ(encode_mit_reply(pair.config().mit, pair.state, reply), MitStatus::kOk);
+  ASSERT_EQ(encode_mit_command(mit_of(pair.config()), {}, command), MitStatus::kOk);
+  ASSERT_EQ(encode_mit_reply(mit_of(pair.config()), pair.state, reply), MitStatus::kOk);
   EXPECT_TRUE(pair.drive.is_command(command));
   EXPECT_FALSE(pair.drive.is_command(reply));
   ++command.id;
@@ -346,7 +347,7 @@ TEST(DriveTest, ACommandToItsIdIsForeignTrafficAndAReplyIsNot) {
 TEST(DriveTest, ARequestForADamiaosRegisterIsACommandToItAlone) {
   MitPair pair("Damiao");
   CanFrame request;
-  ASSERT_EQ(encode_damiao_request(pair.config().mit, {}, request), DamiaoStatus::kOk);
+  ASSERT_EQ(encode_damiao_request(mit_of(pair.config()), {}, request), DamiaoStatus::kOk);
   EXPECT_TRUE(pair.drive.is_command(request));
   ++request.data[0];
   EXPECT_FALSE(pair.drive.is_command(request));
@@ -364,8 +365,9 @@ class MoteusPair {
     MoteusRequest request;
     EXPECT_TRUE(drive.next_frame(point, tick_, frame));
     tick_ += 4;
-    EXPECT_EQ(decode_moteus_request(config_.drives[0].moteus, frame, request), MoteusStatus::kOk);
-    EXPECT_EQ(encode_moteus_reply(config_.drives[0].moteus, request, state, reply),
+    EXPECT_EQ(decode_moteus_request(moteus_of(config_.drives[0]), frame, request),
+              MoteusStatus::kOk);
+    EXPECT_EQ(encode_moteus_reply(moteus_of(config_.drives[0]), request, state, reply),
               MoteusStatus::kOk);
     EXPECT_TRUE(drive.take(reply, tick_));
     return request;
@@ -455,7 +457,7 @@ TEST(DriveTest, MoteusGetsTorqueAndATimeOutAloneWhereTheHostClosesTheLoop) {
 TEST(DriveTest, AMoteusIsCommandedByItsIdAndByTheOneOfAll) {
   const HardwareConfig config = example_hardware("moteus");
   const Drive drive(config.drives[1], config);
-  MoteusDrive other = config.drives[1].moteus;
+  MoteusDrive other = moteus_of(config.drives[1]);
   other.host_id = 5;
   CanFrame frame;
   ASSERT_EQ(encode_moteus_stop(other, kMoteusState, frame), MoteusStatus::kOk);
@@ -468,9 +470,11 @@ TEST(DriveTest, AMoteusIsCommandedByItsIdAndByTheOneOfAll) {
   MoteusReply state;
   state.position_rad = state.velocity_radps = state.torque_nm = 0.0;
   CanFrame reply;
-  ASSERT_EQ(encode_moteus_query(config.drives[1].moteus, kMoteusState, frame), MoteusStatus::kOk);
-  ASSERT_EQ(decode_moteus_request(config.drives[1].moteus, frame, request), MoteusStatus::kOk);
-  ASSERT_EQ(encode_moteus_reply(config.drives[1].moteus, request, state, reply), MoteusStatus::kOk);
+  ASSERT_EQ(encode_moteus_query(moteus_of(config.drives[1]), kMoteusState, frame),
+            MoteusStatus::kOk);
+  ASSERT_EQ(decode_moteus_request(moteus_of(config.drives[1]), frame, request), MoteusStatus::kOk);
+  ASSERT_EQ(encode_moteus_reply(moteus_of(config.drives[1]), request, state, reply),
+            MoteusStatus::kOk);
   EXPECT_FALSE(drive.is_command(reply));
 }
 

@@ -26,6 +26,14 @@ inline GateConfig example_gate() {
   return gate;
 }
 
+inline MitDrive& mit_of(DriveConfig& config) { return std::get<MitDrive>(config.drive); }
+inline const MitDrive& mit_of(const DriveConfig& config) {
+  return std::get<MitDrive>(config.drive);
+}
+inline const MoteusDrive& moteus_of(const DriveConfig& config) {
+  return std::get<MoteusDrive>(config.drive);
+}
+
 /// One of the example configurations with some settings changed. `more` is TOML of another layer.
 inline HardwareConfig example_hardware(const std::string& name,
                                        const std::vector<std::string>& assignments = {},

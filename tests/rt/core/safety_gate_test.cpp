@@ -136,6 +136,26 @@ TEST_F(SafetyGateTest, AJointThatHasRestedForLongHasTimeToFollowATargetThatMoves
   EXPECT_EQ(stand_at(1.2), static_cast<std::uint64_t>(Fault::kEncoderFrozen));
 }
 
+TEST_F(SafetyGateTest, AJointThatPressesAgainstItsStopMayRestWhileTheBodyTurns) {
+  sensors.joints.velocity_radps.fill(0.0);
+  sensors.joints.position_rad = config.joint_lower_rad;
+  sensors.joints.position_rad[2] += 2e-4;  // by half a count of a coarse encoder
+  sensors.imu.angular_velocity_radps = {0.0, 3.0, 0.0};
+  wanted.position_rad = config.joint_lower_rad;
+  const auto is_frozen_after_a_turn = [&] {
+    std::uint64_t found = 0;
+    state = {};
+    for (int n = 0; n < 400; ++n) {
+      found |= judge(Mode::kStandUp);
+      pass(wanted);
+    }
+    return (found & static_cast<std::uint64_t>(Fault::kEncoderFrozen)) != 0;
+  };
+  EXPECT_FALSE(is_frozen_after_a_turn());
+  sensors.joints.position_rad[4] += 0.1;
+  EXPECT_TRUE(is_frozen_after_a_turn()) << "away from its stop";
+}
+
 TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
   judge(Mode::kWalk);
   stall(config.stall_fault_ticks + 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/mit.h"
+#include "drivers/drives/mit/mit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "drivers/can/mit_models.h"
-#include "tests/drivers/can/frame_bytes.h"
-#include "tests/drivers/can/random_frame.h"
+#include "drivers/drives/mit/mit_models.h"
+#include "tests/drivers/drives/frame_bytes.h"
+#include "tests/drivers/drives/random_frame.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner {
@@ -34,7 +34,7 @@ MitDrive drive_of(MitVariant variant) {
 constexpr std::array kVariants = {MitVariant::kOriginal, MitVariant::kBusVoltage,
                                   MitVariant::kCubeMars, MitVariant::kDamiao};
 
-CanFrame encoded(const MitDrive& drive, const MitCommand& command) {
+CanFrame encoded(const MitDrive& drive, const DriveCommand& command) {
   CanFrame frame;
   EXPECT_EQ(encode_mit_command(drive, command, frame), MitStatus::kOk);
   return frame;
@@ -44,7 +44,7 @@ CanFrame encoded(const MitDrive& drive, const MitCommand& command) {
 TEST(MitTest, CommandHasItsFieldsInOrderMostSignificantBitsFirst) {
   const MitDrive drive = drive_of("AK80-9 V2");
   const MitLimits& limits = drive.limits;
-  MitCommand command;
+  DriveCommand command;
   command.position_rad = limits.position_rad * (2.0 * 0x8000 / 65535.0 - 1.0);
   command.velocity_radps = limits.velocity_radps * (2.0 * 0x555 / 4095.0 - 1.0);
   command.kp_nmprad = limits.kp_nmprad * 0x199 / 4095.0;
@@ -110,7 +110,7 @@ TEST(MitTest, ZeroIsSentHalfAStepBelow) {
 }
 
 TEST(MitTest, GainsOfThePaperFitWithin012Percent) {
-  MitCommand command;
+  DriveCommand command;
   command.kp_nmprad = 50.0;
   command.kd_nmsprad = 0.5;
   MitRequest request;
@@ -204,8 +204,8 @@ TEST(MitTest, NoCommandIsASpecialFrame) {
         const int choice = mask >> bit & 3;
         return std::array{low, limit, high, limit * (1.0 - 1e-6)}[choice];
       };
-      MitCommand command{pick(0, limits.position_rad), pick(2, limits.velocity_radps),
-                         pick(4, limits.kp_nmprad), pick(6, limits.kd_nmsprad), 0.0};
+      DriveCommand command{pick(0, limits.position_rad), pick(2, limits.velocity_radps),
+                           pick(4, limits.kp_nmprad), pick(6, limits.kd_nmsprad), 0.0};
       for (int step = -20; step <= 20; ++step) {
         command.torque_nm =
             step == 20 ? high : limits.torque_nm * (1.0 - step / 4.0 * 2.0 / 4095.0);
@@ -363,7 +363,7 @@ TEST(MitTest, DamiaosFdVariantHasTheSameBytesInFdFrames) {
   MitDrive classic = drive_of("DM8009", 4, 0x14);
   MitDrive fd = classic;
   fd.format = CanFormat::kFdWithBitRateSwitch;
-  const MitCommand command{0.5, -1.0, 50.0, 0.5, 3.0};
+  const DriveCommand command{0.5, -1.0, 50.0, 0.5, 3.0};
   const CanFrame frame = encoded(fd, command);
   EXPECT_TRUE(frame.fd && frame.brs);
   EXPECT_EQ(hex(frame), hex(encoded(classic, command)));

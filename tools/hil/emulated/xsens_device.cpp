@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/imu/xsens_device.h"
+#include "tools/hil/emulated/xsens_device.h"
 
 #include <algorithm>
 #include <array>

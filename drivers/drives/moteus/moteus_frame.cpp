@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/moteus_frame.h"
+#include "drivers/drives/moteus/moteus_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "drivers/can/nearest_code.h"
+#include "drivers/drives/nearest_code.h"
 
 namespace sandrunner {
 namespace {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/moteus.h"
+#include "drivers/drives/moteus/moteus.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace sandrunner {
@@ -12,6 +14,112 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMinWatchdog_s = 1e-3, kMaxWatchdog_s = 30.0;
 constexpr std::uint32_t kUnknownRegister = 1;
+
+constexpr std::array<const char*, kNumMoteusModes> kModeWords = {
+    "stopped",  "fault",   "enabling",      "calibrating", "calibration complete",
+    "PWM",      "voltage", "voltage FOC",   "voltage DQ",  "current",
+    "position", "timeout", "zero velocity", "stay within", "measure inductance",
+    "brake",
+};
+
+struct CodeWords {
+  std::uint8_t code;
+  const char* words;
+};
+constexpr CodeWords kFaultWords[] = {
+    {0, ""},
+    {32, "calibration fault"},
+    {33, "motor driver fault"},
+    {34, "over-voltage"},
+    {35, "encoder fault"},
+    {36, "motor not configured"},
+    {37, "PWM cycle overrun"},
+    {38, "over-temperature"},
+    {39, "outside position limit"},
+    {40, "under-voltage"},
+    {41, "configuration changed"},
+    {42, "theta invalid"},
+    {43, "position invalid"},
+    {44, "driver enable fault"},
+    {45, "stop position deprecated"},
+    {46, "timing violation"},
+    {47, "back-EMF feed-forward without acceleration limit"},
+    {48, "invalid limits"},
+    {49, "position control error"},
+    {50, "velocity control error"},
+    {96, "limited by velocity"},
+    {97, "limited by power"},
+    {98, "limited by system voltage"},
+    {99, "limited by current"},
+    {100, "limited by board temperature"},
+    {101, "limited by motor temperature"},
+    {102, "limited by the commanded torque"},
+    {103, "limited by position"},
+};
+
+// A register, the member that holds it in SI units, and the register's unit in these.
+template <typename Values>
+struct RegisterOf {
+  MoteusRegister reg;
+  double Values::*member;
+  double factor;
+};
+constexpr RegisterOf<MoteusReply> kReplyRegisters[] = {
+    {moteus_register::kPosition, &MoteusReply::position_rad, kTwoPi},
+    {moteus_register::kVelocity, &MoteusReply::velocity_radps, kTwoPi},
+    {moteus_register::kTorque, &MoteusReply::torque_nm, 1.0},
+    {moteus_register::kMotorTemperature, &MoteusReply::motor_temperature_degc, 1.0},
+    {moteus_register::kVoltage, &MoteusReply::voltage_v, 1.0},
+    {moteus_register::kTemperature, &MoteusReply::temperature_degc, 1.0},
+    {moteus_register::kCommandWatchdog, &MoteusReply::watchdog_s, 1.0},
+};
+constexpr RegisterOf<MoteusRequest> kRequestRegisters[] = {
+    {moteus_register::kCommandPosition, &MoteusRequest::position_rad, kTwoPi},
+    {moteus_register::kCommandVelocity, &MoteusRequest::velocity_radps, kTwoPi},
+    {moteus_register::kCommandTorque, &MoteusRequest::torque_nm, 1.0},
+    {moteus_register::kCommandKpScale, &MoteusRequest::kp_scale, 1.0},
+    {moteus_register::kCommandKdScale, &MoteusRequest::kd_scale, 1.0},
+    {moteus_register::kCommandMaxTorque, &MoteusRequest::max_torque_nm, 1.0},
+    {moteus_register::kCommandWatchdog, &MoteusRequest::watchdog_s, 1.0},
+};
+
+/// The row of a table; null: it has no such register.
+template <typename Values, std::size_t size>
+const RegisterOf<Values>* find(const RegisterOf<Values> (&table)[size],
+                               MoteusRegister reg) noexcept {
+  const auto* const row =
+      std::find_if(std::begin(table), std::end(table), [&](const auto& r) { return r.reg == reg; });
+  return row == std::end(table) ? nullptr : row;
+}
+
+/// Takes a register that was read or written, if the table has it.
+template <typename Values, std::size_t size>
+void take(const RegisterOf<Values> (&table)[size], const MoteusItem& item,
+          Values& values) noexcept {
+  const RegisterOf<Values>* const row = find(table, item.reg);
+  if (row != nullptr) values.*row->member = item.value * row->factor;
+}
+
+/// What a drive of this state answers; false: it does not know the register.
+bool value_of(MoteusRegister reg, const MoteusReply& state, double& value) noexcept {
+  if (const RegisterOf<MoteusReply>* const row = find(kReplyRegisters, reg); row != nullptr) {
+    value = state.*row->member / row->factor;
+    return true;
+  }
+  switch (reg) {
+    case moteus_register::kMode:
+      value = static_cast<double>(state.mode);
+      return true;
+    case moteus_register::kFault:
+      value = state.code;
+      return true;
+    case moteus_register::kMapVersion:
+      value = kMoteusMapVersion;
+      return true;
+    default:
+      return false;
+  }
+}
 
 bool is_possible(const MoteusDrive& drive) noexcept {
   return drive.id >= 1 && drive.id <= 126 && drive.host_id <= 127 && drive.prefix <= 0x1FFF &&
@@ -99,104 +207,14 @@ bool to_mode(double value, MoteusMode& mode) noexcept {
 }  // namespace
 
 const char* words(MoteusMode mode) noexcept {
-  switch (mode) {
-    case MoteusMode::kStopped:
-      return "stopped";
-    case MoteusMode::kFault:
-      return "fault";
-    case MoteusMode::kEnabling:
-      return "enabling";
-    case MoteusMode::kCalibrating:
-      return "calibrating";
-    case MoteusMode::kCalibrationComplete:
-      return "calibration complete";
-    case MoteusMode::kPwm:
-      return "PWM";
-    case MoteusMode::kVoltage:
-      return "voltage";
-    case MoteusMode::kVoltageFoc:
-      return "voltage FOC";
-    case MoteusMode::kVoltageDq:
-      return "voltage DQ";
-    case MoteusMode::kCurrent:
-      return "current";
-    case MoteusMode::kPosition:
-      return "position";
-    case MoteusMode::kTimeout:
-      return "timeout";
-    case MoteusMode::kZeroVelocity:
-      return "zero velocity";
-    case MoteusMode::kStayWithin:
-      return "stay within";
-    case MoteusMode::kMeasureInductance:
-      return "measure inductance";
-    case MoteusMode::kBrake:
-      return "brake";
-  }
-  return "unknown mode";
+  const auto number = static_cast<std::size_t>(mode);
+  return number < kModeWords.size() ? kModeWords[number] : "unknown mode";
 }
 
 const char* moteus_fault_words(std::uint8_t code) noexcept {
-  switch (code) {
-    case 0:
-      return "";
-    case 32:
-      return "calibration fault";
-    case 33:
-      return "motor driver fault";
-    case 34:
-      return "over-voltage";
-    case 35:
-      return "encoder fault";
-    case 36:
-      return "motor not configured";
-    case 37:
-      return "PWM cycle overrun";
-    case 38:
-      return "over-temperature";
-    case 39:
-      return "outside position limit";
-    case 40:
-      return "under-voltage";
-    case 41:
-      return "configuration changed";
-    case 42:
-      return "theta invalid";
-    case 43:
-      return "position invalid";
-    case 44:
-      return "driver enable fault";
-    case 45:
-      return "stop position deprecated";
-    case 46:
-      return "timing violation";
-    case 47:
-      return "back-EMF feed-forward without acceleration limit";
-    case 48:
-      return "invalid limits";
-    case 49:
-      return "position control error";
-    case 50:
-      return "velocity control error";
-    case 96:
-      return "limited by velocity";
-    case 97:
-      return "limited by power";
-    case 98:
-      return "limited by system voltage";
-    case 99:
-      return "limited by current";
-    case 100:
-      return "limited by board temperature";
-    case 101:
-      return "limited by motor temperature";
-    case 102:
-      return "limited by the commanded torque";
-    case 103:
-      return "limited by position";
-    default:
-      return "unknown code";
-  }
+  const auto* const found = std::find_if(std::begin(kFaultWords), std::end(kFaultWords),
+                                         [&](const CodeWords& row) { return row.code == code; });
+  return found == std::end(kFaultWords) ? "unknown code" : found->words;
 }
 
 MoteusStatus encode_moteus_position(const MoteusDrive& drive, const MoteusCommand& command,
@@ -256,36 +274,12 @@ MoteusStatus decode_moteus_reply(const MoteusDrive& drive, const CanFrame& frame
   MoteusReply read;
   double mode = kUnset, code = 0.0;
   const MoteusStatus status = each_register(drive, frame, [&](const MoteusItem& item) {
-    switch (item.reg) {
-      case moteus_register::kMode:
-        mode = item.value;
-        break;
-      case moteus_register::kPosition:
-        read.position_rad = item.value * kTwoPi;
-        break;
-      case moteus_register::kVelocity:
-        read.velocity_radps = item.value * kTwoPi;
-        break;
-      case moteus_register::kTorque:
-        read.torque_nm = item.value;
-        break;
-      case moteus_register::kMotorTemperature:
-        read.motor_temperature_degc = item.value;
-        break;
-      case moteus_register::kVoltage:
-        read.voltage_v = item.value;
-        break;
-      case moteus_register::kTemperature:
-        read.temperature_degc = item.value;
-        break;
-      case moteus_register::kFault:
-        code = item.value;
-        break;
-      case moteus_register::kCommandWatchdog:
-        read.watchdog_s = item.value;
-        break;
-      default:
-        break;
+    if (item.reg == moteus_register::kMode) {
+      mode = item.value;
+    } else if (item.reg == moteus_register::kFault) {
+      code = item.value;
+    } else {
+      take(kReplyRegisters, item, read);
     }
   });
   if (status != MoteusStatus::kOk) return status;
@@ -328,43 +322,21 @@ MoteusStatus decode_moteus_request(const MoteusDrive& drive, const CanFrame& fra
       continue;
     }
     if (item.operation != MoteusOperation::kWrite) return MoteusStatus::kWrongDirection;
-    switch (item.reg) {
-      case moteus_register::kMode: {
-        // As the firmware does it: a mode forgets every set-point that was written before it.
-        MoteusRequest fresh;
-        fresh.address = read.address;
-        fresh.reads = read.reads;
-        fresh.num_reads = read.num_reads;
-        fresh.has_mode = true;
-        if (!to_mode(item.value, fresh.mode)) return MoteusStatus::kBadMode;
-        read = fresh;
-        break;
-      }
-      case moteus_register::kCommandPosition:
-        read.position_rad = item.value * kTwoPi;
-        break;
-      case moteus_register::kCommandVelocity:
-        read.velocity_radps = std::isnan(item.value) ? 0.0 : item.value * kTwoPi;
-        break;
-      case moteus_register::kCommandTorque:
-        read.torque_nm = item.value;
-        break;
-      case moteus_register::kCommandKpScale:
-        read.kp_scale = item.value;
-        break;
-      case moteus_register::kCommandKdScale:
-        read.kd_scale = item.value;
-        break;
-      case moteus_register::kCommandMaxTorque:
-        read.max_torque_nm = item.value;
-        break;
-      case moteus_register::kCommandWatchdog:
-        read.watchdog_s = item.value;
-        break;
-      default:
-        break;
+    if (item.reg == moteus_register::kMode) {
+      // As the firmware does it: a mode forgets every set-point that was written before it.
+      MoteusRequest fresh;
+      fresh.address = read.address;
+      fresh.reads = read.reads;
+      fresh.num_reads = read.num_reads;
+      fresh.has_mode = true;
+      if (!to_mode(item.value, fresh.mode)) return MoteusStatus::kBadMode;
+      read = fresh;
+    } else {
+      take(kRequestRegisters, item, read);
     }
   }
+  // An unset velocity is none.
+  if (std::isnan(read.velocity_radps)) read.velocity_radps = 0.0;
   if (reader.status() != MoteusStatus::kOk) return reader.status();
   request = read;
   return MoteusStatus::kOk;
@@ -373,43 +345,6 @@ MoteusStatus decode_moteus_request(const MoteusDrive& drive, const CanFrame& fra
 MoteusStatus encode_moteus_reply(const MoteusDrive& drive, const MoteusRequest& request,
                                  const MoteusReply& state, CanFrame& frame) noexcept {
   if (!is_possible(drive)) return MoteusStatus::kBadDrive;
-  // False for registers that it does not know.
-  const auto value_of = [&](MoteusRegister reg, double& value) {
-    switch (reg) {
-      case moteus_register::kMode:
-        value = static_cast<double>(state.mode);
-        return true;
-      case moteus_register::kPosition:
-        value = state.position_rad / kTwoPi;
-        return true;
-      case moteus_register::kVelocity:
-        value = state.velocity_radps / kTwoPi;
-        return true;
-      case moteus_register::kTorque:
-        value = state.torque_nm;
-        return true;
-      case moteus_register::kMotorTemperature:
-        value = state.motor_temperature_degc;
-        return true;
-      case moteus_register::kVoltage:
-        value = state.voltage_v;
-        return true;
-      case moteus_register::kTemperature:
-        value = state.temperature_degc;
-        return true;
-      case moteus_register::kFault:
-        value = state.code;
-        return true;
-      case moteus_register::kCommandWatchdog:
-        value = state.watchdog_s;
-        return true;
-      case moteus_register::kMapVersion:
-        value = kMoteusMapVersion;
-        return true;
-      default:
-        return false;
-    }
-  };
   set_moteus_address({drive.id, request.address.source, false, drive.prefix}, frame);
   MoteusWriter writer(frame);
   for (int i = 0; i < request.num_reads; ++i) {
@@ -425,7 +360,7 @@ MoteusStatus encode_moteus_reply(const MoteusDrive& drive, const MoteusRequest& 
     };
     for (int k = 0; k < read.count && k < kMaxFdBytes; ++k) {
       const auto reg = static_cast<MoteusRegister>(read.start + k);
-      if (value_of(reg, values[count])) {
+      if (value_of(reg, state, values[count])) {
         ++count;
       } else {
         flush(k);

@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include "drivers/can/mit.h"
+#include "drivers/drives/mit/mit.h"
 
 namespace sandrunner {
 

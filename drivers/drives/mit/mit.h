@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "drivers/can/can_frame.h"
+#include "drivers/drives/drive_family.h"
 
 namespace sandrunner {
 
@@ -42,20 +43,13 @@ enum class MitVariant : std::uint8_t {
 
 /// One drive on a bus, and how it is spoken to.
 struct MitDrive {
+  static constexpr const char* kProtocol = "mit";
+
   std::uint16_t motor_id = 1;  ///< of commands: 1 to 255, with kDamiao to 15
   std::uint16_t reply_id = 0;  ///< of replies: often the same for all motors, byte 0 then tells
   MitVariant variant = MitVariant::kOriginal;
   CanFormat format = CanFormat::kClassic;  ///< kDamiao: its CAN FD variant has the same bytes
   MitLimits limits;
-};
-
-/// The drive's law: torque = kp (position - q) + kd (velocity - qd) + torque.
-struct MitCommand {
-  double position_rad = 0.0;
-  double velocity_radps = 0.0;
-  double kp_nmprad = 0.0;
-  double kd_nmsprad = 0.0;
-  double torque_nm = 0.0;
 };
 
 /// Commands that are no set-point: seven bytes FF and one of these. A drive answers each with a
@@ -107,7 +101,7 @@ const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept;
 /// Values beyond the limits are clamped. With anything not finite `frame` is left as it is.
 /// The torque code stops five short of the highest, so that no command, however saturated, can be
 /// a special frame.
-MitStatus encode_mit_command(const MitDrive& drive, const MitCommand& command,
+MitStatus encode_mit_command(const MitDrive& drive, const DriveCommand& command,
                              CanFrame& frame) noexcept;
 MitStatus encode_mit_special(const MitDrive& drive, MitSpecial special, CanFrame& frame) noexcept;
 
@@ -121,7 +115,7 @@ MitStatus decode_mit_reply(const MitDrive& drive, const CanFrame& frame, MitRepl
 struct MitRequest {
   bool is_special = false;
   MitSpecial special = MitSpecial::kDisable;  ///< if is_special
-  MitCommand command;                         ///< else
+  DriveCommand command;                       ///< else
 };
 MitStatus decode_mit_request(const MitDrive& drive, const CanFrame& frame,
                              MitRequest& request) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/moteus.h"
+#include "drivers/drives/moteus/moteus.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "tests/drivers/can/frame_bytes.h"
-#include "tests/drivers/can/random_frame.h"
+#include "tests/drivers/drives/frame_bytes.h"
+#include "tests/drivers/drives/random_frame.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/mit_models.h"
+#include "drivers/drives/mit/mit_models.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/hil/emulated_drive.h"
+#include "tools/hil/emulated/emulated_drive.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ class Pair {
 
  private:
   const DriveConfig& changed(MitVariant variant) {
-    config_.drives[0].mit.variant = variant;
+    if (auto* const mit = std::get_if<MitDrive>(&config_.drives[0].drive)) mit->variant = variant;
     config_.drives[0].sign = -1;
     config_.drives[0].gear = 2.0;
     config_.drives[0].zero_rad = 0.1;
@@ -94,7 +94,7 @@ TEST_P(EmulatedDriveTest, LetsGoWithoutACommandForItsTimeOut) {
 TEST_P(EmulatedDriveTest, ThatIsSilentIsDeafToo) {
   Pair pair(GetParam());
   pair.enable();
-  pair.drive.faults.silent = true;
+  pair.drive.faults().silent = true;
   EXPECT_FALSE(pair.exchange(&kPoint));
   pair.wait(0.06);
   pair.torque_nm();
@@ -103,7 +103,7 @@ TEST_P(EmulatedDriveTest, ThatIsSilentIsDeafToo) {
 
 TEST_P(EmulatedDriveTest, LosesOneReplyInSoMany) {
   Pair pair(GetParam());
-  pair.drive.faults.lose_every = 10;
+  pair.drive.faults().lose_every = 10;
   int answered = 0;
   for (int i = 0; i < 100; ++i) answered += pair.exchange(nullptr) ? 1 : 0;
   EXPECT_EQ(answered, 90);
@@ -112,7 +112,7 @@ TEST_P(EmulatedDriveTest, LosesOneReplyInSoMany) {
 TEST_P(EmulatedDriveTest, WithAFaultOfItsOwnGivesNoTorqueAndSaysSo) {
   Pair pair(GetParam());
   pair.enable();
-  pair.drive.faults.code = 33;
+  pair.drive.faults().code = 33;
   pair.exchange(&kPoint);
   EXPECT_EQ(pair.torque_nm(), 0.0);
   EXPECT_EQ(pair.host.fault() & 0xFF, 33u);
@@ -122,7 +122,7 @@ TEST_P(EmulatedDriveTest, WhoseEncoderJumpsIsElsewhereForItsHostAndItsLaw) {
   Pair pair(GetParam());
   pair.enable();
   const double before_nm = pair.torque_nm();
-  pair.drive.faults.offset_rad = 0.2;  // of its output: -0.1 at the joint
+  pair.drive.faults().offset_rad = 0.2;  // of its output: -0.1 at the joint
   pair.exchange(&kPoint);
   EXPECT_NEAR(pair.host.position_rad(), 0.2, 4e-4);
   EXPECT_NEAR(pair.torque_nm(), before_nm + 50.0 * 0.1, 0.3);
@@ -158,11 +158,11 @@ TEST(EmulatedDamiaoTest, TellsItsRangesAndHasTheTimeOutThatItWasTold) {
   Pair pair("mit", MitVariant::kDamiao);
   const auto told = [&](DamiaoOperation operation, DamiaoRegister reg, double value) {
     CanFrame frame, reply;
-    EXPECT_EQ(encode_damiao_request(pair.config().mit, {operation, reg, value}, frame),
+    EXPECT_EQ(encode_damiao_request(mit_of(pair.config()), {operation, reg, value}, frame),
               DamiaoStatus::kOk);
     EXPECT_TRUE(pair.drive.answer(frame, pair.now_s(), reply));
     DamiaoAccess access;
-    EXPECT_EQ(decode_damiao_reply(pair.config().mit, reply, access), DamiaoStatus::kOk);
+    EXPECT_EQ(decode_damiao_reply(mit_of(pair.config()), reply, access), DamiaoStatus::kOk);
     return access.value;
   };
   EXPECT_EQ(told(DamiaoOperation::kRead, DamiaoRegister::kTimeout, 0.0), 0.0);
@@ -183,7 +183,7 @@ TEST(EmulatedDamiaoTest, TellsItsRangesAndHasTheTimeOutThatItWasTold) {
 
 TEST(EmulatedDamiaoTest, HeedsNoSetPointsInAnotherControlMode) {
   Pair pair("mit", MitVariant::kDamiao);
-  pair.drive.faults.control_mode = 2.0;
+  pair.drive.faults().control_mode = 2.0;
   pair.enable();
   EXPECT_EQ(pair.drive.state(), State::kOn);
   EXPECT_FALSE(pair.exchange(&kPoint));

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "drivers/can/mit.h"
+#include "drivers/drives/mit/mit.h"
 
 namespace sandrunner {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/mit.h"
+#include "drivers/drives/mit/mit.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/can/nearest_code.h"
+#include "drivers/drives/nearest_code.h"
 
 namespace sandrunner {
 namespace {
@@ -128,7 +128,7 @@ const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept {
   }
 }
 
-MitStatus encode_mit_command(const MitDrive& drive, const MitCommand& command,
+MitStatus encode_mit_command(const MitDrive& drive, const DriveCommand& command,
                              CanFrame& frame) noexcept {
   if (!is_possible(drive)) return MitStatus::kBadDrive;
   for (const double value : {command.position_rad, command.velocity_radps, command.kp_nmprad,
@@ -219,7 +219,7 @@ MitStatus decode_mit_request(const MitDrive& drive, const CanFrame& frame,
     return MitStatus::kOk;
   }
   const MitLimits& limits = drive.limits;
-  MitCommand& command = request.command;
+  DriveCommand& command = request.command;
   command.position_rad =
       value_of(Code{data[0]} << 8 | data[1], -limits.position_rad, limits.position_rad, kMaxCode16);
   command.velocity_radps = value_of(Code{data[2]} << 4 | data[3] >> 4, -limits.velocity_radps,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/imu/mip_device.h"
+#include "tools/hil/emulated/mip_device.h"
 
 #include <algorithm>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/damiao_registers.h"
+#include "drivers/drives/mit/damiao_registers.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "tests/drivers/can/frame_bytes.h"
-#include "tests/drivers/can/random_frame.h"
+#include "tests/drivers/drives/frame_bytes.h"
+#include "tests/drivers/drives/random_frame.h"
 
 namespace sandrunner {
 namespace {

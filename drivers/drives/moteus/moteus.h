@@ -15,19 +15,22 @@
 #include <limits>
 #include <span>
 
-#include "drivers/can/moteus_frame.h"
+#include "drivers/drives/moteus/moteus_frame.h"
 
 namespace sandrunner {
 
 /// One drive on a bus, and how it is spoken to.
 struct MoteusDrive {
+  static constexpr const char* kProtocol = "moteus";
+
   std::uint8_t id = 1;  ///< 1 to 126
   std::uint8_t host_id = 0;
   std::uint16_t prefix = 0;  ///< 13 bits, the drive's setting can.prefix
   /// Of commands with set-points. kInt16: positions to +-3.2767 revolutions in steps of 1e-4.
   MoteusFormat format = MoteusFormat::kInt16;
-  double kp_nmprev = 0.0;   ///< the drive's servo.pid_position.kp
-  double kd_nmsprev = 0.0;  ///< the drive's servo.pid_position.kd
+  double kp_nmprev = 0.0;      ///< the drive's servo.pid_position.kp
+  double kd_nmsprev = 0.0;     ///< the drive's servo.pid_position.kd
+  double max_torque_nm = 0.0;  ///< most that a command may ask for
 };
 
 /// Register 0x000.

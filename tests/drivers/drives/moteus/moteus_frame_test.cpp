@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/can/moteus_frame.h"
+#include "drivers/drives/moteus/moteus_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "tests/drivers/can/frame_bytes.h"
-#include "tests/drivers/can/random_frame.h"
+#include "tests/drivers/drives/frame_bytes.h"
+#include "tests/drivers/drives/random_frame.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner {
