@@ -28,23 +28,38 @@ double motion_rate(const ImuSample& imu) noexcept {
          std::max(sinks_mps2 - kBodyRest_mps2, 0.0) / kBodySinks_mps;
 }
 
-/// Whether the values of joint j stay the same while it moves, by its own speed or by the body's.
+bool repeats(const JointState& joints, int j, const JointMemory& m) noexcept {
+  return same_bits(joints.position_rad[j], m.position_rad[j]) &&
+         same_bits(joints.velocity_radps[j], m.velocity_radps[j]);
+}
+
+/// Whether all joints stay the same to the bit while the body moves. One that rests may well repeat
+/// the codes of a coarse encoder while the others move.
+bool body_moves_alone(const JointState& joints, const JointContext& context,
+                      JointMemory& m) noexcept {
+  const bool carries = (kCarrying & mode_set(context.mode)) != 0;
+  bool all_repeat = m.seen != 0 && carries && context.imu != nullptr;
+  for (int j = 0; j < kNumJoints && all_repeat; ++j) all_repeat = repeats(joints, j, m);
+  const std::uint64_t newest = *std::ranges::max_element(joints.tick);
+  m.body_motion =
+      all_repeat ? m.body_motion + motion_rate(*context.imu) * seconds(newest - m.body_tick) : 0.0;
+  m.body_tick = newest;
+  return m.body_motion > 1.0;
+}
+
+/// Whether the values of joint j stay the same while its own speed says that it moves.
 bool frozen_in_motion(const GateConfig& config, const JointState& joints, int j,
-                      const JointContext& context, double rate_per_s, JointMemory& m) noexcept {
-  const bool same = same_bits(joints.position_rad[j], m.position_rad[j]) &&
-                    same_bits(joints.velocity_radps[j], m.velocity_radps[j]);
+                      const JointContext& context, JointMemory& m) noexcept {
   const bool braked = context.mode == Mode::kDamping || context.mode == Mode::kFault;
-  if (!same || (!context.stiff && !braked)) {
+  if (!repeats(joints, j, m) || (!context.stiff && !braked)) {
     m.changed_tick[j] = joints.tick[j];
-    m.body_motion[j] = 0.0;
     return false;
   }
-  m.body_motion[j] += rate_per_s * seconds(joints.tick[j] - m.sample_tick[j]);
   const double speed_radps = std::fabs(joints.velocity_radps[j]);
   const bool moves =
       speed_radps * seconds(joints.tick[j] - m.changed_tick[j]) > config.frozen_moved_rad;
   const bool may_rest = braked || context.mode == Mode::kStand;
-  return (moves && !(may_rest && speed_radps <= kRest_radps)) || m.body_motion[j] > 1.0;
+  return moves && !(may_rest && speed_radps <= kRest_radps);
 }
 
 /// Whether joint j has stayed where it is for long since its target moved away: to the bit, or to a
@@ -133,8 +148,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
   JointMemory& m = memory;
   const Mode mode = context.mode;
   const bool driven = (kDriven & mode_set(mode)) != 0;
-  const bool carries = (kCarrying & mode_set(mode)) != 0;
-  const double rate_per_s = carries && context.imu != nullptr ? motion_rate(*context.imu) : 0.0;
+  const bool all_frozen = body_moves_alone(joints, context, m);
   for (int j = 0; j < kNumJoints; ++j) {
     if (m.seen != 0 && joints.tick[j] <= m.sample_tick[j]) continue;  // no new sample
     const std::uint64_t joint = std::uint64_t{1} << j;
@@ -150,11 +164,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
           config.encoder_jump_rad +
           config.speed_fault_radps * seconds(joints.tick[j] - m.sample_tick[j]);
       find(way_rad > reach_rad, Fault::kEncoderJump);
-      // A joint that presses against its stop rests there while the body moves.
-      const bool at_stop = joints.position_rad[j] <= config.joint_lower_rad[j] + kStill_rad ||
-                           joints.position_rad[j] >= config.joint_upper_rad[j] - kStill_rad;
-      const bool frozen =
-          frozen_in_motion(config, joints, j, context, at_stop ? 0.0 : rate_per_s, m);
+      const bool frozen = all_frozen || frozen_in_motion(config, joints, j, context, m);
       const bool deaf = deaf_to_target(config, joints, j, context, m);
       find(frozen || deaf, Fault::kEncoderFrozen);
       if (!driven && mode != Mode::kFault) m.drift_rad[j] = 0.0;

@@ -25,7 +25,7 @@ inline constexpr double kStill_rad = 0.0005;
 inline constexpr double kStillTarget_rad = 0.4;  ///< ... while its target is this far away from
                                                  ///< where it was when the joint came to rest, ...
 inline constexpr double kStill_s = 0.1;          ///< ... for this long.
-/// Motion of the body while a joint's values stay the same to the bit, each beyond what a robot at
+/// Motion of the body while all joints stay the same to the bit, each beyond what a robot at
 /// rest shows: a turn of 0.1 rad or 0.3 m/s of vertical speed are a fault.
 inline constexpr double kBodyRest_radps = 0.1, kBodyTurn_rad = 0.1;
 inline constexpr double kBodyRest_mps2 = 0.5, kBodySinks_mps = 0.3;
@@ -39,13 +39,14 @@ inline constexpr double kMisplaced_rad = 0.3;
 
 /// What is remembered of the joints. All members 64 bits wide.
 struct JointMemory {
-  std::uint64_t seen = 0;  ///< 1: the next three are those of the last judgement
+  double body_motion = 0.0;     ///< of the body since a joint last changed; 1 is too much
+  std::uint64_t body_tick = 0;  ///< newest sample then
+  std::uint64_t seen = 0;       ///< 1: the next three are those of the last judgement
   JointArray<std::uint64_t> sample_tick{};
   JointArray<double> position_rad{};
   JointArray<double> velocity_radps{};
 
   JointArray<std::uint64_t> changed_tick{};  ///< sample since which they have had the same bits
-  JointArray<double> body_motion{};          ///< of the body since then; 1 is too much
   JointArray<double> frozen_target_rad{};    ///< commanded position at the last change
   JointArray<std::uint64_t> frozen_ticks{};  ///< for which it has been far from that
   JointArray<double> still_rad{};            ///< position near which the joint rests
@@ -61,7 +62,7 @@ struct JointMemory {
   std::uint64_t known_joints = 0;   ///< of these, those that were somewhere before
   JointArray<double> known_rad{};   ///< where
 };
-static_assert(sizeof(JointMemory) == 8 * (4 + 15 * kNumJoints), "no padding");
+static_assert(sizeof(JointMemory) == 8 * (6 + 14 * kNumJoints), "no padding");
 
 /// What a judgement of joints rests on besides their values.
 struct JointContext {

@@ -39,11 +39,11 @@ class Nearest {
       raise(Fault::kImuRange, imu.angular_velocity_radps[i] / kGyroRange_radps);
       raise(Fault::kImuRange, imu.linear_acceleration_mps2[i] / kAccelerometerRange_mps2);
     }
+    raise(Fault::kEncoderFrozen, joints.body_motion);
     for (int j = 0; j < kNumJoints; ++j) {
       raise(Fault::kSpeedMismatch, joints.drift_rad[j] / kSpeedDisagrees_rad);
       raise(Fault::kTorqueMissing,
             share(joints.torque_missing_ticks[j], ticks_from_s(kTorqueMissing_s)));
-      raise(Fault::kEncoderFrozen, joints.body_motion[j]);
       if (gate.sent != 0) {
         raise(Fault::kEncoderFrozen, share(joints.still_ticks[j], ticks_from_s(kStill_s)));
         raise(Fault::kEncoderFrozen, share(joints.frozen_ticks[j], limits.frozen_ticks));
