@@ -8,16 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "estimator/kinematics.h"
 #include "rt/core/messages.h"
 
 namespace sandrunner {
-
-/// Points of a leg in the base frame, m.
-struct LegPoints {
-  Vector3 hip{};   ///< of the HFE axis
-  Vector3 knee{};  ///< of the KFE axis
-  Vector3 foot{};  ///< of the foot's centre
-};
 
 /// What figures and pictures must know of the robot and of the ground that it runs on.
 struct RunScene {

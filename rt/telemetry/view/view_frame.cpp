@@ -186,7 +186,7 @@ ViewFrame ViewFrameMaker::make_frame(const TickRecord& tick) const {
 }
 
 std::optional<ViewFrame> ViewFrameMaker::add(const TickRecord& tick) {
-  odometry_.add(tick);
+  odometry_.add(tick.input, tick.output);
   if (tick.has_truth != 0) follow_stances(tick);
   follow_extremes(tick);
   std::optional<ViewFrame> complete;

@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
+#include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
 #include "rt/core/slower_rate.h"
 #include "rt/loop/tick_record.h"
 #include "rt/report/run_record.h"
 #include "rt/report/stances.h"
-#include "rt/telemetry/odometry.h"
 
 namespace sandrunner {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/telemetry/view/view_hello.h"
 
-#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "estimator/kinematics.h"
 #include "rt/base/build.h"
 #include "rt/core/faults.h"
 #include "rt/core/mode_machine.h"
@@ -14,27 +14,13 @@
 namespace sandrunner {
 namespace {
 
-/// The link of each foot: that of the outline which hangs below the leg's last joint, but is not
-/// the link that this joint turns (the outline has the knee there).
-std::array<std::string, kNumLegs> feet_of(const RobotDescription& robot) {
-  std::array<std::string, kNumLegs> feet;
+std::array<std::string, kNumLegs> feet_links(const RobotDescription& robot) {
+  std::array<std::string, kNumLegs> links;
+  const auto feet = feet_of(robot);
   for (int l = 0; l < kNumLegs; ++l) {
-    const auto shank =
-        std::ranges::find(robot.frames, kJointsPerLeg * (l + 1) - 1, &RobotFrame::joint);
-    if (shank == robot.frames.end()) continue;
-    const auto hangs_below = [&](std::string link) {
-      for (bool below = false;; below = true) {
-        const auto frame = std::ranges::find(robot.frames, link, &RobotFrame::name);
-        if (frame == robot.frames.end()) return false;
-        if (frame->name == shank->name) return below;
-        link = frame->parent;
-      }
-    };
-    for (const OutlinePoint& point : robot.outline) {
-      if (hangs_below(point.frame)) feet[l] = point.frame;
-    }
+    if (feet[l]) links[l] = feet[l]->frame;
   }
-  return feet;
+  return links;
 }
 
 nlohmann::ordered_json layout(std::span<const ViewField> fields) {
@@ -61,7 +47,7 @@ std::string view_hello(const RunScene& scene, const RobotDescription& robot, int
                                  {"motor_constant", scene.motor_constant},
                                  {"legs", robot.leg_names},
                                  {"joints", robot.joint_names},
-                                 {"feet", feet_of(robot)},
+                                 {"feet", feet_links(robot)},
                                  {"base", robot.base_frame},
                                  {"frame_fields", layout(view_frame_fields())},
                                  {"footprint_fields", layout(view_footprint_fields())},
