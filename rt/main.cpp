@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "drivers/check/check.h"
@@ -27,8 +28,6 @@
 #include "rt/operator/operator_desk.h"
 #include "rt/operator/stand_again.h"
 #include "rt/realtime/rt_report.h"
-#include "rt/report/run_csv.h"
-#include "rt/report/run_pictures.h"
 #include "rt/report/summary.h"
 #include "rt/run/command_source.h"
 #include "rt/run/dds_bridge.h"
@@ -36,12 +35,12 @@
 #include "rt/run/process_config.h"
 #include "rt/run/recording.h"
 #include "rt/run/run.h"
+#include "rt/run/run_files.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
 #include "rt/run/simulator_hand.h"
 #include "rt/telemetry/view/view_feed.h"
 #include "rt/telemetry/view/view_pace.h"
-#include "rt/telemetry/view/view_page.h"
 #include "rt/telemetry/view/view_server.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
@@ -51,10 +50,13 @@ namespace {
 
 constexpr int kLastWords_ms = 2000;
 
-void show_progress(const RunSample& s) {
+void show_progress(const RunRow& row) {
   const std::string where =
-      s.has_truth ? fmt::format("{:6.2f} m/s  x {:7.2f} m ", s.vx_mps, s.base_position_m[0]) : "";
-  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", s.t_s, mode_name(s.mode), where), 0);
+      (row.flags & kRowHasTruth) != 0
+          ? fmt::format("{:6.2f} m/s  x {:7.2f} m ", row.motion[0], row.position_m[0])
+          : "";
+  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", row.t_s, mode_name(mode_of(row)), where),
+                    0);
 }
 
 std::string recording_line(const RecordingResult& r, const std::string& dir) {
@@ -73,7 +75,7 @@ std::string recording_line(const RecordingResult& r, const std::string& dir) {
 
 // Writes the files of --out; returns the line that names them. Throws InputError.
 std::string write_results(const RunResult& result, const RunInfo& info,
-                          const std::string& effective, ViewPage& page, const std::string& folder) {
+                          const std::string& effective, const std::string& folder) {
   const std::string dir = folder + "/";
   // If not all can be written, those there are of one run, and not of an earlier one too.
   for (const char* name :
@@ -83,16 +85,8 @@ std::string write_results(const RunResult& result, const RunInfo& info,
   }
   write_file(dir + "summary.json", summary_json(result, info));
   write_file(dir + "config.toml", effective);
-  write_csv(result.record, dir + "run.csv");
-  draw_run_plot(result.record, dir + "run.png");
-  write_file(dir + "run.html", page.html());
-  std::string line = fmt::format(
-      "wrote {0}summary.json, {0}config.toml, {0}run.csv, {0}run.html, {0}run.png", dir);
-  if (result.record.has_truth()) {
-    draw_run_strip(result.record, dir + "strip.png");
-    line += fmt::format(", {}strip.png", dir);
-  }
-  return line + "\n";
+  return fmt::format("wrote {0}summary.json, {0}config.toml, {1}\n", dir,
+                     write_run_files(result.record, folder));
 }
 
 // `hardware`: text in place of the hardware file's own; null: that. `spec` may be null.
@@ -147,7 +141,7 @@ struct LiveView {
   LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
            const std::atomic<int>& interrupts, OperatorDesk* desk, sim::Simulator* simulator,
            StandAgain* stand_again)
-      : feed(scene, config.robot.description) {
+      : feed(scene) {
     if (lockstep) pace.emplace(interrupts);
     if (lockstep && simulator) {
       hand.emplace(*simulator, config.simulator.terrain, config.effective, stand_again);
@@ -170,17 +164,15 @@ struct Listeners {
   std::optional<DdsBridge> dds;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<BlackBox> black_box;
-  std::optional<ViewPage> page;
   std::optional<LiveView> view;
 
   TickTap tap() {
-    if (!recorder && !black_box && !dds && !page && !view) return {};
+    if (!recorder && !black_box && !dds && !view) return {};
     return [this](const TickRecord& tick) {
       if (recorder) recorder->add(tick);
       if (black_box) black_box->add(tick);
       if (dds) dds->add(tick);
-      if (page) page->add(tick);
-      if (view) view->feed.add(tick);
+      if (view) view->feed.set_tick(tick.input.sensors.tick);
     };
   }
   BetweenTicks between() {
@@ -303,13 +295,17 @@ int run(int argc, char** argv) {
   }
 
   const RunScene scene = scene_of(config, policy_name);
-  if (out) listeners.page.emplace(scene, config.robot.description);
   if (options->view) {
     listeners.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
                            robot.simulator.get(), stand_again ? &*stand_again : nullptr);
   }
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
+  SlowerRate progress_rate(2);
+  const auto row_tap = [&](const RunRow& row, std::span<const Footprint> footprints) {
+    if (terminal && progress_rate.due(ticks_from_s(row.t_s))) show_progress(row);
+    if (listeners.view) listeners.view->feed.add(row, footprints);
+  };
   const RunParts parts{
       .robot = robot.io(),
       .controller = config.controller,
@@ -320,8 +316,7 @@ int run(int argc, char** argv) {
               : remote    ? &*remote
                           : nullptr,
       .scene = scene,
-      .keep_record = out,
-      .progress = terminal ? show_progress : std::function<void(const RunSample&)>(),
+      .row_tap = row_tap,
       .tap = listeners.tap(),
       .begin_tap = [&](std::int64_t start_ns) { listeners.begin(start_ns); },
       .between = listeners.between(),
@@ -344,7 +339,7 @@ int run(int argc, char** argv) {
   std::exception_ptr not_written;
   try {
     if (out) {
-      written = write_results(result, info, config.effective, *listeners.page, options->out_dir);
+      written = write_results(result, info, config.effective, options->out_dir);
     }
   } catch (const InputError&) {
     not_written = std::current_exception();

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <vector>
 
+#include "estimator/kinematics.h"
 #include "rt/core/rotation.h"
 
 namespace sandrunner {
@@ -16,34 +17,8 @@ namespace {
 constexpr double kShortestLever_m = 1e-3;
 constexpr double kLeastMove_rad = 0.05;
 
-Vector3 sum(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
 Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// A link in the frame of the base.
-struct Placed {
-  Vector3 origin_m{};
-  Rotation rotation{1.0, 0.0, 0.0, 0.0};
-  bool moved = false;  ///< by the joint in question
-};
-
-std::map<std::string, Placed> place_links(const RobotDescription& robot,
-                                          const JointArray<double>& pose_rad, int joint) {
-  std::map<std::string, Placed> links{{robot.base_frame, {}}};
-  for (const RobotFrame& frame : robot.frames) {
-    const Placed& parent = links[frame.parent];
-    Placed link;
-    link.origin_m = sum(parent.origin_m, rotated(parent.rotation, frame.translation_m));
-    link.rotation = product(parent.rotation, frame.rotation_wxyz);
-    if (frame.joint >= 0) {
-      link.rotation = turned(link.rotation, frame.axis, pose_rad[frame.joint]);
-    }
-    link.moved = parent.moved || frame.joint == joint;
-    links[frame.name] = link;
-  }
-  return links;
 }
 
 std::string direction_words(const Vector3& v) {
@@ -61,23 +36,26 @@ std::string direction_words(const Vector3& v) {
 
 std::string positive_motion(const RobotDescription& robot, const JointArray<double>& pose_rad,
                             int joint) {
-  const std::map<std::string, Placed> links = place_links(robot, pose_rad, joint);
-  const auto turned = std::find_if(robot.frames.begin(), robot.frames.end(),
-                                   [&](const RobotFrame& frame) { return frame.joint == joint; });
-  if (turned == robot.frames.end()) return "";
-  const Placed& pivot = links.at(turned->name);
-  const Vector3 axis = rotated(pivot.rotation, turned->axis);
-  std::string part = turned->name;
+  Kinematics kinematics(robot);
+  kinematics.place({}, pose_rad);
+  const int link = kinematics.link_of(joint);
+  if (link < 0) return "";
+  const Kinematics::Pose& pivot = kinematics.pose(link);
+  const Vector3 axis = rotated(pivot.rotation_wxyz, robot.frames[link].axis);
+  std::string part = robot.frames[link].name;
   Vector3 fastest{};
-  for (const RobotFrame& frame : robot.frames) {
-    const Placed& link = links.at(frame.name);
-    if (!link.moved) continue;
-    const Vector3 lever{link.origin_m[0] - pivot.origin_m[0], link.origin_m[1] - pivot.origin_m[1],
-                        link.origin_m[2] - pivot.origin_m[2]};
+  std::vector<bool> moved(robot.frames.size());  // by the joint in question
+  for (int i = 0; i < static_cast<int>(robot.frames.size()); ++i) {
+    const int parent = kinematics.parent(i);
+    moved[i] = i == link || (parent >= 0 && moved[parent]);
+    if (!moved[i]) continue;
+    const Vector3& origin_m = kinematics.pose(i).position_m;
+    const Vector3 lever{origin_m[0] - pivot.position_m[0], origin_m[1] - pivot.position_m[1],
+                        origin_m[2] - pivot.position_m[2]};
     const Vector3 velocity = cross(axis, lever);
     if (length(velocity) <= length(fastest)) continue;
     fastest = velocity;
-    part = frame.name;
+    part = robot.frames[i].name;
   }
   if (length(fastest) < kShortestLever_m) {
     return fmt::format("{} turns right-handed about ({:.2f}, {:.2f}, {:.2f})", part, axis[0],

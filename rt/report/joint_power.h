@@ -10,14 +10,18 @@ struct JointPower {
   double mechanical_w = 0.0, torque_squared_nm2 = 0.0;
 };
 
-/// Of the true torque after the clamp and the speed before the step that it was worked out from;
-/// of a robot that offers no truth, of what its drives report.
+/// The true torque after the clamp; without truth, what the drives report.
+inline const JointArray<double>& torque_of(const TickRecord& tick) noexcept {
+  return tick.has_truth != 0 ? tick.truth.joint_torque_nm : tick.input.sensors.joints.torque_nm;
+}
+
+/// Of `torque_of` and the true speed before the step that the torque was worked out from; without
+/// truth, of what the drives report.
 inline JointPower joint_power(const TickRecord& tick) noexcept {
-  const JointState& sensed = tick.input.sensors.joints;
-  const bool truth = tick.has_truth != 0;
-  const JointArray<double>& torque_nm = truth ? tick.truth.joint_torque_nm : sensed.torque_nm;
-  const JointArray<double>& velocity_radps =
-      truth ? tick.before.joint_velocity_radps : sensed.velocity_radps;
+  const JointArray<double>& torque_nm = torque_of(tick);
+  const JointArray<double>& velocity_radps = tick.has_truth != 0
+                                                 ? tick.before.joint_velocity_radps
+                                                 : tick.input.sensors.joints.velocity_radps;
   JointPower sum;
   for (int j = 0; j < kNumJoints; ++j) {
     sum.mechanical_w += torque_nm[j] * velocity_radps[j];

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <functional>
-#include <limits>
+#include <cstring>
+#include <string_view>
 
 #include "rt/base/output_files.h"
 #include "rt/core/mode_machine.h"
@@ -12,74 +12,73 @@
 namespace sandrunner {
 namespace {
 
-/// Calls `column(name, value)` for every column of a sample: names and values cannot part.
-void for_each_column(const RunSample& s, const RunScene& scene,
-                     const std::function<void(const std::string&, double)>& column) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  // What only the truth tells.
-  const auto truth = [&](const std::string& name, double value) {
-    column(name, s.has_truth ? value : kUnknown);
-  };
-  const auto vector = [&](const std::string& name, const std::string& unit, const Vector3& v) {
-    for (std::size_t i = 0; i < 3; ++i) truth(name + "_" + "xyz"[i] + unit, v[i]);
-  };
-  const auto joints = [&](const std::string& name, const JointArray<double>& values) {
-    for (std::size_t i = 0; i < kNumJoints; ++i) column(scene.joint_names[i] + name, values[i]);
-  };
-  const auto estimate = [&](const std::string& name, const StateEstimate& e, bool exists) {
-    const auto known = [&](double value) { return exists ? value : kUnknown; };
-    column(name + "_body_height_m", known(e.body_height_m));
-    for (std::size_t i = 0; i < 3; ++i) {
-      column(name + "_velocity_" + "xyz"[i] + "_mps", known(e.velocity_mps[i]));
-    }
-    for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-      column(name + "_" + scene.leg_names[leg] + "_foot_height_m", known(e.foot_height_m[leg]));
-    }
-  };
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) c == separator ? parts.emplace_back() : parts.back() += c;
+  return parts;
+}
 
-  column("command_vx_mps", s.command.vx_mps);
-  column("command_vy_mps", s.command.vy_mps);
-  column("command_wz_radps", s.command.wz_radps);
-  vector("base", "_m", s.base_position_m);
-  for (std::size_t i = 0; i < 4; ++i) {
-    column(std::string("orientation_") + "wxyz"[i], s.orientation_wxyz[i]);
+void expand(const std::string& pattern, const RobotDescription& robot,
+            std::vector<std::string>& names) {
+  const std::size_t open = pattern.find('{'), close = pattern.find('}');
+  if (open == std::string::npos) {
+    names.push_back(pattern);
+    return;
   }
-  truth("vx_mps", s.vx_mps);
-  truth("vy_mps", s.vy_mps);
-  column("yaw_rate_radps", s.yaw_rate_radps);
-  joints("_position_rad", s.joint_position_rad);
-  joints("_velocity_radps", s.joint_velocity_radps);
-  joints("_torque_nm", s.joint_torque_nm);
-  for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    const std::string name = scene.leg_names[leg];
-    vector(name + "_hip", "_m", s.hip_position_m[leg]);
-    vector(name + "_knee", "_m", s.knee_position_m[leg]);
-    vector(name + "_foot", "_m", s.foot_position_m[leg]);
-    truth(name + "_penetration_m", s.penetration_m[leg]);
-    truth(name + "_ground_height_m", s.ground_height_m[leg]);
-    truth(name + "_contact", s.contact[leg] ? 1.0 : 0.0);
+  const std::string inside = pattern.substr(open + 1, close - open - 1);
+  std::vector<std::string> words = split(inside, ',');
+  if (inside == "leg") words.assign(robot.leg_names.begin(), robot.leg_names.end());
+  if (inside == "joint") words.assign(robot.joint_names.begin(), robot.joint_names.end());
+  for (const std::string& word : words) {
+    expand(pattern.substr(0, open) + word + pattern.substr(close + 1), robot, names);
   }
-  estimate("estimate", s.estimate, s.has_estimate);
-  estimate("truth", s.truth, s.has_truth);
+}
+
+template <typename T>
+T number_at(const RunRow& row, std::size_t offset) {
+  T number;
+  std::memcpy(&number, reinterpret_cast<const std::byte*>(&row) + offset, sizeof number);
+  return number;
+}
+
+void append(std::string& text, const RunRow& row, const RowField& field) {
+  const std::string_view type = field.type;
+  for (std::size_t i = 0; i < field.count; ++i) {
+    const std::size_t at = field.offset + i * field.width();
+    if (field.offset == offsetof(RunRow, mode)) {
+      text += mode_name(mode_of(row));
+    } else if (type == "f64") {
+      fmt::format_to(std::back_inserter(text), "{:.9g}", number_at<double>(row, at));
+    } else if (type == "f32") {
+      fmt::format_to(std::back_inserter(text), "{}", number_at<float>(row, at));
+    } else {
+      fmt::format_to(std::back_inserter(text), "{}", number_at<std::uint32_t>(row, at));
+    }
+    text += ',';
+  }
 }
 
 }  // namespace
 
-std::vector<std::string> csv_columns(const RunScene& scene) {
-  std::vector<std::string> names = {"t_s", "mode"};
-  for_each_column(RunSample{}, scene,
-                  [&](const std::string& name, double) { names.push_back(name); });
+std::vector<std::string> columns_of(const std::string& patterns, const RobotDescription& robot) {
+  std::vector<std::string> names;
+  for (const std::string& pattern : split(patterns, '|')) expand(pattern, robot, names);
+  return names;
+}
+
+std::vector<std::string> csv_columns(const RobotDescription& robot) {
+  std::vector<std::string> names;
+  for (const RowField& field : row_fields()) {
+    for (std::string& name : columns_of(field.columns, robot)) names.push_back(std::move(name));
+  }
   return names;
 }
 
 void write_csv(const RunRecord& record, const std::string& path) {
-  std::string text = fmt::format("{}\n", fmt::join(csv_columns(record.scene), ","));
-  for (const RunSample& sample : record.samples) {
-    text += fmt::format("{:.9g},{}", sample.t_s, mode_name(sample.mode));
-    for_each_column(sample, record.scene, [&](const std::string&, double value) {
-      text += fmt::format(",{:.9g}", value);
-    });
-    text += '\n';
+  std::string text = fmt::format("{}\n", fmt::join(csv_columns(record.scene.robot), ","));
+  for (const RunRow& row : record.rows) {
+    for (const RowField& field : row_fields()) append(text, row, field);
+    text.back() = '\n';
   }
   write_file(path, text);
 }

@@ -2,45 +2,35 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
-#include "rt/core/slower_rate.h"
-#include "rt/loop/tick_record.h"
+#include "rt/report/row_maker.h"
 #include "rt/report/run_record.h"
-#include "rt/report/run_statistics.h"
 
 namespace sandrunner {
 
-/// Turns the ticks of a run into figures, progress and, if asked for, a record. Runs in an ordinary
-/// thread, in bounded memory; the order of the ticks matters, gaps do not.
+/// A row, and the footprints since the row before.
+using RowTap = std::function<void(const RunRow& row, std::span<const Footprint> footprints)>;
+
+/// Turns the ticks of a run into rows, once, and keeps them. Runs in an ordinary thread, in bounded
+/// memory; the order of the ticks matters, gaps do not.
 class RunObserver {
  public:
-  /// `progress` (may be empty) is called every half second of the robot's time.
-  RunObserver(RunScene scene, bool keep_record, std::function<void(const RunSample&)> progress);
+  /// `tap` (may be empty) gets each row as it is complete.
+  explicit RunObserver(RunScene scene, RowTap tap = {});
+  RunObserver(const RunObserver&) = delete;
+  RunObserver& operator=(const RunObserver&) = delete;
 
   void add(const TickRecord& tick);
-
-  RunFigures figures() const;
-  /// Time that the figures are of: in Walk under the command.
-  double walked_s() const noexcept { return statistics_.time_s(); }
-  /// Everything kept, with the footprints; the observer's own is gone afterwards.
+  /// After the last tick: everything that was kept.
   RunRecord take_record();
 
  private:
-  RunSample make_sample(const TickRecord& tick) const;
-  void keep(const RunSample& sample);
+  void keep(const RunRow& row);
 
-  const bool keep_record_;
-  const std::function<void(const RunSample&)> progress_;
-  RunStatistics statistics_;
-  SlowerRate progress_rate_{2}, sample_rate_{kPolicyHz};
   RunRecord record_;
-  std::uint64_t periods_ = 0, periods_a_sample_ = 1;
-  // An estimate comes some ticks after its input: what it is to be compared with, and where it
-  // goes.
-  std::uint64_t policy_sequence_ = 0;
-  std::uint64_t released_tick_ = 0;
-  bool released_ = false;
-  StateEstimate released_truth_;
+  RowMaker maker_;
+  const RowTap tap_;
 };
 
 }  // namespace sandrunner

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,8 +35,6 @@ constexpr int kViewsPerRow = 5;
 constexpr double kGap_px = 8.0;
 constexpr double kHead_px = 46.0;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
 std::string title_of(const RunRecord& record) {
   std::string title = record.scene.terrain.empty() ? std::string("Sandrunner")
                                                    : "Sandrunner on " + record.scene.terrain;
@@ -45,59 +42,56 @@ std::string title_of(const RunRecord& record) {
   return title;
 }
 
-/// The samples to look at: from the first to the last in Walk; all of them if there is none.
+/// The rows to look at: from the first to the last in Walk; all of them if there is none.
 struct Walk {
   std::size_t first = 0, last = 0;
 };
 
 Walk walk_of(const RunRecord& record) {
-  const std::deque<RunSample>& samples = record.samples;
-  const auto walks = [](const RunSample& sample) { return sample.mode == Mode::kWalk; };
-  const auto first = std::find_if(samples.begin(), samples.end(), walks);
-  if (first == samples.end()) return {0, samples.empty() ? 0 : samples.size() - 1};
-  const auto behind_last = std::find_if(samples.rbegin(), samples.rend(), walks).base();
-  return {static_cast<std::size_t>(first - samples.begin()),
-          static_cast<std::size_t>(behind_last - samples.begin()) - 1};
+  const std::deque<RunRow>& rows = record.rows;
+  const auto walks = [](const RunRow& row) { return mode_of(row) == Mode::kWalk; };
+  const auto first = std::find_if(rows.begin(), rows.end(), walks);
+  if (first == rows.end()) return {0, rows.empty() ? 0 : rows.size() - 1};
+  const auto behind_last = std::find_if(rows.rbegin(), rows.rend(), walks).base();
+  return {static_cast<std::size_t>(first - rows.begin()),
+          static_cast<std::size_t>(behind_last - rows.begin()) - 1};
 }
+
+/// As RunRow::given.
+using Command = std::array<float, 3>;
 
 /// A second worth a closer look.
 struct Detail {
   std::string title;
   double begin_s = 0.0, end_s = 0.0;
-  std::optional<VelocityCommand> command;  ///< if it is one all the time
+  std::optional<Command> command;  ///< if it is one all the time
 };
 
-double size_of(const VelocityCommand& c) {
-  return std::hypot(c.vx_mps, std::hypot(c.vy_mps, c.wz_radps));
-}
-
-bool same(const VelocityCommand& a, const VelocityCommand& b) {
-  return a.vx_mps == b.vx_mps && a.vy_mps == b.vy_mps && a.wz_radps == b.wz_radps;
-}
+double size_of(const Command& c) { return std::hypot(c[0], std::hypot(c[1], c[2])); }
 
 /// The last second under the largest command that was held for one; the last of all if the walk did
 /// not end in Stand, or none was held. Nothing for a shorter walk.
 std::optional<Detail> detail_of(const RunRecord& record) {
   constexpr double kDetail_s = 1.0;
-  const std::deque<RunSample>& samples = record.samples;
-  if (samples.empty()) return std::nullopt;
+  const std::deque<RunRow>& rows = record.rows;
+  if (rows.empty()) return std::nullopt;
   const Walk walk = walk_of(record);
-  const RunSample& last = samples[walk.last];
-  if (last.t_s - samples[walk.first].t_s <= kDetail_s) return std::nullopt;
-  Detail detail{fmt::format("last second of {}", mode_name(last.mode)), last.t_s - kDetail_s,
+  const RunRow& last = rows[walk.last];
+  if (last.t_s - rows[walk.first].t_s <= kDetail_s) return std::nullopt;
+  Detail detail{fmt::format("last second of {}", mode_name(mode_of(last))), last.t_s - kDetail_s,
                 last.t_s, std::nullopt};
   double largest = -1.0;
   for (std::size_t i = walk.first, held = i; i <= walk.last; ++i) {
-    const VelocityCommand& command = samples[i].command;
-    if (!same(command, samples[held].command)) held = i;
-    if (samples[i].t_s - samples[held].t_s < kDetail_s || size_of(command) < largest) continue;
+    const Command& command = rows[i].given;
+    if (command != rows[held].given) held = i;
+    if (rows[i].t_s - rows[held].t_s < kDetail_s || size_of(command) < largest) continue;
     largest = size_of(command);
     detail.command = command;
-    detail.begin_s = samples[i].t_s - kDetail_s;
-    detail.end_s = samples[i].t_s;
+    detail.begin_s = rows[i].t_s - kDetail_s;
+    detail.end_s = rows[i].t_s;
   }
   const bool ended_badly =
-      walk.last + 1 < samples.size() && samples[walk.last + 1].mode != Mode::kStand;
+      walk.last + 1 < rows.size() && mode_of(rows[walk.last + 1]) != Mode::kStand;
   if (ended_badly || !detail.command) {
     detail.begin_s = last.t_s - kDetail_s;
     detail.end_s = last.t_s;
@@ -107,18 +101,17 @@ std::optional<Detail> detail_of(const RunRecord& record) {
   return detail;
 }
 
-std::string command_text(const std::optional<VelocityCommand>& c) {
+std::string command_text(const std::optional<Command>& c) {
   if (!c) return ", changing command";
-  return fmt::format(", command {:.3g}, {:.3g} m/s, {:.3g} rad/s", c->vx_mps, c->vy_mps,
-                     c->wz_radps);
+  return fmt::format(", command {:.3g}, {:.3g} m/s, {:.3g} rad/s", (*c)[0], (*c)[1], (*c)[2]);
 }
 
-/// A series of `value(sample)`.
+/// A series of `value(row)`.
 template <typename Value>
 plot::Series series(const RunRecord& record, const std::string& name, const Color& color,
                     const Value& value) {
   plot::Series result{name, color, {}};
-  for (const RunSample& sample : record.samples) result.y.push_back(value(sample));
+  for (const RunRow& row : record.rows) result.y.push_back(value(row));
   return result;
 }
 
@@ -132,20 +125,19 @@ plot::Series command(const RunRecord& record, const std::string& name, const Col
   return result;
 }
 
-template <typename Value>
-plot::Series estimate(const RunRecord& record, const Value& value) {
-  return series(record, "estimate", kOrange, [&](const RunSample& sample) {
-    return sample.has_estimate ? value(sample.estimate) : kUnknown;
-  });
+/// Truth and estimate of the k-th number of the network's estimate.
+std::vector<plot::Series> estimate(const RunRecord& record, std::size_t k) {
+  return {series(record, "truth", kBlack, [k](const RunRow& row) { return row.truth[k]; }),
+          series(record, "estimate", kOrange, [k](const RunRow& row) { return row.estimate[k]; })};
 }
 
-/// A series of `value(sample, leg)` for each leg, the left one of a pair before the right one.
+/// A series of `value(row, leg)` for each leg, the left one of a pair before the right one.
 template <typename Value>
 std::vector<plot::Series> leg_series(const RunRecord& record, const Value& value) {
   std::vector<plot::Series> all;
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    all.push_back(series(record, record.scene.leg_names[leg], kLegColors[leg],
-                         [&](const RunSample& s) { return value(s, leg); }));
+    all.push_back(series(record, record.scene.robot.leg_names[leg], kLegColors[leg],
+                         [&](const RunRow& row) { return value(row, leg); }));
     if (leg % 2 == 0) all.back().width_px = kLeftLeg_px;
   }
   return all;
@@ -154,71 +146,55 @@ std::vector<plot::Series> leg_series(const RunRecord& record, const Value& value
 plot::Panel torque_panel(const RunRecord& record, const std::string& title, std::size_t joint) {
   return {title, "N m",
           leg_series(record,
-                     [joint](const RunSample& s, std::size_t leg) {
-                       return s.joint_torque_nm[kJointsPerLeg * leg + joint];
+                     [joint](const RunRow& row, std::size_t leg) {
+                       return row.torque_nm[kJointsPerLeg * leg + joint];
                      }),
           10.0};
 }
 
 std::vector<plot::Panel> panels(const RunRecord& record) {
-  const auto body_vx = [](const StateEstimate& e) { return e.velocity_mps[0]; };
-  const auto height = [](const StateEstimate& e) { return e.body_height_m; };
-  const plot::Panel sinkage{
-      "Sinkage of the feet", "mm",
-      leg_series(record,
-                 [](const RunSample& s, std::size_t leg) {
-                   return s.has_truth ? 1000.0 * std::max(0.0, s.penetration_m[leg]) : kUnknown;
-                 }),
-      10.0};
+  const plot::Panel sinkage{"Sinkage of the feet", "mm",
+                            leg_series(record,
+                                       [](const RunRow& row, std::size_t leg) {
+                                         const double depth_m = row.penetration_m[leg];
+                                         return depth_m < 0.0 ? 0.0
+                                                              : 1000.0 * depth_m;  // of NaN, NaN
+                                       }),
+                            10.0};
   return {
       {"Speed, heading frame",
        "m/s",
-       {series(record, "vx", kBlue,
-               [](const RunSample& s) { return s.has_truth ? s.vx_mps : kUnknown; }),
-        series(record, "vy", kTeal,
-               [](const RunSample& s) { return s.has_truth ? s.vy_mps : kUnknown; }),
-        command(record, "vx commanded", kBlack,
-                [](const RunSample& s) { return s.command.vx_mps; }),
-        command(record, "vy commanded", kGray,
-                [](const RunSample& s) { return s.command.vy_mps; })},
+       {series(record, "vx", kBlue, [](const RunRow& row) { return row.motion[0]; }),
+        series(record, "vy", kTeal, [](const RunRow& row) { return row.motion[1]; }),
+        command(record, "vx commanded", kBlack, [](const RunRow& row) { return row.given[0]; }),
+        command(record, "vy commanded", kGray, [](const RunRow& row) { return row.given[1]; })},
        0.5},
       {"Yaw rate",
        "rad/s",
-       {series(record, "yaw rate", kBlue, [](const RunSample& s) { return s.yaw_rate_radps; }),
-        command(record, "commanded", kBlack,
-                [](const RunSample& s) { return s.command.wz_radps; })},
+       {series(record, "yaw rate", kBlue, [](const RunRow& row) { return row.motion[2]; }),
+        command(record, "commanded", kBlack, [](const RunRow& row) { return row.given[2]; })},
        0.5},
       torque_panel(record, "Torque, hip abduction (HAA)", 0),
       torque_panel(record, "Torque, hip flexion (HFE)", 1),
       torque_panel(record, "Torque, knee (KFE)", 2),
       sinkage,
-      {"Forward speed, body frame: estimate against truth",
-       "m/s",
-       {series(record, "truth", kBlack,
-               [&](const RunSample& s) { return s.has_truth ? body_vx(s.truth) : kUnknown; }),
-        estimate(record, body_vx)},
-       0.5},
-      {"Body height: estimate against truth",
-       "m",
-       {series(record, "truth", kBlack,
-               [&](const RunSample& s) { return s.has_truth ? height(s.truth) : kUnknown; }),
-        estimate(record, height)},
-       0.1},
+      {"Forward speed, body frame: estimate against truth", "m/s", estimate(record, 1), 0.5},
+      {"Body height: estimate against truth", "m", estimate(record, 0), 0.1},
   };
 }
 
 /// The stretches of modes other than Walk, shaded.
 std::vector<plot::Span> mode_spans(const RunRecord& record) {
   std::vector<plot::Span> spans;
-  const std::deque<RunSample>& samples = record.samples;
-  for (std::size_t i = 0; i < samples.size();) {
+  const std::deque<RunRow>& rows = record.rows;
+  for (std::size_t i = 0; i < rows.size();) {
     std::size_t next = i;
-    while (next < samples.size() && samples[next].mode == samples[i].mode) ++next;
-    const double end_s = samples[std::min(next, samples.size() - 1)].t_s;
+    while (next < rows.size() && rows[next].mode == rows[i].mode) ++next;
+    const double end_s = rows[std::min(next, rows.size() - 1)].t_s;
     Color color{0.955, 0.96, 0.97};
-    if (samples[i].mode == Mode::kFault) color = {0.99, 0.90, 0.89};
-    if (samples[i].mode == Mode::kWalk) color = {1.0, 1.0, 1.0};
-    spans.push_back({samples[i].t_s, end_s, color, mode_name(samples[i].mode)});
+    if (mode_of(rows[i]) == Mode::kFault) color = {0.99, 0.90, 0.89};
+    if (mode_of(rows[i]) == Mode::kWalk) color = {1.0, 1.0, 1.0};
+    spans.push_back({rows[i].t_s, end_s, color, mode_name(mode_of(rows[i]))});
     i = next;
   }
   return spans;
@@ -230,11 +206,11 @@ void draw_run_plot(const RunRecord& record, const std::string& png_path) {
   plot::Figure figure;
   figure.title = title_of(record);
   figure.x_label = "time, s";
-  for (const RunSample& sample : record.samples) figure.x.push_back(sample.t_s);
+  for (const RunRow& row : record.rows) figure.x.push_back(row.t_s);
   figure.panels = panels(record);
   figure.spans = mode_spans(record);
   figure.views = {{"", 0.0, 1.0, 0.68}};
-  if (record.samples.size() > 1) figure.views[0] = {"", figure.x.front(), figure.x.back(), 0.68};
+  if (record.rows.size() > 1) figure.views[0] = {"", figure.x.front(), figure.x.back(), 0.68};
   if (const std::optional<Detail> detail = detail_of(record)) {
     figure.title += command_text(detail->command);
     figure.views.push_back({detail->title, detail->begin_s, detail->end_s, 0.32});
@@ -253,19 +229,19 @@ void draw_run_strip(const RunRecord& record, const std::string& png_path) {
   canvas.text(kGap_px + kViewsPerRow * (kSideViewWidth_px + kGap_px) - kGap_px, 30.0,
               "from the right, a little from behind; left legs light; below: metres walked", 14.0,
               1.0, plot::kFaintInk);
-  const std::deque<RunSample>& samples = record.samples;
+  const std::deque<RunRow>& rows = record.rows;
   const Walk walk = walk_of(record);
-  std::vector<double> distance_m(samples.size(), 0.0);
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    distance_m[i] = distance_m[i - 1] + samples[i].vx_mps * (samples[i].t_s - samples[i - 1].t_s);
+  std::vector<double> distance_m(rows.size(), 0.0);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    distance_m[i] = distance_m[i - 1] + rows[i].motion[0] * (rows[i].t_s - rows[i - 1].t_s);
   }
-  for (std::size_t view = 0; view < kViews && !samples.empty(); ++view) {
+  for (std::size_t view = 0; view < kViews && !rows.empty(); ++view) {
     const std::size_t i = walk.first + (walk.last - walk.first) * view / (kViews - 1);
     const std::size_t row = view / kViewsPerRow;
     const std::size_t column = view % kViewsPerRow;
     const double left_px = kGap_px + static_cast<double>(column) * (kSideViewWidth_px + kGap_px);
     const double top_px = kHead_px + static_cast<double>(row) * (kSideViewHeight_px + kGap_px);
-    draw_side_view(canvas, record, samples[i], distance_m[i] - distance_m[walk.first], left_px,
+    draw_side_view(canvas, record, rows[i], distance_m[i] - distance_m[walk.first], left_px,
                    top_px);
   }
   canvas.save_png(png_path);

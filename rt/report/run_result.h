@@ -8,8 +8,8 @@
 #include "rt/core/messages.h"
 #include "rt/loop/lockstep.h"
 #include "rt/realtime/realtime_run.h"
+#include "rt/report/run_figures.h"
 #include "rt/report/run_record.h"
-#include "rt/report/run_statistics.h"
 
 namespace sandrunner {
 
@@ -33,7 +33,7 @@ struct RunResult {
   double walked_s = 0.0;  ///< time in Walk under the command
   LoopEnd end;
   RunFigures figures;
-  RunRecord record;  ///< of samples only if asked for; the scene always
+  RunRecord record;
   std::optional<RealtimeReport> realtime;
 };
 

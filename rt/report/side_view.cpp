@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "rt/base/fixed_text.h"
-#include "rt/report/body_motion.h"
+#include "rt/core/rotation.h"
 
 namespace sandrunner {
 namespace {
@@ -32,13 +32,18 @@ constexpr Color kFarLeg{0.47, 0.60, 0.74};
 constexpr Color kBody{0.93, 0.52, 0.13};
 constexpr Color kBodyEdge{0.60, 0.30, 0.05};
 
+Rotation orientation(const RunRow& row) {
+  const auto [w, x, y, z] = row.orientation_wxyz;
+  return {w, x, y, z};
+}
+
 /// One view: from the right, a little from behind and above, at the base, forward to the right.
 class SideView {
  public:
-  SideView(const Canvas& canvas, const RunRecord& record, const RunSample& sample, double left_px,
+  SideView(const Canvas& canvas, const RunRecord& record, const RunRow& row, double left_px,
            double top_px)
-      : canvas_(canvas), record_(record), sample_(sample), left_px_(left_px), top_px_(top_px) {
-    const Vector3 forward = body_axes(sample.orientation_wxyz)[0];
+      : canvas_(canvas), record_(record), row_(row), left_px_(left_px), top_px_(top_px) {
+    const Vector3 forward = body_axes(orientation(row))[0];
     const double length = std::hypot(forward[0], forward[1]);
     if (length > 1e-6) heading_ = {forward[0] / length, forward[1] / length};
     ground_m_ = ground(0.0, 0.0);
@@ -72,9 +77,12 @@ class SideView {
     double u = 0.0, v = 0.0, z = 0.0;
   };
 
+  ViewPoint view_point(const std::array<float, 3>& p) const {
+    return view_point(Vector3{p[0], p[1], p[2]});
+  }
   ViewPoint view_point(const Vector3& p) const {
-    const double dx = p[0] - sample_.base_position_m[0];
-    const double dy = p[1] - sample_.base_position_m[1];
+    const double dx = p[0] - row_.position_m[0];
+    const double dy = p[1] - row_.position_m[1];
     const double left = heading_[0] * dy - heading_[1] * dx;
     return {heading_[0] * dx + heading_[1] * dy + kAheadPerLeft * left, left,
             p[2] + kUpPerLeft * left};
@@ -87,9 +95,8 @@ class SideView {
   /// Height of the undisturbed surface.
   double ground(double u, double v) const {
     if (!record_.scene.ground_height_m) return 0.0;
-    return record_.scene.ground_height_m(
-        sample_.base_position_m[0] + heading_[0] * u - heading_[1] * v,
-        sample_.base_position_m[1] + heading_[1] * u + heading_[0] * v);
+    return record_.scene.ground_height_m(row_.position_m[0] + heading_[0] * u - heading_[1] * v,
+                                         row_.position_m[1] + heading_[1] * u + heading_[0] * v);
   }
 
   /// A hole in the surface at u. Its shape is drawn, not simulated: as wide as the foot, walls of
@@ -108,13 +115,13 @@ class SideView {
         0.45;  // farther from the plane of the view they are of another path
     std::vector<Dent> result;
     for (const Footprint& print : record_.footprints) {
-      if (print.t_s > sample_.t_s) continue;
-      const ViewPoint p = view_point({print.x_m, print.y_m, 0.0});
+      if (print.t_s > row_.t_s) continue;
+      const ViewPoint p = view_point(Vector3{print.x_m, print.y_m, 0.0});
       if ((p.v > 0.0) == far && std::abs(p.v) < kFarthest_m) result.push_back({p.u, print.depth_m});
     }
     for (std::size_t leg = far ? 0 : 1; leg < kNumLegs; leg += 2) {
       if (!record_.scene.granular_ground) continue;
-      result.push_back({view_point(sample_.foot_position_m[leg]).u, sample_.penetration_m[leg]});
+      result.push_back({view_point(row_.foot_m[leg]).u, row_.penetration_m[leg]});
     }
     return result;
   }
@@ -123,7 +130,7 @@ class SideView {
     cairo_t* cr = canvas_.cairo();
     double lateral_m = 0.0;
     for (std::size_t leg = far ? 0 : 1; leg < kNumLegs; leg += 2) {
-      lateral_m += 0.5 * view_point(sample_.hip_position_m[leg]).v;
+      lateral_m += 0.5 * view_point(row_.hip_m[leg]).v;
     }
     const std::vector<Dent> holes = dents(far);
     cairo_new_path(cr);
@@ -180,9 +187,9 @@ class SideView {
     const Color color = far ? kFarLeg : kNearLeg;
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     for (std::size_t leg = far ? 0 : 1; leg < kNumLegs; leg += 2) {
-      const ViewPoint hip = view_point(sample_.hip_position_m[leg]);
-      const ViewPoint knee = view_point(sample_.knee_position_m[leg]);
-      const ViewPoint foot = view_point(sample_.foot_position_m[leg]);
+      const ViewPoint hip = view_point(row_.hip_m[leg]);
+      const ViewPoint knee = view_point(row_.knee_m[leg]);
+      const ViewPoint foot = view_point(row_.foot_m[leg]);
       const auto link = [&](const ViewPoint& from, const ViewPoint& to, double width_m) {
         cairo_set_line_width(cr, kPixelsPerMeter * width_m);
         cairo_move_to(cr, x_px(from.u), y_px(from.z));
@@ -209,12 +216,12 @@ class SideView {
 
   /// Part of the base box: from `rear` to `front`, -1 to 1, of its length.
   void draw_box(double rear, double front, const Color& color) const {
-    const std::array<Vector3, 3> axes = body_axes(sample_.orientation_wxyz);
+    const std::array<Vector3, 3> axes = body_axes(orientation(row_));
     std::array<ViewPoint, 8> corners;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vector3 side = {(i & 1) != 0 ? front : rear, (i & 2) != 0 ? 1.0 : -1.0,
                             (i & 4) != 0 ? 1.0 : -1.0};
-      Vector3 p = sample_.base_position_m;
+      Vector3 p = row_.position_m;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double along_m = record_.scene.base_box_center_m[axis] +
                                0.5 * side[axis] * record_.scene.base_box_size_m[axis];
@@ -244,15 +251,15 @@ class SideView {
   }
 
   void draw_caption() const {
-    canvas_.text(left_px_ + 10.0, top_px_ + 22.0, fmt::format("{:.2f} s", sample_.t_s), 15.0, 0.0,
+    canvas_.text(left_px_ + 10.0, top_px_ + 22.0, fmt::format("{:.2f} s", row_.t_s), 15.0, 0.0,
                  plot::kInk, true);
     canvas_.text(left_px_ + kSideViewWidth_px - 10.0, top_px_ + 22.0,
-                 fixed_text(sample_.vx_mps, 2) + " m/s", 15.0, 1.0);
+                 fixed_text(row_.motion[0], 2) + " m/s", 15.0, 1.0);
   }
 
   const Canvas& canvas_;
   const RunRecord& record_;
-  const RunSample& sample_;
+  const RunRow& row_;
   double left_px_;
   double top_px_;
   std::array<double, 2> heading_ = {1.0, 0.0};
@@ -261,9 +268,9 @@ class SideView {
 
 }  // namespace
 
-void draw_side_view(const plot::Canvas& canvas, const RunRecord& record, const RunSample& sample,
+void draw_side_view(const plot::Canvas& canvas, const RunRecord& record, const RunRow& row,
                     double distance_m, double left_px, double top_px) {
-  SideView(canvas, record, sample, left_px, top_px).draw(distance_m);
+  SideView(canvas, record, row, left_px, top_px).draw(distance_m);
 }
 
 }  // namespace sandrunner

@@ -83,10 +83,10 @@ std::string realtime_table(const RealtimeReport& r) {
 }
 
 /// Names of the joints in `bits`.
-std::vector<std::string> joints_in(std::uint64_t bits, const RunScene& scene) {
+std::vector<std::string> joints_in(std::uint64_t bits, const RobotDescription& robot) {
   std::vector<std::string> names;
   for (std::size_t j = 0; j < kNumJoints; ++j) {
-    if ((bits >> j & 1) != 0) names.push_back(scene.joint_names[j]);
+    if ((bits >> j & 1) != 0) names.push_back(robot.joint_names[j]);
   }
   return names;
 }
@@ -108,7 +108,8 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
   if (!r.has_truth) end += "; whether it fell is not known, there is no ground truth";
   if (!r.survived) {
     end = "FAILED: " + r.fall_reason;
-    const std::vector<std::string> joints = joints_in(r.end.gate.fault_joints, r.record.scene);
+    const std::vector<std::string> joints =
+        joints_in(r.end.gate.fault_joints, r.record.scene.robot);
     if (!joints.empty()) end += fmt::format(" ({})", fmt::join(joints, ", "));
     if (r.fall_mode) end += fmt::format(" in {},", mode_name(*r.fall_mode));
     if (r.fall_time_s) end += fmt::format(" after {:.2f} s of Walk", *r.fall_time_s);
@@ -174,7 +175,7 @@ std::string summary_json(const RunResult& r, const RunInfo& info) {
   j["fall_time_s"] = r.fall_time_s ? Json(*r.fall_time_s) : Json();
   j["fall_reason"] = r.survived ? Json() : Json(r.fall_reason);
   j["fall_mode"] = r.fall_mode ? Json(mode_name(*r.fall_mode)) : Json();
-  j["fault_joints"] = joints_in(r.end.gate.fault_joints, r.record.scene);
+  j["fault_joints"] = joints_in(r.end.gate.fault_joints, r.record.scene.robot);
   j["interrupted"] = r.interrupted;
   j["duration_s"] = r.walked_s;
   j["command"] = info.command;

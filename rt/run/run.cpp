@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/run/run.h"
 
-#include "rt/report/run_observer.h"
-
 namespace sandrunner {
 namespace {
 
@@ -11,10 +9,12 @@ template <typename Loop>
 RunResult run(const RunParts& parts, const Loop& loop) {
   RunScript script(parts.command, parts.plan,
                    parts.policy != nullptr && !parts.controller.gate.hanging);
-  RunObserver observer(parts.scene, parts.keep_record, parts.progress);
+  RunObserver observer(parts.scene, parts.row_tap);
   RunResult result;
+  std::uint64_t walked_ticks = 0;
   const TickTap tap = [&](const TickRecord& tick) {
     result.has_truth = tick.has_truth != 0;
+    walked_ticks += tick.counts;
     observer.add(tick);
     if (parts.tap) parts.tap(tick);
   };
@@ -25,7 +25,7 @@ RunResult run(const RunParts& parts, const Loop& loop) {
     const Fault fault = result.end.gate.first_fault;
     result.survived = fault == Fault::kNone;  // no fault since, whoever has reset it
     if (!result.survived) result.fall_reason = fault_name(fault);
-    result.walked_s = observer.walked_s();
+    result.walked_s = static_cast<double>(walked_ticks) * kControlPeriod_s;
   } else {
     result.survived = script.survived();
     if (!result.survived) {
@@ -36,8 +36,8 @@ RunResult run(const RunParts& parts, const Loop& loop) {
     result.interrupted = script.interrupted();
     result.walked_s = script.walked_s();
   }
-  result.figures = observer.figures();
   result.record = observer.take_record();
+  result.figures = run_figures(result.record);
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "policy/policy.h"
 #include "rt/realtime/clock.h"
+#include "rt/report/run_observer.h"
 #include "rt/report/run_result.h"
 #include "rt/run/command_source.h"
 #include "rt/run/run_script.h"
@@ -22,11 +23,10 @@ struct RunParts {
   /// Operator in place of the script that `command` and `plan` make; null: that script.
   OperatorInput* live = nullptr;
   RunScene scene = {};
-  bool keep_record = false;                             ///< samples for CSV and pictures
-  std::function<void(const RunSample&)> progress = {};  ///< every half second of the robot's time
-  TickTap tap = {};                                     ///< gets every tick: recorders, telemetry
-  StartTap begin_tap = {};                              ///< is told when it starts
-  BetweenTicks between = {};                            ///< of a run in lockstep
+  RowTap row_tap = {};        ///< gets every row: live view, progress
+  TickTap tap = {};           ///< gets every tick: recorders, telemetry
+  StartTap begin_tap = {};    ///< is told when it starts
+  BetweenTicks between = {};  ///< of a run in lockstep
   /// How often somebody has wanted it to end: at the first time it ends gently, at the second in
   /// damping at once.
   const std::atomic<int>& interrupts;

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
-#include "rt/telemetry/odometry.h"
 
 namespace sandrunner {
 

@@ -37,13 +37,13 @@ inline Policy random_policy(std::uint64_t seed = 1) {
   return {file.spec, Network(file.parameters)};
 }
 
-/// The last sample of a run in Stand before it lies down, which takes 1.5 s.
-inline RunSample last_standing(const RunRecord& record) {
-  const auto last = std::find_if(record.samples.rbegin(), record.samples.rend(),
-                                 [](const RunSample& s) { return s.mode == Mode::kStand; });
-  if (record.samples.rend() - last <= 151) {
+/// The last row of a run in Stand before it lies down, which takes 1.5 s.
+inline RunRow last_standing(const RunRecord& record) {
+  const auto last = std::find_if(record.rows.rbegin(), record.rows.rend(),
+                                 [](const RunRow& row) { return mode_of(row) == Mode::kStand; });
+  if (record.rows.rend() - last <= 151) {
     ADD_FAILURE() << "never stood";
-    return record.samples.back();
+    return record.rows.back();
   }
   return *(last + 151);
 }
@@ -54,9 +54,8 @@ struct SimulatedRun {
   Policy* policy = nullptr;
   std::string command = "1,0,0";
   RunPlan plan = {};
-  bool keep_record = false;
   const std::atomic<int>* interrupts = nullptr;
-  std::function<void(const RunSample&)> progress = {};
+  RowTap row_tap = {};
   TickTap tap = {};
   StartTap begin_tap = {};
   OperatorInput* live = nullptr;
@@ -76,8 +75,7 @@ inline RunResult simulate(const SimulatedRun& run) {
                        .plan = run.plan,
                        .live = run.live,
                        .scene = scene_of(run.config, run.policy ? run.policy->spec().name : ""),
-                       .keep_record = run.keep_record,
-                       .progress = run.progress,
+                       .row_tap = run.row_tap,
                        .tap = run.tap,
                        .begin_tap = run.begin_tap,
                        .interrupts = run.interrupts ? *run.interrupts : nobody};
@@ -87,9 +85,8 @@ inline RunResult simulate(const SimulatedRun& run) {
 }
 
 /// In lockstep under "1,0,0", uninterrupted.
-inline RunResult run_once(const ProcessConfig& config, Policy* policy, const RunPlan& plan,
-                          bool keep_record = false) {
-  return simulate({.config = config, .policy = policy, .plan = plan, .keep_record = keep_record});
+inline RunResult run_once(const ProcessConfig& config, Policy* policy, const RunPlan& plan) {
+  return simulate({.config = config, .policy = policy, .plan = plan});
 }
 
 /// Checks that `action` is refused in one line that has all of `parts`.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimator/cost_of_transport.h"
 #include "estimator/heading.h"
 #include "rt/base/quantile.h"
 #include "tools/train/task/step_outcome.h"
@@ -117,7 +118,9 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
   f.torque_squared_nm2 = sum.torque2 / n;
   const double power = f.power_w + f.torque_squared_nm2 / square(facts.motor_constant);
   const double weight_n = facts.mass_kg * kGravity_mps2;
-  if (f.horizontal_speed_mps >= 0.05) f.cot = power / (weight_n * f.horizontal_speed_mps);
+  f.cot = cost_of_transport(f.power_w, f.torque_squared_nm2, f.horizontal_speed_mps,
+                            {.mass_kg = facts.mass_kg, .motor_constant = facts.motor_constant})
+              .value_or(kNotDefined);
   if (std::fabs(f.yaw_rate_radps) >= 0.05) {
     f.turning_cot = power / (weight_n * facts.foot_diagonal_m * std::fabs(f.yaw_rate_radps));
   }

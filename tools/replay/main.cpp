@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,15 +23,13 @@
 #include "rt/base/standard_error.h"
 #include "rt/core/floating_point.h"
 #include "rt/loop/replay.h"
-#include "rt/report/run_csv.h"
 #include "rt/report/run_observer.h"
-#include "rt/report/run_pictures.h"
 #include "rt/run/process_config.h"
+#include "rt/run/run_files.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
 #include "rt/telemetry/recording/recording_file.h"
 #include "rt/telemetry/view/view_feed.h"
-#include "rt/telemetry/view/view_page.h"
 #include "rt/telemetry/view/view_server.h"
 #include "sim/robot/robot_model.h"
 
@@ -113,42 +111,30 @@ struct Player {
     const RunScene scene = scene_of(config, policy ? policy->spec().name : "");
     if (arguments.view) {
       constexpr std::size_t kMostFrames = 10 * 60 * kPolicyHz;
-      feed.emplace(scene, config.robot.description,
+      feed.emplace(scene,
                    ViewFeed::Limits{.frames = kMostFrames, .footprints = 16'384, .tiles = 2048});
     }
-    if (arguments.plot_dir.empty()) return;
-    observer = std::make_unique<RunObserver>(scene, true, std::function<void(const RunSample&)>());
-    page.emplace(scene, config.robot.description);
+    observer.emplace(scene, [this](const RunRow& row, std::span<const Footprint> footprints) {
+      if (feed) feed->add(row, footprints);
+    });
   }
 
   ProcessConfig config;
   std::optional<Policy> policy;
-  std::optional<Replay> replay;           ///< nothing: the recording has no state to start from
-  bool in_step = true;                    ///< false: behind lost ticks, until the next state
-  std::unique_ptr<RunObserver> observer;  ///< these two: with --plot
-  std::optional<ViewPage> page;
-  std::optional<ViewFeed> feed;  ///< with --view
+  std::optional<Replay> replay;         ///< nothing: the recording has no state to start from
+  bool in_step = true;                  ///< false: behind lost ticks, until the next state
+  std::optional<ViewFeed> feed;         ///< with --view
+  std::optional<RunObserver> observer;  ///< with --plot or --view
 };
 
 std::string seconds(std::uint64_t tick) {
   return fmt::format("{:.5f} s", static_cast<double>(tick) * kControlPeriod_s);
 }
 
-void write_plots(Player& player, const std::string& folder) {
-  const RunRecord record = player.observer->take_record();
-  const std::string dir = folder + "/";
-  prepare_folder(folder, "--plot");
-  write_csv(record, dir + "run.csv");
-  draw_run_plot(record, dir + "run.png");
-  write_file(dir + "run.html", player.page->html());
-  if (record.has_truth()) draw_run_strip(record, dir + "strip.png");
-  fmt::print("wrote {0}run.csv, {0}run.html, {0}run.png{1}\n", dir,
-             record.has_truth() ? fmt::format(", {}strip.png", dir) : "");
-}
-
 // Until Ctrl-C.
 void serve(Player& player) {
   SignalWatch signals;
+  player.observer->take_record();  // its last row
   player.feed->end();
   const ViewServer server(player.config.view_port, {.feed = *player.feed, .recorded = true});
   to_standard_error(fmt::format("sandrunner-replay: look at {}\n", server.url()));
@@ -178,14 +164,11 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     if (t_s < arguments.from_s) return true;
     ++(compares ? compared : not_compared);
     ++drawn;
-    if (player->observer) {
-      player->observer->add(recorded);
-      player->page->add(recorded);
-    }
-    if (player->feed) player->feed->add(recorded);
+    if (player->observer) player->observer->add(recorded);
+    if (player->feed) player->feed->set_tick(last_tick);
     if (found && !difference) difference = std::move(found);
     // A picture wants the rest too.
-    return (!difference && player->replay) || player->observer || player->feed;
+    return (!difference && player->replay) || player->observer;
   };
   visitor.lost = [&](std::uint64_t first, std::optional<std::uint64_t> last, bool by_damage) {
     player->in_step = false;
@@ -204,7 +187,13 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
   };
   const RecordingContents contents = read_recording(arguments.file, visitor);
 
-  if (player->observer && drawn > 0) write_plots(*player, arguments.plot_dir);
+  if (player->observer) {
+    const RunRecord record = player->observer->take_record();
+    if (!arguments.plot_dir.empty() && drawn > 0) {
+      prepare_folder(arguments.plot_dir, "--plot");
+      fmt::print("wrote {}\n", write_run_files(record, arguments.plot_dir));
+    }
+  }
   std::string lacks = contents.damage;
   if (lacks.empty() && !contents.complete) {
     lacks =

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <utility>
 
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
@@ -28,24 +29,23 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, const s
   const ProcessConfig config = read_process_config(tree, &file.spec, &robot);
   Policy policy(file.spec, Network(file.parameters));
   sim::Simulator simulator(config.robot, config.simulator);
-  const RunScene scene = scene_of(config, file.spec.name);
-  ViewPage page(scene, config.robot.description, {.bytes = kMostBytes});
   const CommandSource command(fmt::format("{},0,0", speed_mps));
   const std::atomic<int> nobody{false};
-  run_in_lockstep({.robot = simulator,
-                   .controller = config.controller,
-                   .policy = &policy,
-                   .command = command,
-                   .plan = {.walk_s = kWalk_s, .start_walking = true},
-                   .scene = scene,
-                   .tap = [&](const TickRecord& tick) { page.add(tick); },
-                   .interrupts = nobody});
+  RunResult run = run_in_lockstep({.robot = simulator,
+                                   .controller = config.controller,
+                                   .policy = &policy,
+                                   .command = command,
+                                   .plan = {.walk_s = kWalk_s, .start_walking = true},
+                                   .scene = scene_of(config, file.spec.name),
+                                   .interrupts = nobody});
   const auto& provenance = file.spec.provenance;
-  return page.html(progress.page_json(fmt::format(
-      "Training of {}: {:.2f} million transitions, {} core-hours; below: its policy, asked for {} "
-      "m/s on {}",
-      file.spec.name, 1e-6 * std::stod(provenance.at("transitions")), provenance.at("core_hours"),
-      speed_mps, kGround)));
+  return run_page(
+      std::move(run.record), kMostBytes,
+      progress.page_json(fmt::format("Training of {}: {:.2f} million transitions, {} core-hours; "
+                                     "below: its policy, asked for {} "
+                                     "m/s on {}",
+                                     file.spec.name, 1e-6 * std::stod(provenance.at("transitions")),
+                                     provenance.at("core_hours"), speed_mps, kGround)));
 }
 
 }  // namespace sandrunner::train

@@ -41,7 +41,7 @@ class Progress {
   static const char* explanation();
   /// Writes curve.csv and curve.png into `dir`. Throws InputError.
   void write(const std::string& dir) const;
-  /// All columns of curve.csv for a page (ViewPage::html); of long trainings means of rows, so that
+  /// All columns of curve.csv for a page (run_page); of long trainings means of rows, so that
   /// there are at most 1000.
   std::string page_json(const std::string& title) const;
 

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
+#include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/dds/participant.h"
-#include "rt/telemetry/odometry.h"
 #include "rt/telemetry/ros_messages.h"
 
 namespace sandrunner {

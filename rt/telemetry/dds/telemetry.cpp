@@ -60,7 +60,7 @@ void Telemetry::add(const TickRecord& record) {
     std::this_thread::sleep_until(start_ + time);
     if (!clock_->publish(stamp_ns)) ++failed_writes_;
   }
-  odometry_.add(record);
+  odometry_.add(record.input, record.output);
   diagnostics_.add(record);
   if (batches_ && !batches_->add(record, stamp_ns)) ++failed_writes_;
   if (ros_due) {

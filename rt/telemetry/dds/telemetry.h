@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
 #include "rt/core/slower_rate.h"
 #include "rt/loop/tick_record.h"
@@ -13,7 +14,6 @@
 #include "rt/telemetry/dds/ros_publisher.h"
 #include "rt/telemetry/dds/tick_batches.h"
 #include "rt/telemetry/diagnostics.h"
-#include "rt/telemetry/odometry.h"
 
 namespace sandrunner {
 

@@ -150,7 +150,7 @@ void RecordingWriter::write_batch(std::span<const TickRecord> batch) {
   message(channels_.ticks, batches_, first, ticks);
 
   for (const TickRecord& tick : batch) {
-    odometry_.add(tick);
+    odometry_.add(tick.input, tick.output);
     diagnostics_.add(tick);
     write_events(tick);
     const std::uint64_t number = tick.input.sensors.tick;

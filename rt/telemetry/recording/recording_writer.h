@@ -6,12 +6,12 @@
 #include <span>
 #include <string>
 
+#include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
 #include "rt/core/slower_rate.h"
 #include "rt/loop/tick_record.h"
 #include "rt/telemetry/diagnostics.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
-#include "rt/telemetry/odometry.h"
 
 namespace sandrunner {
 

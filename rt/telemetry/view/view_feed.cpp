@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 #include <vector>
 
 #include "rt/telemetry/view/view_hello.h"
@@ -33,24 +32,12 @@ std::string message(Kind kind, const ViewRows<Row>& rows, std::uint64_t& from) {
 
 }  // namespace
 
-ViewFeed::ViewFeed(RunScene scene, const RobotDescription& robot, const Limits& limits)
-    : scene_(std::move(scene)),
-      limits_(limits),
-      hello_(view_hello(scene_, robot, kPolicyHz, scene_.note)),
-      maker_(robot) {}
+ViewFeed::ViewFeed(RunScene scene, const Limits& limits)
+    : scene_(std::move(scene)), limits_(limits), hello_(view_hello(scene_, scene_.note)) {}
 
-void ViewFeed::add(const TickRecord& tick) {
-  const std::optional<ViewFrame> frame = maker_.add(tick);
-  if (frame) add_frame(*frame);
-  const std::vector<ViewFootprint> prints = maker_.take_footprints();
-  const std::lock_guard lock(mutex_);
-  for (const ViewFootprint& print : prints) footprints_.add(print, limits_.footprints);
-  now_s_ = static_cast<double>(tick.input.sensors.tick + 1) * kControlPeriod_s;
-}
-
-void ViewFeed::add_frame(const ViewFrame& frame) {
-  // Heights first: a page that has a frame has the ground under it.
-  const std::vector<ViewTile> tiles = new_view_tiles(scene_, frame, tiles_seen_);
+void ViewFeed::add(const RunRow& row, std::span<const Footprint> footprints) {
+  // Heights first: a page that has a row has the ground under it.
+  const std::vector<ViewTile> tiles = new_view_tiles(scene_, row, tiles_seen_);
   const std::lock_guard lock(mutex_);
   for (const ViewTile& tile : tiles) {
     if (tiles_.rows.size() == limits_.tiles) {  // sent anew if the robot comes back to it
@@ -58,11 +45,18 @@ void ViewFeed::add_frame(const ViewFrame& frame) {
     }
     tiles_.add(tile, limits_.tiles);
   }
-  frames_.add(frame, limits_.frames);
+  for (const Footprint& print : footprints) {
+    if (print.shows()) footprints_.add(print, limits_.footprints);
+  }
+  frames_.add(row, limits_.frames);
+}
+
+void ViewFeed::set_tick(std::uint64_t tick) {
+  const std::lock_guard lock(mutex_);
+  now_s_ = static_cast<double>(tick + 1) * kControlPeriod_s;
 }
 
 void ViewFeed::end() {
-  if (const std::optional<ViewFrame> frame = maker_.take_last()) add_frame(*frame);
   const std::lock_guard lock(mutex_);
   ended_ = true;
 }

@@ -6,12 +6,11 @@
 #include <deque>
 #include <mutex>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
-#include "rt/core/robot_description.h"
 #include "rt/report/run_record.h"
-#include "rt/telemetry/view/view_frame.h"
 #include "rt/telemetry/view/view_tiles.h"
 
 namespace sandrunner {
@@ -43,13 +42,15 @@ class ViewFeed {
   /// A page without a gap of its own keeps so many frames: those of a second.
   static constexpr std::uint64_t kMostBehind = 100;
 
-  ViewFeed(RunScene scene, const RobotDescription& robot, const Limits& limits);
-  ViewFeed(RunScene scene, const RobotDescription& robot)
-      : ViewFeed(std::move(scene), robot, Limits()) {}
+  ViewFeed(RunScene scene, const Limits& limits);
+  explicit ViewFeed(RunScene scene) : ViewFeed(std::move(scene), Limits()) {}
 
-  /// Every tick, in order, from one ordinary thread.
-  void add(const TickRecord& tick);
-  /// There are no more ticks.
+  // From one ordinary thread:
+  /// The next row, and the footprints since the one before.
+  void add(const RunRow& row, std::span<const Footprint> footprints);
+  /// The run is at this tick.
+  void set_tick(std::uint64_t tick);
+  /// There are no more rows.
   void end();
 
   // From any thread:
@@ -71,16 +72,13 @@ class ViewFeed {
   const std::string& hello() const noexcept { return hello_; }
 
  private:
-  void add_frame(const ViewFrame& frame);
-
   const RunScene scene_;
   const Limits limits_;
   const std::string hello_;
-  ViewFrameMaker maker_;
   std::set<std::pair<std::int32_t, std::int32_t>> tiles_seen_;
   mutable std::mutex mutex_;  // of the rest
-  ViewRows<ViewFrame> frames_;
-  ViewRows<ViewFootprint> footprints_;
+  ViewRows<RunRow> frames_;
+  ViewRows<Footprint> footprints_;
   ViewRows<ViewTile> tiles_;
   double now_s_ = 0.0;
   bool ended_ = false;

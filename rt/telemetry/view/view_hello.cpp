@@ -3,43 +3,32 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "estimator/kinematics.h"
 #include "rt/base/build.h"
 #include "rt/core/faults.h"
 #include "rt/core/mode_machine.h"
-#include "rt/telemetry/view/view_frame.h"
+#include "rt/report/run_row.h"
 #include "rt/telemetry/view/view_tiles.h"
 
 namespace sandrunner {
 namespace {
 
-/// The link of each foot: that of the outline which hangs below the leg's last joint, but is not
-/// the link that this joint turns (the outline has the knee there).
-std::array<std::string, kNumLegs> feet_of(const RobotDescription& robot) {
-  std::array<std::string, kNumLegs> feet;
+std::array<std::string, kNumLegs> feet_links(const RobotDescription& robot) {
+  std::array<std::string, kNumLegs> links;
+  const auto feet = feet_of(robot);
   for (int l = 0; l < kNumLegs; ++l) {
-    const auto shank =
-        std::ranges::find(robot.frames, kJointsPerLeg * (l + 1) - 1, &RobotFrame::joint);
-    if (shank == robot.frames.end()) continue;
-    const auto hangs_below = [&](std::string link) {
-      for (bool below = false;; below = true) {
-        const auto frame = std::ranges::find(robot.frames, link, &RobotFrame::name);
-        if (frame == robot.frames.end()) return false;
-        if (frame->name == shank->name) return below;
-        link = frame->parent;
-      }
-    };
-    for (const OutlinePoint& point : robot.outline) {
-      if (hangs_below(point.frame)) feet[l] = point.frame;
-    }
+    if (feet[l]) links[l] = feet[l]->frame;
   }
-  return feet;
+  return links;
 }
 
-nlohmann::ordered_json layout(std::span<const ViewField> fields) {
+nlohmann::ordered_json layout(std::span<const RowField> fields) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const ViewField& f : fields) {
+  for (const RowField& f : fields) {
     json.push_back({{"name", f.name}, {"type", f.type}, {"offset", f.offset}, {"count", f.count}});
   }
   return json;
@@ -47,24 +36,30 @@ nlohmann::ordered_json layout(std::span<const ViewField> fields) {
 
 }  // namespace
 
-std::string view_hello(const RunScene& scene, const RobotDescription& robot, int rate_hz,
-                       const std::string& note) {
+std::span<const RowField> page_fields() {
+  static const std::vector<RowField> fields = [] {
+    std::vector<RowField> on_page;
+    std::ranges::copy_if(row_fields(), std::back_inserter(on_page), &RowField::on_page);
+    return on_page;
+  }();
+  return fields;
+}
+
+std::string view_hello(const RunScene& scene, const std::string& note) {
+  const RobotDescription& robot = scene.robot;
   nlohmann::ordered_json json = {{"robot", robot.name},
                                  {"terrain", scene.terrain},
                                  {"policy", scene.policy},
                                  {"build", build_name()},
                                  {"note", note},
-                                 {"rate_hz", rate_hz},
                                  {"granular", scene.granular_ground},
                                  {"foot_radius_m", scene.foot_radius_m},
-                                 {"mass_kg", scene.mass_kg},
-                                 {"motor_constant", scene.motor_constant},
                                  {"legs", robot.leg_names},
                                  {"joints", robot.joint_names},
-                                 {"feet", feet_of(robot)},
+                                 {"feet", feet_links(robot)},
                                  {"base", robot.base_frame},
-                                 {"frame_fields", layout(view_frame_fields())},
-                                 {"footprint_fields", layout(view_footprint_fields())},
+                                 {"frame_fields", layout(page_fields())},
+                                 {"footprint_fields", layout(footprint_fields())},
                                  {"tile_fields", layout(view_tile_fields())},
                                  {"tile_side", kViewTileSide},
                                  {"tile_step_m", kViewTileStep_m},

@@ -45,11 +45,11 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-std::string pack_rows(std::span<const ViewField> fields, std::span<const std::byte> rows,
+std::string pack_rows(std::span<const RowField> fields, std::span<const std::byte> rows,
                       std::size_t row_bytes) {
   std::string planes;
   planes.reserve(rows.size());
-  for (const ViewField& field : fields) {
+  for (const RowField& field : fields) {
     for (std::size_t k = 0; k < field.count; ++k) {
       for (std::size_t byte = 0; byte < field.width(); ++byte) {
         const std::size_t at = field.offset + field.width() * k + byte;

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "rt/telemetry/view/view_frame.h"
+#include "rt/report/run_row.h"
 
 namespace sandrunner {
 
@@ -18,11 +18,11 @@ std::string base64(std::string_view bytes);
 /// Rows as a page takes them: number by number, all rows of one before the next, each in planes
 /// (the first bytes of all rows, then the second ones, ...), since bytes of one significance are
 /// alike; then gzip and base64. `rows` is a whole number of rows of `row_bytes`.
-std::string pack_rows(std::span<const ViewField> fields, std::span<const std::byte> rows,
+std::string pack_rows(std::span<const RowField> fields, std::span<const std::byte> rows,
                       std::size_t row_bytes);
 
 template <typename Row>
-std::string pack_rows(std::span<const ViewField> fields, const std::vector<Row>& rows) {
+std::string pack_rows(std::span<const RowField> fields, const std::vector<Row>& rows) {
   return pack_rows(fields, std::as_bytes(std::span(rows)), sizeof(Row));
 }
 

@@ -12,10 +12,10 @@ constexpr double kTile_m = kViewTileSide * kViewTileStep_m;
 constexpr std::int32_t kReach = 3;  // tiles to each side of the robot's own
 
 constexpr std::array kFields = {
-    ViewField{"tile_x", "i32", offsetof(ViewTile, tile_x), 1},
-    ViewField{"tile_y", "i32", offsetof(ViewTile, tile_y), 1},
-    ViewField{"height_tenth_mm", "i16", offsetof(ViewTile, height_tenth_mm),
-              kViewTileSide* kViewTileSide},
+    RowField{"tile_x", "i32", offsetof(ViewTile, tile_x), 1},
+    RowField{"tile_y", "i32", offsetof(ViewTile, tile_y), 1},
+    RowField{"height_tenth_mm", "i16", offsetof(ViewTile, height_tenth_mm),
+             kViewTileSide* kViewTileSide},
 };
 
 ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y) {
@@ -33,13 +33,13 @@ ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y
 
 }  // namespace
 
-std::span<const ViewField> view_tile_fields() { return kFields; }
+std::span<const RowField> view_tile_fields() { return kFields; }
 
-std::vector<ViewTile> new_view_tiles(const RunScene& scene, const ViewFrame& frame,
+std::vector<ViewTile> new_view_tiles(const RunScene& scene, const RunRow& row,
                                      std::set<std::pair<std::int32_t, std::int32_t>>& seen) {
   std::vector<ViewTile> tiles;
   if (!scene.ground_height_m) return tiles;
-  const Vector3& p = frame.position_m;
+  const Vector3& p = row.position_m;
   constexpr double kFarthest_m = 1e6;
   if (!(std::abs(p[0]) < kFarthest_m && std::abs(p[1]) < kFarthest_m)) return tiles;
   const auto x = static_cast<std::int32_t>(std::floor(p[0] / kTile_m));
@@ -52,12 +52,12 @@ std::vector<ViewTile> new_view_tiles(const RunScene& scene, const ViewFrame& fra
   return tiles;
 }
 
-std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const ViewFrame> way,
+std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const RunRow> way,
                                  std::size_t most) {
   std::vector<ViewTile> tiles;
   std::set<std::pair<std::int32_t, std::int32_t>> seen;
-  for (auto frame = way.rbegin(); frame != way.rend() && tiles.size() < most; ++frame) {
-    const std::vector<ViewTile> more = new_view_tiles(scene, *frame, seen);
+  for (auto row = way.rbegin(); row != way.rend() && tiles.size() < most; ++row) {
+    const std::vector<ViewTile> more = new_view_tiles(scene, *row, seen);
     tiles.insert(tiles.end(), more.begin(), more.end());
   }
   tiles.resize(std::min(tiles.size(), most));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "rt/report/run_record.h"
-#include "rt/telemetry/view/view_frame.h"
+#include "rt/report/run_row.h"
 
 namespace sandrunner {
 
@@ -23,16 +23,16 @@ struct ViewTile {
   std::array<std::int16_t, kViewTileSide * kViewTileSide> height_tenth_mm{};
 };
 
-std::span<const ViewField> view_tile_fields();
+std::span<const RowField> view_tile_fields();
 
 /// The ground within sight of a robot but for tiles that have been `seen`, which grows by them;
 /// none if the ground is flat.
-std::vector<ViewTile> new_view_tiles(const RunScene& scene, const ViewFrame& frame,
+std::vector<ViewTile> new_view_tiles(const RunScene& scene, const RunRow& row,
                                      std::set<std::pair<std::int32_t, std::int32_t>>& seen);
 
 /// The ground within sight of a robot on its way, at most `most` tiles, the last ones; none if the
 /// ground is flat.
-std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const ViewFrame> way,
+std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const RunRow> way,
                                  std::size_t most);
 
 }  // namespace sandrunner

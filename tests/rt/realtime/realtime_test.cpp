@@ -166,7 +166,6 @@ RunResult walk_until(const std::function<bool(const TickRecord&)>& interrupts) {
   return simulate({.config = config,
                    .policy = &policy,
                    .plan = {.walk_s = 60.0, .start_walking = true},
-                   .keep_record = true,
                    .interrupts = &interrupt,
                    .tap = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
                    .realtime = true});
@@ -179,7 +178,7 @@ TEST(RealtimeTest, InterruptEndsInDampingAndCountsAsNoFall) {
   EXPECT_TRUE(result.interrupted);
   EXPECT_TRUE(result.survived);
   EXPECT_LT(result.end.time_s, 10.0);
-  EXPECT_EQ(result.record.samples.back().mode, Mode::kDamping);
+  EXPECT_EQ(mode_of(result.record.rows.back()), Mode::kDamping);
 }
 
 TEST(RealtimeTest, InterruptReachesARobotWhoseTicksAreTakenTooSlowly) {

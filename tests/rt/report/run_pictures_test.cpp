@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "rt/base/errors.h"
 #include "rt/report/run_csv.h"
 #include "tests/rt/plot/picture.h"
 #include "tests/rt/report/made_up_trot.h"
-#include "tests/support/not_finite.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
@@ -76,12 +76,12 @@ TEST_F(RunPicturesTest, StripShowsTheRobotInEveryViewAndItsFootprints) {
 
 TEST_F(RunPicturesTest, StripShowsLeftLegsBesideRightOnesThatMoveAlike) {
   RunRecord record = trot(8.0, flat, kSinkage_m);
-  const auto mirrored = [](Vector3 p) { return Vector3{p[0], -p[1], p[2]}; };
-  for (RunSample& s : record.samples) {
+  const auto mirrored = [](const std::array<float, 3>& p) { return std::array{p[0], -p[1], p[2]}; };
+  for (RunRow& row : record.rows) {
     for (std::size_t left = 0; left < kNumLegs; left += 2) {
-      s.hip_position_m[left] = mirrored(s.hip_position_m[left + 1]);
-      s.knee_position_m[left] = mirrored(s.knee_position_m[left + 1]);
-      s.foot_position_m[left] = mirrored(s.foot_position_m[left + 1]);
+      row.hip_m[left] = mirrored(row.hip_m[left + 1]);
+      row.knee_m[left] = mirrored(row.knee_m[left + 1]);
+      row.foot_m[left] = mirrored(row.foot_m[left + 1]);
     }
   }
   draw_run_strip(record, folder_.path("bound.png"));
@@ -96,10 +96,10 @@ TEST_F(RunPicturesTest, StripShowsLeftLegsBesideRightOnesThatMoveAlike) {
 TEST_F(RunPicturesTest, PlotZoomsIntoTheGaitAndNotTheStop) {
   RunRecord record = trot(8.0, flat, kSinkage_m);
   const double stop_s = 7.0;  // two seconds of Walk at rest follow
-  for (RunSample& s : record.samples) {
-    if (s.t_s < stop_s || s.mode != Mode::kWalk) continue;
-    s.command = {};
-    s.joint_torque_nm.fill(0.0);
+  for (RunRow& row : record.rows) {
+    if (row.t_s < stop_s || mode_of(row) != Mode::kWalk) continue;
+    row.given = {};
+    row.torque_nm.fill(0.0f);
   }
   draw_run_plot(record, folder_.path("stopped.png"));
   const Picture picture(folder_.path("stopped.png"));
@@ -123,24 +123,24 @@ TEST_F(RunPicturesTest, PicturesOfOddRunsAreDrawn) {
   draw_run_plot(hills, folder_.path("hills_plot.png"));
 
   RunRecord fallen = trot(2.0, flat, kSinkage_m);
-  RunSample last = fallen.samples.back();
-  last.orientation_wxyz = {std::sqrt(0.5), 0.5, 0.5, 0.0};
-  last.base_position_m[2] = 0.1;
-  last.mode = Mode::kFault;
+  RunRow last = fallen.rows.back();
+  last.orientation_wxyz = {std::sqrt(0.5f), 0.5f, 0.5f, 0.0f};
+  last.position_m[2] = 0.1;
+  last.mode = static_cast<std::uint32_t>(Mode::kFault);
   for (int i = 1; i < 60; ++i) {
     last.t_s += 0.01;
-    fallen.samples.push_back(last);
+    fallen.rows.push_back(last);
   }
   draw_run_strip(fallen, folder_.path("fallen_strip.png"));
   draw_run_plot(fallen, folder_.path("fallen_plot.png"));
 
   RunRecord one;
-  one.samples.resize(1);
+  one.rows.resize(1);
   RunRecord nothing;
   RunRecord stood;
-  stood.samples.assign(hills.samples.begin(), hills.samples.begin() + 90);  // never in Walk
+  stood.rows.assign(hills.rows.begin(), hills.rows.begin() + 90);  // never in Walk
   RunRecord unknown = stood;
-  for (RunSample& sample : unknown.samples) sample.vx_mps = kNan;
+  for (RunRow& row : unknown.rows) row.motion[0] = std::numeric_limits<float>::quiet_NaN();
   for (const RunRecord& record : {one, nothing, stood, unknown}) {
     draw_run_strip(record, folder_.path("odd_strip.png"));
     draw_run_plot(record, folder_.path("odd_plot.png"));

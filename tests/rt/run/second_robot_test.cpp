@@ -69,15 +69,14 @@ TEST_F(SecondRobotTest, GivesSimulatorControllerAndGateTheirFigures) {
 TEST_F(SecondRobotTest, StandsUpWithItsOwnPoseAndGains) {
   for (const std::string terrain : {"rigid", "dry-sand"}) {
     const ProcessConfig c = config(terrain);
-    const RunResult result = run_once(c, nullptr, {}, true);
+    const RunResult result = run_once(c, nullptr, {});
     EXPECT_TRUE(result.survived) << result.fall_reason;
-    const RunSample last = last_standing(result.record);
+    const RunRow last = last_standing(result.record);
     for (int leg = 0; leg < kNumLegs; ++leg) {
-      EXPECT_NEAR(last.base_position_m[2] - last.foot_position_m[leg][2],
-                  c.robot.nominal_height_m - 0.022, 0.02);
+      EXPECT_NEAR(last.position_m[2] - last.foot_m[leg][2], c.robot.nominal_height_m - 0.022, 0.02);
     }
     for (int j = 0; j < kNumJoints; ++j) {
-      EXPECT_NEAR(last.joint_position_rad[j], c.robot.nominal_rad[j], 0.15);
+      EXPECT_NEAR(last.position_rad[j], c.robot.nominal_rad[j], 0.15);
     }
   }
 }
@@ -86,11 +85,11 @@ TEST_F(SecondRobotTest, RunsAPolicyForItsJointsAndNoOther) {
   const PolicyFile own = own_policy();
   const ProcessConfig c = config("rigid", &own.spec);
   Policy policy(own.spec, Network(own.parameters));
-  const RunResult result = run_once(c, &policy, {.walk_s = 0.3, .start_walking = true}, true);
-  EXPECT_GE(result.record.samples.size(), 2u);
-  for (const RunSample& sample : result.record.samples) {
+  const RunResult result = run_once(c, &policy, {.walk_s = 0.3, .start_walking = true});
+  EXPECT_GE(result.record.rows.size(), 2u);
+  for (const RunRow& row : result.record.rows) {
     for (int j = 0; j < kNumJoints; ++j) {
-      EXPECT_LE(std::fabs(sample.joint_torque_nm[j]), 31.0 + j % kJointsPerLeg);
+      EXPECT_LE(std::fabs(row.torque_nm[j]), 31.0 + j % kJointsPerLeg);
     }
   }
   const PolicySpec foreign = random_policy_file().spec;

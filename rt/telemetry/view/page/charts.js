@@ -6,7 +6,7 @@ import { Strip } from './plots.js';
 const kAsked = '#8a949e', kTrue = '#1d5c99', kBelieved = '#f07c12';
 // Legs of a pair often move alike: left ones are wide and light, right ones narrow and dark on top.
 const kLegColors = ['#93c2ee', '#12518f', '#f2bd7c', '#a84a08'];
-const kDeadline_us = 250, kGravity = 9.81, kJointsPerLeg = 3;
+const kDeadline_us = 250, kJointsPerLeg = 3;
 export const kSpan_s = 6;
 
 export function makeCharts({ hello, frames }, robot, parent) {
@@ -39,7 +39,7 @@ export function makeCharts({ hello, frames }, robot, parent) {
     ...joints('Speed', 'velocity_radps', 'rad/s', 'speed'),
     strip('Mechanical power', 'W', [{ name: '', color: kTrue, value: at('power_w') }], { least: 20, zero: true }),
     ...(hasTruth ? [strip('Cost of transport', 'over 1 s',
-      [{ name: '', color: kTrue, value: costOfTransport(hello, frames) }], { least: 1, zero: true })] : []),
+      [{ name: '', color: kTrue, value: at('cost_of_transport') }], { least: 1, zero: true })] : []),
   ];
   if (frames.columns.tick_us[0].some((us) => us > 0)) {
     charts.push(strip('Worst times of the control loop', 'µs', [
@@ -53,21 +53,4 @@ export function makeCharts({ hello, frames }, robot, parent) {
 function jointKind(hello, k) {
   const kinds = new Set(hello.legs.map((leg, l) => hello.joints[kJointsPerLeg * l + k].replace(leg, '').replace(/^_/, '')));
   return kinds.size === 1 ? [...kinds][0] : null;
-}
-
-/** (P_mech + sum tau^2/k_m^2) / (m g |vx|), each the mean of the last second; none below 0.05 m/s. */
-function costOfTransport(hello, frames) {
-  const rows = hello.rate_hz;
-  let sums, age;
-  return (i) => {
-    if (!sums || age !== frames.age) sums = { power_w: [0], torque_squared_nm2: [0], motion: [0] };
-    age = frames.age;
-    for (const field in sums) {
-      for (let row = sums[field].length - 1; row < frames.count; ++row) sums[field].push(sums[field][row] + (frames.at(row, field) || 0));
-    }
-    if (i < rows) return NaN;
-    const mean = (field) => (sums[field][i + 1] - sums[field][i + 1 - rows]) / rows, speed = Math.abs(mean('motion'));
-    if (speed < 0.05) return NaN;
-    return (mean('power_w') + mean('torque_squared_nm2') / hello.motor_constant ** 2) / (hello.mass_kg * kGravity * speed);
-  };
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is drawn at one time: between two frames, everything that moves is interpolated.
 
-const kHasTruth = 1, kHasEstimate = 2;  // bits of `flags` (view_frame.h)
-const kLongestGap_s = 0.1;  // over a longer one nothing is known of the motion between
+const kHasTruth = 1, kHasEstimate = 2;  // bits of `flags` (rt/report/run_row.h)
+const kLongestGap_s = 0.1;  // over a longer one, unless all are so long, nothing is known of the motion between
 
 /** Whether a run tells what really is: simulated robots do. */
 export const tellsTruth = (frames) => frames.count > 0 && (frames.at(0, 'flags') & kHasTruth) !== 0;
@@ -11,7 +11,8 @@ export const tellsTruth = (frames) => frames.count > 0 && (frames.at(0, 'flags')
 export function momentAt(frames, t) {
   const row = Math.max(0, frames.countUntil(t) - 1), next = Math.min(row + 1, frames.count - 1);
   const span = frames.time(next) - frames.time(row);
-  const share = span > 0 && span < kLongestGap_s ? Math.min(1, Math.max(0, (t - frames.time(row)) / span)) : 0;
+  const usual = (frames.time(frames.count - 1) - frames.time(0)) / Math.max(1, frames.count - 1);
+  const share = span > 0 && span < Math.max(kLongestGap_s, 2 * usual) ? Math.min(1, Math.max(0, (t - frames.time(row)) / span)) : 0;
   const mix = (field) => frames.all(row, field).map((a, k) => {
     const b = frames.at(next, field, k);
     return share > 0 && Number.isFinite(b) ? a + share * (b - a) : a;

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rt/telemetry/view/view_frame.h"
+#include "rt/report/run_row.h"
 
 namespace sandrunner {
 
@@ -47,13 +47,13 @@ inline std::string gunzip(const std::string& packed) {
 
 /// The rows that pack_rows packed; bytes that are in no field are zero.
 template <typename Row>
-std::vector<Row> unpacked(std::span<const ViewField> fields, std::string_view packed) {
+std::vector<Row> unpacked(std::span<const RowField> fields, std::string_view packed) {
   const std::string planes = gunzip(from_base64(packed));
   std::size_t per_row = 0;
-  for (const ViewField& f : fields) per_row += f.count * f.width();
+  for (const RowField& f : fields) per_row += f.count * f.width();
   std::vector<Row> rows(planes.size() / per_row);
   std::size_t from = 0;
-  for (const ViewField& f : fields) {
+  for (const RowField& f : fields) {
     for (std::size_t at = f.offset; at < f.offset + f.count * f.width(); ++at) {
       for (Row& row : rows) std::memcpy(reinterpret_cast<char*>(&row) + at, &planes[from++], 1);
     }

@@ -43,7 +43,7 @@ struct ViewAndDdsTest : testing::Test {
     return reply.accepted ? "accepted" : reply.reason;
   }
 
-  ViewFeed feed{{}, example_robot()};
+  ViewFeed feed{RunScene{.robot = example_robot()}};
   LiveSetup setup{config_with_patience()};
   const ViewServer server{0, {.feed = feed, .desk = &setup.desk}};
   Peer peer;

@@ -98,7 +98,7 @@ struct HandTest : testing::Test {
   StandAgain stand_again{remote};
   std::optional<SimulatorHand> hand{std::in_place, simulator, config.simulator.terrain,
                                     config.effective, &stand_again};
-  ViewFeed feed{{}, config.robot.description};
+  ViewFeed feed{RunScene{.robot = config.robot.description}};
   std::optional<ViewServer> server{std::in_place, 0,
                                    ViewServer::Parts{.feed = feed, .hand = &*hand}};
   std::optional<WebPage> page;

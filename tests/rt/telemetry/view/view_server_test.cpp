@@ -19,9 +19,15 @@
 namespace sandrunner {
 namespace {
 
+RunRow row_at(std::uint64_t period) {
+  RunRow row;
+  row.t_s = static_cast<double>(period) / kPolicyHz;
+  return row;
+}
+
 struct ViewServerTest : testing::Test {
   ViewServerTest() {
-    for (std::uint64_t i = 0; i < 10; ++i) feed.add(example_tick(i * kTicksPerPolicyStep));
+    for (std::uint64_t i = 0; i < 10; ++i) feed.add(row_at(i), {});
     const std::string url = server.url();
     port = std::stoi(url.substr(url.find(':', 6) + 1));
     key = url.substr(url.find("#key=") + 5);
@@ -39,7 +45,7 @@ struct ViewServerTest : testing::Test {
   }
 
   std::atomic<int> interrupt{false};
-  ViewFeed feed{{}, example_robot()};
+  ViewFeed feed{RunScene{.robot = example_robot()}};
   ViewPace pace{interrupt};
   ViewServer server{0, {.feed = feed, .pace = &pace}};
   int port = 0;
@@ -111,7 +117,7 @@ TEST_F(ViewServerTest, APageGetsHelloThenThePastThenTheState) {
   EXPECT_EQ(json.at("hello").at("robot"), "example");
   const Message frames = page.hear();
   EXPECT_EQ(frames.kind, 2);
-  EXPECT_EQ(frames.text.size(), 8 + 9 * sizeof(ViewFrame));
+  EXPECT_EQ(frames.text.size(), 8 + 10 * sizeof(RunRow));
   EXPECT_EQ(page.hear("state").at("paused"), false);
 }
 
@@ -165,15 +171,15 @@ TEST_F(ViewServerTest, APageThatDoesNotReadLosesFramesAndDelaysNobody) {
   // More than the kernel keeps for a page that does not read: 20,000 frames are 10 MB.
   std::uint64_t next = 10;
   const auto begin = std::chrono::steady_clock::now();
-  for (; next < 20'000; ++next) feed.add(example_tick(next * kTicksPerPolicyStep));
+  for (; next < 20'000; ++next) feed.add(row_at(next), {});
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
-  const double newest_s = static_cast<double>(next - 2) / kPolicyHz;
+  const double newest_s = static_cast<double>(next - 1) / kPolicyHz;
   double seen_s = 0.0;
   while (seen_s < newest_s) {
     const Message message = page.hear();
     ASSERT_NE(message.kind, -1);
     if (message.kind != 2) continue;
-    ViewFrame last;
+    RunRow last;
     std::memcpy(&last, message.text.data() + message.text.size() - sizeof last, sizeof last);
     seen_s = last.t_s;
   }

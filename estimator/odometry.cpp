@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/odometry.h"
+#include "estimator/odometry.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "rt/core/rotation.h"
 
@@ -45,20 +44,10 @@ void set_diagonal(std::array<double, 36>& covariance, std::size_t first, const V
 
 }  // namespace
 
-Odometry::Odometry(const RobotDescription& robot) {
-  const auto index_of = [this](const std::string& name) {
-    const auto found = std::ranges::find(links_, name, [](const Link& l) { return l.frame.name; });
-    return found == links_.end() ? -1 : static_cast<int>(found - links_.begin());
-  };
-  for (const RobotFrame& frame : robot.frames) links_.push_back({index_of(frame.parent), frame});
-  for (const OutlinePoint& point : robot.outline) {
-    outline_.push_back({index_of(point.frame), point.centre_m, point.radius_m});
-  }
-  poses_.resize(links_.size());
-}
+Odometry::Odometry(const RobotDescription& robot) : kinematics_(robot) {}
 
-void Odometry::add(const TickRecord& tick) noexcept {
-  const SensorFrame& sensors = tick.input.sensors;
+void Odometry::add(const ControllerInput& input, const ControllerOutput& output) noexcept {
+  const SensorFrame& sensors = input.sensors;
   const double dt_s =
       has_last_ ? static_cast<double>(sensors.tick - last_tick_) * kControlPeriod_s : 0.0;
   if (!has_last_) restless_tick_ = sensors.tick;
@@ -68,8 +57,8 @@ void Odometry::add(const TickRecord& tick) noexcept {
   yaw_variance_rad2_ += kYawWalk_radprts * kYawWalk_radprts * dt_s;
 
   if (moves(sensors, dt_s)) restless_tick_ = sensors.tick;
-  source_ = source_of(tick);
-  const StateEstimate& estimate = tick.input.policy.estimate;
+  source_ = source_of(input, output);
+  const StateEstimate& estimate = input.policy.estimate;
   velocity_mps_ = source_ == Source::kNetwork ? estimate.velocity_mps : Vector3{};
   const Vector3 velocity_mps = rotated(orientation_wxyz_, velocity_mps_);
   position_m_[0] += velocity_mps[0] * dt_s;
@@ -97,41 +86,19 @@ bool Odometry::moves(const SensorFrame& sensors, double dt_s) noexcept {
            std::fabs(acceleration_mps2_) <= kStillAcceleration_mps2);
 }
 
-Odometry::Source Odometry::source_of(const TickRecord& tick) const noexcept {
-  const PolicyOutput& policy = tick.input.policy;
-  if (tick.output.mode == Mode::kWalk && policy.sequence != 0 &&
-      policy.episode == tick.output.policy_input.episode &&
-      all_finite(policy.estimate.velocity_mps)) {
+Odometry::Source Odometry::source_of(const ControllerInput& input,
+                                     const ControllerOutput& output) const noexcept {
+  const PolicyOutput& policy = input.policy;
+  if (output.mode == Mode::kWalk && policy.sequence != 0 &&
+      policy.episode == output.policy_input.episode && all_finite(policy.estimate.velocity_mps)) {
     return Source::kNetwork;
   }
   return last_tick_ - restless_tick_ >= kStill_ticks ? Source::kStill : Source::kNone;
 }
 
 double Odometry::height_by_joints_m(const JointArray<double>& position_rad) noexcept {
-  const auto pose_of = [this](int link) {
-    return link < 0 ? Pose{.position_m = {}, .rotation_wxyz = orientation_wxyz_}
-                    : poses_[static_cast<std::size_t>(link)];
-  };
-  const auto in_world = [](const Pose& pose, const Vector3& v) {
-    const Vector3 turned_v = rotated(pose.rotation_wxyz, v);
-    return Vector3{pose.position_m[0] + turned_v[0], pose.position_m[1] + turned_v[1],
-                   pose.position_m[2] + turned_v[2]};
-  };
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const RobotFrame& frame = links_[i].frame;
-    const Pose parent = pose_of(links_[i].parent);
-    const double angle_rad =
-        frame.joint < 0 ? 0.0 : position_rad[static_cast<std::size_t>(frame.joint)];
-    poses_[i] = {in_world(parent, frame.translation_m),
-                 product(parent.rotation_wxyz, turned(frame.rotation_wxyz, frame.axis, angle_rad))};
-  }
-  double lowest_m = std::numeric_limits<double>::infinity();
-  for (const Point& point : outline_) {
-    const double z_m = in_world(pose_of(point.link), point.centre_m)[2] - point.radius_m;
-    // Not std::min(): a joint that measures NaN is to be seen in the result.
-    if (!(z_m >= lowest_m)) lowest_m = z_m;
-  }
-  return -lowest_m;
+  kinematics_.place({.position_m = {}, .rotation_wxyz = orientation_wxyz_}, position_rad);
+  return -kinematics_.lowest_m();
 }
 
 void Odometry::follow_height(double height_m, double dt_s) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What /odom says of a simulated robot, compared with what really is.
-#include "rt/telemetry/odometry.h"
+#include "estimator/odometry.h"
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ class Day {
   void wait(double time_s, const Look& look) {
     for (std::uint64_t ticks = ticks_from_s(time_s); ticks > 0; --ticks) {
       loop_.tick(command_);
-      odometry_.add(loop_.record());
+      odometry_.add(loop_.record().input, loop_.record().output);
       look(loop_.record(), odometry_);
     }
   }
@@ -163,7 +163,7 @@ TEST(OdometryOfTicksTest, WhereNothingIsKnownTheCovarianceIsLarge) {
   for (std::uint64_t tick = 0; tick < 4000; ++tick) {
     TickRecord record = example_tick(tick);  // its joints turn
     record.output.mode = Mode::kStand;
-    odometry.add(record);
+    odometry.add(record.input, record.output);
   }
   EXPECT_EQ(odometry.velocity_mps(), Vector3{});
   EXPECT_EQ(odometry.twist_covariance()[0], kUnknownVariance);
@@ -173,10 +173,10 @@ TEST(OdometryOfTicksTest, WhereNothingIsKnownTheCovarianceIsLarge) {
 
 TEST(OdometryOfTicksTest, AnImuThatMeasuresNothingStopsTheFrameWhereItIs) {
   Odometry odometry(example_robot());
-  odometry.add(example_tick(0));
+  odometry.add(example_tick(0).input, example_tick(0).output);
   TickRecord broken = example_tick(1);
   broken.input.sensors.imu.orientation_wxyz.fill(std::numeric_limits<double>::quiet_NaN());
-  odometry.add(broken);
+  odometry.add(broken.input, broken.output);
   EXPECT_EQ(odometry.orientation_wxyz(), example_tick(0).input.sensors.imu.orientation_wxyz);
   EXPECT_TRUE(std::isfinite(odometry.position_m()[0]));
 }
@@ -186,7 +186,7 @@ TEST(OdometryOfTicksTest, TheHeightOfAStandingRobotIsThatOfItsBaseAboveItsLowest
   TickRecord record = example_tick(0);
   record.output.mode = Mode::kStand;
   record.input.sensors.joints.position_rad.fill(0.0);
-  odometry.add(record);
+  odometry.add(record.input, record.output);
   EXPECT_NEAR(odometry.position_m()[2], 0.01 + 0.4 + 0.02, 1e-12);
 }
 

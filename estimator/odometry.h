@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
+#include "estimator/kinematics.h"
+#include "rt/core/controller.h"
 #include "rt/core/robot_description.h"
-#include "rt/loop/tick_record.h"
 
 namespace sandrunner {
 
@@ -22,7 +22,7 @@ class Odometry {
   explicit Odometry(const RobotDescription& robot);
 
   /// Every tick, in order. The velocity of a tick also holds for slots missed before it.
-  void add(const TickRecord& tick) noexcept;
+  void add(const ControllerInput& input, const ControllerOutput& output) noexcept;
 
   const Vector3& position_m() const noexcept { return position_m_; }
   const std::array<double, 4>& orientation_wxyz() const noexcept { return orientation_wxyz_; }
@@ -37,28 +37,12 @@ class Odometry {
  private:
   /// Where the velocity comes from.
   enum class Source { kNone, kStill, kNetwork };
-  struct Link {
-    int parent = -1;  // index of a link before it; -1: the base frame
-    RobotFrame frame;
-  };
-  struct Point {
-    int link = -1;  // likewise
-    Vector3 centre_m{};
-    double radius_m = 0.0;
-  };
-  struct Pose {
-    Vector3 position_m{};
-    std::array<double, 4> rotation_wxyz{1.0, 0.0, 0.0, 0.0};
-  };
-
   bool moves(const SensorFrame& sensors, double dt_s) noexcept;
-  Source source_of(const TickRecord& tick) const noexcept;
+  Source source_of(const ControllerInput& input, const ControllerOutput& output) const noexcept;
   double height_by_joints_m(const JointArray<double>& position_rad) noexcept;
   void follow_height(double height_m, double dt_s) noexcept;
 
-  std::vector<Link> links_;
-  std::vector<Point> outline_;
-  std::vector<Pose> poses_;  // of the links, in the base frame: room for a computation
+  Kinematics kinematics_;
   bool has_last_ = false;
   std::uint64_t last_tick_ = 0, restless_tick_ = 0;
   double acceleration_mps2_ = 0.0;  // the IMU's less gravity, smoothed

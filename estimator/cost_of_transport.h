@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "rt/core/messages.h"
+
+namespace sandrunner {
+
+/// What the cost of transport takes of a robot.
+struct Drivetrain {
+  double mass_kg = 0.0;
+  double motor_constant = 0.0;  ///< k_m, N m/sqrt(W) at the joint
+};
+
+/// (P_mech + P_heat)/(m g v) with P_heat = sum tau^2/k_m^2 (paper, "Beach sand"); none below
+/// 0.05 m/s. `mechanical_w`, `torque_squared_nm2`: means of the sums over joints of tau qd, tau^2.
+inline std::optional<double> cost_of_transport(double mechanical_w, double torque_squared_nm2,
+                                               double speed_mps, const Drivetrain& robot) noexcept {
+  constexpr double kSlowest_mps = 0.05;
+  if (!(speed_mps >= kSlowest_mps)) return std::nullopt;
+  const double heat_w = torque_squared_nm2 / (robot.motor_constant * robot.motor_constant);
+  return (mechanical_w + heat_w) / (robot.mass_kg * kGravity_mps2 * speed_mps);
+}
+
+}  // namespace sandrunner

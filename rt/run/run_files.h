@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "rt/report/run_record.h"
+
+namespace sandrunner {
+
+/// Writes run.csv, run.html, run.png and, with ground truth, strip.png into a folder that exists;
+/// returns their paths, separated by ", ". Throws InputError.
+std::string write_run_files(const RunRecord& record, const std::string& folder);
+
+}  // namespace sandrunner
