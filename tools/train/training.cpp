@@ -245,7 +245,8 @@ void Training::save() {
   checkpoint.put("run.config", config_.effective.data(), config_.effective.size());
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
-  const PolicyFile policy = policy_file(snapshot(), learner_.averaged());
+  const Snapshot now = snapshot();
+  const PolicyFile policy = policy_file(now, learner_.averaged());
   write_policy_file(options_.out + "/policy.safetensors", policy);
   if (!best_is_written_) {
     PolicyFile best = policy_file(best_, best_parameters_);
