@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/run/scene.h"
 
-#include <memory>
-
+#include "sim/ground/terrain.h"
+#include "sim/ground/terrain_description.h"
 #include "sim/robot/dynamics.h"
-#include "sim/simulator.h"
 
 namespace sandrunner {
 
@@ -32,12 +31,13 @@ RunScene scene_of(const ProcessConfig& config, const std::string& policy) {
     }
     return points;
   };
-  scene.granular_ground =
-      config.simulator.terrain.patches.front().ground.kind == sim::GroundKind::kGranular;
-  const auto simulator = std::make_shared<const sim::Simulator>(config.robot, config.simulator);
-  if (simulator->terrain().highest > 0.0) {
-    scene.ground_height_m = [simulator](double x_m, double y_m) {
-      return simulator->surface_height(x_m, y_m);
+  const sim::TerrainDescription& ground = config.simulator.terrain;
+  scene.granular_ground = ground.patches.front().ground.kind == sim::GroundKind::kGranular;
+  const sim::Terrain<double> terrain =
+      sim::make_terrain(ground, sim::make_foot_profile(ground, model), model);
+  if (terrain.highest > 0.0) {
+    scene.ground_height_m = [terrain](double x_m, double y_m) {
+      return sim::surface_at(terrain, x_m, y_m).height;
     };
   }
   return scene;
