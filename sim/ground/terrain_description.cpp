@@ -15,8 +15,11 @@
 namespace sandrunner::sim {
 namespace {
 
-const std::vector<std::string> kPresets = {"dry-sand",       "wet-sand", "grass",
-                                           "athletic-track", "vinyl",    "rigid"};
+const std::vector<std::string> kPresets = [] {
+  std::vector<std::string> names = embedded_terrain_file_names();
+  for (std::string& name : names) name = std::filesystem::path(name).stem();
+  return names;
+}();
 
 // In the order of GroundKind.
 constexpr const char* kKinds[] = {"granular", "rigid", "linear"};
