@@ -198,7 +198,7 @@ int check(const Options& options) {
     const std::vector<PlannedBus> plan = plan_buses(*config.hardware);
     fmt::print("{}", plan_table(*config.hardware, plan));
     const bool fits = std::ranges::none_of(plan, &PlannedBus::overloaded);
-    return fits ? kExitOk : kExitRobotFailed;
+    return fits ? kExitOk : kExitFailed;
   }
   CheckTask task{.path = options.hardware_path,
                  .config = *config.hardware,
@@ -367,7 +367,7 @@ int run(int argc, char** argv) {
     listeners.view->feed.end();
     while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  return result.survived ? kExitOk : kExitRobotFailed;
+  return result.survived ? kExitOk : kExitFailed;
 }
 
 }  // namespace

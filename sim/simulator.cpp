@@ -19,7 +19,6 @@ enum Stream : std::uint64_t { kStartStream = 1, kNoiseStream = 2 };
 
 Simulator::Simulator(const Robot& robot, const SimulatorConfig& config)
     : robot_(robot),
-      model_(robot.model),
       config_(config),
       foot_(make_foot_profile(config.terrain, robot.model)),
       terrain_(make_terrain(config.terrain, foot_, robot.model)) {
@@ -40,7 +39,7 @@ void Simulator::disturb(double height_above_m) {
   // An undisturbed robot on level ground stands at its nominal height.
   if (config_.seed > 0 || height_above_m == 0.0 || terrain_.highest > 0.0) {
     const double lowest = lowest_clearance(
-        model_, x.q, [this](double x_m, double y_m) { return surface_height(x_m, y_m); });
+        robot_.model, x.q, [this](double x_m, double y_m) { return surface_height(x_m, y_m); });
     x.position.z = height_above_m - lowest;
   }
 }
@@ -85,7 +84,7 @@ bool Simulator::carry_to_stand() noexcept {
                                    : Vec3<double>{rate, 0.0, 0.0};
   const double lift =
       kAbove_m + surface_height(x.position.x, x.position.y) -
-      lowest_clearance(model_, robot_.nominal_rad, [](double, double) { return 0.0; }) -
+      lowest_clearance(robot_.model, robot_.nominal_rad, [](double, double) { return 0.0; }) -
       x.position.z;
   there = there && std::abs(lift) < kThere;
   x.velocity = {0.0, 0.0, towards(lift, kLift_mps)};
@@ -108,7 +107,7 @@ void Simulator::set_terrain(const TerrainDescription& terrain) {
     state_.robot.impulse = {};
   }
   config_.terrain = terrain;
-  terrain_ = make_terrain(terrain, foot_, model_);
+  terrain_ = make_terrain(terrain, foot_, robot_.model);
 }
 
 SensorFrame Simulator::sample() const noexcept {
@@ -171,12 +170,13 @@ void Simulator::write(const SafeCommand& command) noexcept {
     state_.torque_nm[j] =
         acting.enabled()
             ? drive_torque(x.q[j], x.qd[j], c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j],
-                           c.kd_nmsprad[j], c.feedforward_nm[j], model_.torque_limit_nm[j],
+                           c.kd_nmsprad[j], c.feedforward_nm[j], robot_.model.torque_limit_nm[j],
                            line.stall_torque_nm, 1.0 / line.no_load_speed_radps)
             : 0.0;
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
-  stepper_.step(model_, foot_, terrain_, config_.step, state_.torque_nm, state_.robot, report_);
+  stepper_.step(robot_.model, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,
+                report_);
   // Specific force at the base origin, body frame.
   const Vec3<double> felt = mul_add(before.r2, kGravity_mps2, report_.base_acceleration);
   state_.linear_acceleration_mps2 = {felt.x, felt.y, felt.z};
@@ -202,7 +202,7 @@ bool Simulator::truth(RobotTruth& truth) const noexcept {
   truth.joint_position_rad = x.q;
   truth.joint_velocity_radps = x.qd;
   truth.joint_torque_nm = state_.torque_nm;
-  truth.state = ground_truth(model_, state_.robot, terrain_);
+  truth.state = ground_truth(robot_.model, state_.robot, terrain_);
   for (int l = 0; l < kNumLegs; ++l) {
     const Vec3<double>& centre = report_.foot_centre[l];
     truth.foot_centre_m[l] = array(centre);

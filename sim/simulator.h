@@ -87,7 +87,7 @@ class Simulator final : public RobotIo {
   void add_to(StateHash& hash) const noexcept override;
 
   const StepReport<double>& report() const noexcept { return report_; }  ///< of the last step
-  const RobotModel<double>& model() const noexcept { return model_; }
+  const RobotModel<double>& model() const noexcept { return robot_.model; }
   const Terrain<double>& terrain() const noexcept { return terrain_; }
   /// Height of the undisturbed surface, m.
   double surface_height(double x_m, double y_m) const noexcept;
@@ -97,7 +97,6 @@ class Simulator final : public RobotIo {
   SensorFrame sample() const noexcept;
 
   Robot robot_;
-  RobotModel<double> model_;
   SimulatorConfig config_;
   FootProfile<double> foot_;
   Terrain<double> terrain_;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/fuzz.sh TIME [NAME...]: builds the libFuzzer programs with clang and the sanitizers, and runs each, or those
-# named, for so long (10m, 20s). What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with
+# tools/fuzz.sh TIME [NAME...]: builds the libFuzzer programs in build/asan-ubsan, and runs each, or those named, for that
+# long (10m, 20s). What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with
 # 1 at the first finding, which lies in build/fuzz/findings.
 set -euo pipefail
 
@@ -16,13 +16,13 @@ shift
 
 bash "$root/tools/install_packages.sh" checks
 cd "$root"
-cmake --preset clang -B build/fuzz -D SANDRUNNER_FUZZ=ON >&2
-cmake --build build/fuzz --target "${@:-fuzz}" >&2
-(($#)) || set -- $(cd build/fuzz/bin && echo *_fuzz)
+cmake --preset asan-ubsan -D SANDRUNNER_FUZZ=ON >&2
+cmake --build build/asan-ubsan --target "${@:-fuzz}" >&2
+(($#)) || set -- $(cd build/asan-ubsan/bin && echo *_fuzz)
 mkdir -p build/fuzz/findings
 for name; do
   mkdir -p "build/fuzz/corpus/$name"
   echo "== $name" >&2
-  "build/fuzz/bin/$name" -max_total_time="$seconds" -max_len=16384 -artifact_prefix="build/fuzz/findings/$name-" \
+  "build/asan-ubsan/bin/$name" -max_total_time="$seconds" -max_len=16384 -artifact_prefix="build/fuzz/findings/$name-" \
     -verbosity=0 -print_final_stats=1 "build/fuzz/corpus/$name" || exit 1
 done

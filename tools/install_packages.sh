@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/install_packages.sh [all|sandrunner|deb|checks]: installs the Debian packages that are missing of those that
-# everything needs (all, deb: the package, too); the program sandrunner alone; everything and the checks of .ci/run. If
-# none is missing it only asks dpkg: no network, no rights, a fraction of a second.
+# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the Debian packages that are missing of those that
+# everything needs (all, deb: the package, too); the program sandrunner alone; everything and what only tests run;
+# everything and the checks of .ci/run. If none is missing it only asks dpkg: no network, no permissions, a fraction of a
+# second.
 set -euo pipefail
 
 packages=(
@@ -19,7 +20,8 @@ packages=(
   qemu-system-x86 busybox-static cpio xz-utils
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )
-[[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev chromium-headless-shell)
+[[ ${1:-all} != @(test|checks) ]] || packages+=(chromium-headless-shell)
+[[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev)
 
 fail() {
   echo "install_packages.sh: $1" >&2

@@ -57,7 +57,7 @@ class Check {
     measure();
     judge_emergency_stop();
     fmt::print("{}", check_report(config_, task_.robot, task_.gate, findings_));
-    return findings_.problems.empty() ? kExitOk : kExitRobotFailed;
+    return findings_.problems.empty() ? kExitOk : kExitFailed;
   }
 
  private:

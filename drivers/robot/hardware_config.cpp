@@ -259,7 +259,7 @@ double told_speed_radps(const HardwareConfig& h) noexcept {
 
 }  // namespace
 
-void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
+void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
   const auto ticks = static_cast<std::uint64_t>(h.ticks_per_exchange());
   // A value is sent for in one exchange, comes in the ticks up to the next one, and may be lost:
   // two losses in a row are a fault.
@@ -273,7 +273,7 @@ void adapt_gate(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.hanging = h.hanging;
 }
 
-void match_gate(const GateConfig& gate, HardwareConfig& h) {
+void fit_drives_to(const GateConfig& gate, HardwareConfig& h) {
   // Between two commands lie what the loop may miss and the rest of an exchange.
   const double stall_s = kControlPeriod_s * (static_cast<double>(gate.stall_fault_ticks) +
                                              static_cast<double>(h.ticks_per_exchange()));

@@ -80,13 +80,13 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
 /// What hardware changes of the gate's thresholds: ages follow the rate of the exchange, the speed
 /// fault is one that can be told, torque limits are scaled by `torque_scale`, and whether the robot
 /// hangs.
-void adapt_gate(const HardwareConfig& hardware, GateConfig& gate) noexcept;
+void fit_gate_to(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 
 /// What the gate's own settings, which come after that, ask of the drives. A drive whose commands
 /// have a torque limit is told the joint's and holds it itself, whatever becomes of this computer.
 /// Throws InputError for a time-out that is no longer than the stall that the gate lets pass
 /// (drives would let go without a fault), and for a speed fault above what replies can tell.
-void match_gate(const GateConfig& gate, HardwareConfig& hardware);
+void fit_drives_to(const GateConfig& gate, HardwareConfig& hardware);
 
 /// One line for each guard of the robot that the file leaves off: the emergency stop, the range of
 /// the supply.

@@ -39,8 +39,9 @@ inline std::string one_line(std::string message) {
 
 /// Exit codes of all programs.
 inline constexpr int kExitOk = 0;
-inline constexpr int kExitRobotFailed =
-    1;  ///< the robot fell or a fault latched; results are still written
+/// What the program checks or runs failed: the robot fell or a fault latched, a recording differs
+/// from its replay, a check found a problem. Results are still written.
+inline constexpr int kExitFailed = 1;
 inline constexpr int kExitBadInput = 2;
 inline constexpr int kExitInternal = 3;
 

@@ -12,7 +12,8 @@
 namespace sandrunner {
 namespace {
 
-constexpr auto bit = fault_bit;  // short, as it is in every line
+/// Short, as it is in every line.
+constexpr std::uint64_t bit(Fault fault) noexcept { return fault_bit(fault); }
 
 /// Joints with a value that is not finite, as bits.
 std::uint64_t non_finite(const JointState& joints) noexcept {

@@ -88,7 +88,7 @@ void end_if_it_hangs(const Watchdog& watchdog, const std::atomic<std::uint64_t>&
   ticks_seen = now_ticks;
   if (now_ns - alive_ns < kGiveUp_ns) return;
   to_standard_error("sandrunner: the control thread hangs; its drives are cut; the process ends\n");
-  std::_Exit(kExitRobotFailed);
+  std::_Exit(kExitFailed);
 }
 
 }  // namespace

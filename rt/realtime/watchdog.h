@@ -14,10 +14,10 @@ namespace sandrunner {
 /// at most 100).
 inline constexpr std::int64_t kWatchdog_ns = 100'000'000;
 
-/// The last line but the drives' own: when the control thread hangs, cuts the drives, for good,
-/// and again in each look until it ticks: a frame may be lost. Has a thread of its own, above the
-/// control thread's priority. A stall of the whole machine, which
-/// stops the watchdog as well, is the control thread's to judge.
+/// The last line of defence but the drives' own timeout: when the control thread hangs, cuts the
+/// drives for good, and again in each look until it ticks, because a frame may be lost. It has a
+/// thread of its own, above the control thread's priority. A stall of the whole machine stops the
+/// watchdog too; the control thread judges that one.
 class Watchdog {
  public:
   /// `ticks` grows with every tick of the control thread. All must outlive the watchdog.

@@ -144,7 +144,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   if (p.dds.enabled || p.view_drive) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
   if (config.has("hardware")) {
     p.hardware = read_hardware_config(config, p.robot.description, c.gate);
-    adapt_gate(*p.hardware, c.gate);
+    fit_gate_to(*p.hardware, c.gate);
   }
   const CommandEnvelope trained = c.shaping.envelope;
   read_controller(config, p.robot, c, robot != nullptr);
@@ -156,7 +156,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   at_most(c.walk.stop_deceleration_mps2, trained.acceleration_mps2, set.acceleration_mps2);
   at_most(c.walk.stop_yaw_deceleration_radps2, trained.yaw_acceleration_radps2,
           set.yaw_acceleration_radps2);
-  if (p.hardware) match_gate(c.gate, *p.hardware);
+  if (p.hardware) fit_drives_to(c.gate, *p.hardware);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   p.recording.bytes = static_cast<std::uint64_t>(

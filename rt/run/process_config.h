@@ -34,9 +34,9 @@ struct ProcessConfig {
 ControllerConfig controller_config(const sim::Robot& robot);
 
 /// Reads everything and rejects what is unknown. The robot's figures and the policy's gains (`spec`
-/// may be null) are the defaults of the controller's. `robot`, if given, is
-/// taken in place of the one that the key "robot" names, as of a recording, whose settings are then
-/// taken as they were, even those that no run may have any more. Throws InputError.
+/// may be null) are the defaults of the controller's. `robot`, if given, replaces the one that the
+/// key "robot" names: that of a recording, whose settings are then taken as they were, even those
+/// that no run may have any more. Throws InputError.
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
                                   const sim::Robot* robot = nullptr);
 

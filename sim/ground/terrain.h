@@ -57,6 +57,10 @@ struct Terrain {
   }
 };
 
+/// Upper bound of the surface's height, m, where the ground's roughness is `roughness`: six waves
+/// of amplitude roughness/sqrt(3) can add up to no more than this.
+constexpr double highest_of(double roughness) noexcept { return roughness * 3.4641016151377544; }
+
 /// The same terrain in another scalar.
 template <typename To>
 Terrain<To> convert_terrain(const Terrain<double>& from) noexcept {

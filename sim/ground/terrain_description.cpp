@@ -15,8 +15,11 @@
 namespace sandrunner::sim {
 namespace {
 
-const std::vector<std::string> kPresets = {"dry-sand",       "wet-sand", "grass",
-                                           "athletic-track", "vinyl",    "rigid"};
+const std::vector<std::string> kPresets = [] {
+  std::vector<std::string> names = embedded_terrain_file_names();
+  for (std::string& name : names) name = std::filesystem::path(name).stem();
+  return names;
+}();
 
 // In the order of GroundKind.
 constexpr const char* kKinds[] = {"granular", "rigid", "linear"};
@@ -161,8 +164,7 @@ Terrain<double> make_terrain(const TerrainDescription& description, const FootPr
   for (std::size_t i = 0; i < count; ++i) {
     terrain.ground[i] = derive_ground(description.patches[i].ground, foot, model.foot_radius_m);
     terrain.start_x[i] = description.patches[i].from_x_m;
-    // Six waves of amplitude roughness/sqrt(3) can add up to no more than this.
-    terrain.highest = std::fmax(terrain.highest, terrain.ground[i].roughness * 3.4641016151377544);
+    terrain.highest = std::fmax(terrain.highest, highest_of(terrain.ground[i].roughness));
   }
   return terrain;
 }

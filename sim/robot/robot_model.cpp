@@ -131,7 +131,8 @@ Vec read_joint(const UrdfReader& urdf, const Names& names, int l, int j, const s
   const int i = kJointsPerLeg * l + j;
   const std::string name = with_leg(names.joints[j], names.legs[l]);
   robot.description.joint_names[i] = name;
-  const urdf::Joint& joint = urdf.joint(name, parent, child);
+  Vec place_m;
+  const urdf::Joint& joint = urdf.joint(name, parent, child, place_m);
   const Vec wanted = j == 0 ? Vec{1, 0, 0} : Vec{0, 1, 0};
   if (joint.type != urdf::Joint::REVOLUTE ||
       std::fabs(dot(to_vec(joint.axis), wanted) - 1.0) > 1e-6) {
@@ -148,21 +149,10 @@ Vec read_joint(const UrdfReader& urdf, const Names& names, int l, int j, const s
   m.upper_rad[i] = joint.limits->upper;
   m.torque_limit_nm[i] = joint.limits->effort;
   m.speed_limit_radps[i] = joint.limits->velocity;
-  return to_vec(joint.parent_to_joint_origin_transform.position);
+  return place_m;
 }
 
-// What a fixed joint joins becomes one body: `child` sits at `offset` in the frame of `parent`.
-Body<double> merged(const Body<double>& parent, const Body<double>& child, const Vec& offset) {
-  const Vec child_com = child.com + offset;
-  Body<double> b;
-  b.mass = parent.mass + child.mass;
-  b.com = (1.0 / b.mass) * (parent.mass * parent.com + child.mass * child_com);
-  b.inertia = shifted_inertia(parent.inertia, parent.mass, parent.com - b.com) +
-              shifted_inertia(child.inertia, child.mass, child_com - b.com);
-  return b;
-}
-
-// The foot of leg l: its place, its shape, and the shank's body with the foot in it.
+// The foot of leg l: its place and its shape. Its mass is the shank's.
 void read_foot(const UrdfReader& urdf, const Names& names, int l, const std::string& shank,
                RobotModel<double>& m) {
   LegModel<double>& leg = m.legs[l];
@@ -171,10 +161,7 @@ void read_foot(const UrdfReader& urdf, const Names& names, int l, const std::str
   if (!foot.parent_joint || foot.parent_joint->type != urdf::Joint::FIXED) {
     urdf.fail(fmt::format("link '{}' is not fixed to '{}'", name, shank));
   }
-  leg.foot = to_vec(
-      urdf.joint(foot.parent_joint->name, shank, name).parent_to_joint_origin_transform.position);
-  const Body<double> shank_alone = urdf.body(shank);
-  leg.shank = merged(shank_alone, urdf.body(name), leg.foot);
+  urdf.joint(foot.parent_joint->name, shank, name, leg.foot);
   m.foot_radius_m = m.foot_width_m = 0.0;
   if (const urdf::Cylinder* tyre = urdf.cylinder(name)) {
     m.foot_radius_m = tyre->radius;
@@ -206,6 +193,7 @@ void read_leg(const UrdfReader& urdf, const Names& names, int l, Robot& robot) {
   leg.kfe = read_joint(urdf, names, l, 2, thigh, shank, robot);
   leg.hip = urdf.body(hip);
   leg.thigh = urdf.body(thigh);
+  leg.shank = urdf.body(shank);
   read_foot(urdf, names, l, shank, robot.model);
   check_mass(urdf, hip, leg.hip);
   check_mass(urdf, thigh, leg.thigh);

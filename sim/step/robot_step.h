@@ -38,8 +38,8 @@ struct StepReport {
       foot_force{};                     ///< contact frame (world axes on level ground), N
   std::array<S, kNumLegs> raw_force{};  ///< granular law before the filter, N
   std::array<Vec3<S>, kNumLegs> knee;   ///< world, m
-  S base_contact{}, thigh_contact{}, shank_contact{};  ///< 1: touches the ground
-  Vec3<S> base_acceleration;  ///< of the base origin, body components, m/s^2
+  S base_contact{}, thigh_contact{};    ///< 1: touches the ground
+  Vec3<S> base_acceleration;            ///< of the base origin, body components, m/s^2
   int sweeps = 0;
 };
 

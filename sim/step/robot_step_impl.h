@@ -174,7 +174,8 @@ template <typename S>
 void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain,
                                       RobotState<S>& x, StepReport<S>& report) noexcept {
   const S zero = S(0.0);
-  report.base_contact = report.thigh_contact = report.shank_contact = zero;
+  report.base_contact = report.thigh_contact = zero;
+  S shank_contact = zero;  // not reported
   for (int l = 0; l < kNumLegs; ++l) {
     const LegPose<S>& pose = dynamics_.leg(l);
     const Vec3<S> knee_base = hip_to_base(model.legs[l], pose, pose.knee);
@@ -186,7 +187,7 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
     if (any(uneven)) {
       const Vec3<S> middle = S(0.5) * (pose.knee + pose.foot);
       add_hard_point(model, terrain, hip_to_base(model.legs[l], pose, middle), middle, l, 3,
-                     model.shank_radius_m, true, uneven, 2 * kNumLegs + l, x, report.shank_contact);
+                     model.shank_radius_m, true, uneven, 2 * kNumLegs + l, x, shank_contact);
     }
   }
   const Vec3<S>& half = model.base_box_half_m;

@@ -10,11 +10,13 @@
 
 namespace sandrunner {
 
-/// Whether a run that said this of its end was rightly ended because a thread of it did not run for
-/// 30 ms.
-inline bool stalled(const std::string& said) {
-  return said.find("loop_stalled") != std::string::npos ||
-         said.find("policy_stale") != std::string::npos;
+/// Whether a run that printed this was rightly ended because a thread of it did not run for 30 ms,
+/// or its control thread for 100 ms while its watchdog did.
+inline bool stalled(const std::string& printed) {
+  for (const char* fault : {"loop_stalled", "policy_stale", "drives_cut"}) {
+    if (printed.find(fault) != std::string::npos) return true;
+  }
+  return false;
 }
 
 /// Does `attempt`, which is to set `said` to what its run said at the end, even if an assertion

@@ -10,10 +10,10 @@ import argparse
 import collections
 import concurrent.futures
 import itertools
+import json
 import os
 import pathlib
 import random
-import re
 import shlex
 import shutil
 import subprocess
@@ -22,21 +22,20 @@ import tempfile
 
 TREE = pathlib.Path(__file__).resolve().parents[2]
 SOFT = ['--set', 'terrain.sigma_flat_npm3=1e6', '--set', 'terrain.sigma_cone_npm3=0.15e6']
-GROUNDS = {name: ['--terrain', name] for name in
-           ['dry-sand', 'wet-sand', 'grass', 'athletic-track', 'vinyl', 'rigid']} | {'1/0.15': SOFT}
+PRESETS = sorted(file.stem for file in (TREE / 'sim/ground/presets').glob('*.toml'))
+GROUNDS = {name: ['--terrain', name] for name in PRESETS} | {'1/0.15': SOFT}
 STARTS = {'nominal': ['--start', 'walk'], 'disturbed': ['--start', 'walk', '--seed', '1'], 'lying': []}
 
 
-def envelope(programs, policy):
+def envelope(policy):
     """Largest vx, -vx, |vy|, |yaw rate| that the policy file allows."""
-    text = subprocess.run([programs / 'sandrunner-policy', 'info', policy], check=True, capture_output=True,
-                          text=True).stdout
-    found = re.search(r'^commands +vx -([\d.]+) to ([\d.]+), vy \+-([\d.]+) m/s, yaw rate \+-([\d.]+).*s\^2$',
-                      text, re.M)
-    if not found:
+    with policy.open('rb') as file:
+        header = json.loads(file.read(int.from_bytes(file.read(8), 'little')))  # safetensors
+    found = [header['__metadata__'].get(f'sandrunner.envelope.{key}')
+             for key in ('forward_mps', 'backward_mps', 'lateral_mps', 'yaw_radps')]
+    if None in found:
         sys.exit(f'corners.py: {policy}: found no envelope, expected one (sandrunner-policy envelope)')
-    back, forward, lateral, yaw = map(float, found.groups())
-    return forward, back, lateral, yaw
+    return [float(value) for value in found]
 
 
 def corners(forward, back, lateral, yaw):
@@ -76,7 +75,7 @@ def main():
     parser.add_argument('--bin', type=pathlib.Path, default=TREE / 'build/release/bin', help='folder of the programs')
     parser.add_argument('--runs', type=int, help='so many of them, drawn by chance (default: all 3,822)')
     options = parser.parse_args()
-    commands = corners(*envelope(options.bin, options.policy))
+    commands = corners(*envelope(options.policy))
     jobs = [(ground, start, first, second) for ground in GROUNDS for start in STARTS
             for first, second in itertools.permutations(commands, 2)]
     if options.runs is not None:

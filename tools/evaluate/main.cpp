@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
@@ -26,7 +27,8 @@ Part make_part(Study& study, const std::string& name) {
   if (name == "grid") return study.grid();
   if (name == "turn") return study.turn();
   if (name == "commands") return study.commands();
-  return study.robust();
+  if (name == "robust") return study.robust();
+  throw std::logic_error("no part '" + name + "'");
 }
 
 std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& part,

@@ -88,7 +88,7 @@ int play_runs(const Arguments& a) {
     std::fflush(stdout);
     all_well = all_well && verdict.wrong.empty();
   }
-  return all_well ? kExitOk : kExitRobotFailed;
+  return all_well ? kExitOk : kExitFailed;
 }
 
 int run(int argc, char** argv) {

@@ -16,6 +16,7 @@
 #include "rt/base/command_line.h"
 #include "rt/base/errors.h"
 #include "rt/base/program.h"
+#include "sim/robot/robot_model.h"
 
 namespace sandrunner {
 namespace {
@@ -23,17 +24,14 @@ namespace {
 /// How the published controller of Raibo is wired (compliant-gym; Choi et al. 2023, "Controller
 /// structure").
 void set_raibo_conventions(PolicySpec& spec) {
-  std::copy(kJointNames.begin(), kJointNames.end(), spec.joint_names.begin());
-  for (int leg = 0; leg < kNumLegs; ++leg) {
-    spec.nominal_position_rad[kJointsPerLeg * leg + 0] = 0.0;
-    spec.nominal_position_rad[kJointsPerLeg * leg + 1] = 0.559836;
-    spec.nominal_position_rad[kJointsPerLeg * leg + 2] = -1.119672;
-  }
+  const sim::Robot raibo = sim::load_raibo();
+  spec.joint_names = raibo.description.joint_names;
+  spec.nominal_position_rad = raibo.nominal_rad;
   spec.action_scale_rad = 0.3;
   spec.action_clip = 0.0;
   spec.kp_nmprad = 50.0;
   spec.kd_nmsprad = 0.5;
-  spec.torque_limit_nm = 63.45;
+  spec.torque_limit_nm = *std::ranges::max_element(raibo.model.torque_limit_nm);
   spec.yaw_command_clip_mps2 = 2.943;  // 0.3 g
 }
 

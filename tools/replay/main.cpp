@@ -212,14 +212,14 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
   if (difference) {
     fmt::print("DIFFERS at tick {} ({}): {}\n", difference->tick, seconds(difference->tick),
                difference->what);
-    return kExitRobotFailed;
+    return kExitFailed;
   }
   if (compared == 0) {
     fmt::print("NOTHING COMPARED: the recording has {}\n",
                contents.ticks == 0 ? "no ticks"
                                    : fmt::format("none to compare in this range, it ends at {}",
                                                  seconds(last_tick)));
-    if (lacks.empty()) return kExitRobotFailed;
+    if (lacks.empty()) return kExitFailed;
   } else {
     fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared,
                player->replay->policy_steps());

@@ -22,8 +22,8 @@ constexpr std::size_t kMostBytes = 2'000'000;
 
 }  // namespace
 
-std::string curve_page(const Progress& progress, const PolicyFile& file, const sim::Robot& robot,
-                       double speed_mps) {
+std::string curve_page(const Progress& progress, const PolicyFile& file, double transitions,
+                       const sim::Robot& robot, double speed_mps) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, kGround);
   const ProcessConfig config = read_process_config(tree, &file.spec, &robot);
@@ -44,7 +44,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, const s
       progress.page_json(fmt::format("Training of {}: {:.2f} million transitions, {} core-hours; "
                                      "below: its policy, asked for {} "
                                      "m/s on {}",
-                                     file.spec.name, 1e-6 * std::stod(provenance.at("transitions")),
+                                     file.spec.name, 1e-6 * transitions,
                                      provenance.at("core_hours"), speed_mps, kGround)));
 }
 

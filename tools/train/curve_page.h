@@ -13,7 +13,8 @@ namespace sandrunner::train {
 /// `speed_mps` forward on dry sand, in a page that opens from a disk (rt/telemetry/view). The run
 /// is that of `sandrunner --start walk` with this robot and policy; nothing of the training depends
 /// on it. At most 2 MB. For a thread in which denormal numbers are zero.
-std::string curve_page(const Progress& progress, const PolicyFile& policy, const sim::Robot& robot,
-                       double speed_mps);
+/// `transitions`: after which the policy was taken.
+std::string curve_page(const Progress& progress, const PolicyFile& policy, double transitions,
+                       const sim::Robot& robot, double speed_mps);
 
 }  // namespace sandrunner::train

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -48,6 +49,18 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   hash = learner::fnv1a(bytes(robot.nominal_rad), hash);
   hash = learner::fnv1a(bytes(robot.torque_speed_line), hash);
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
+}
+
+// The lines "KEY = VALUE" of ConfigTree::effective().
+std::map<std::string, std::string> settings_in(std::string_view effective) {
+  std::map<std::string, std::string> settings;
+  while (!effective.empty()) {
+    const std::string_view line = effective.substr(0, effective.find('\n'));
+    effective.remove_prefix(std::min(line.size() + 1, effective.size()));
+    const std::size_t at = line.find(" = ");
+    if (at != std::string_view::npos) settings.emplace(line.substr(0, at), line.substr(at + 3));
+  }
+  return settings;
 }
 
 /// Throws InputError unless weights of `policy` mean in a file with the scales of `ours` what they
@@ -127,15 +140,20 @@ void Training::resume() {
         fmt::format("{}: was made with another robot than this '{}'; continue with the same one",
                     checkpoint_path_, robot_.description.name));
   }
-  if (checkpoint.config_hash != config_hash_) {
-    throw InputError(fmt::format(
-        "{}: was made with another config or seed; continue with the same ones", checkpoint_path_));
-  }
+  if (checkpoint.config_hash != config_hash_) require_same_settings(checkpoint);
   restore(checkpoint);
   checkpoint.get("run.cpu_seconds", &cpu_before_s_, 1);
   Names origin{};
   checkpoint.get("run.origin", origin.data(), origin.size());
   origin_ = origin.data();
+  if (checkpoint.config_hash != config_hash_) {
+    to_standard_error(
+        fmt::format("{}: run.transitions is larger than before: settling and late penalties follow "
+                    "the new length from here on. The weights will differ from those of a training "
+                    "of this length from the start.\n",
+                    checkpoint_path_));
+    origin_ += fmt::format(", made longer at {} transitions", learner_.transitions());
+  }
   // All builds and processors that had a part in the weights.
   for (const auto& [section, now] :
        {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
@@ -144,6 +162,49 @@ void Training::resume() {
     const std::string before = names.data();
     const bool known = (", " + before + ", ").find(", " + *now + ", ") != std::string::npos;
     *now = known ? before : before + ", " + *now;
+  }
+}
+
+// Throws InputError for settings other than the checkpoint's, but for a longer training.
+void Training::require_same_settings(const learner::Checkpoint& checkpoint) const {
+  const auto fail = [&](const std::string& what) {
+    throw InputError(fmt::format("{}: {}", checkpoint_path_, what));
+  };
+  const auto config = checkpoint.sections.find("run.config");
+  if (config == checkpoint.sections.end()) {
+    fail("was made with another config or seed; continue with the same ones");
+  }
+  const auto before = settings_in({config->second.data(), config->second.size()});
+  const auto now = settings_in(config_.effective);
+  std::vector<std::string> differ;
+  const auto value_in = [](const auto& settings, const std::string& key) {
+    const auto found = settings.find(key);
+    return found == settings.end() ? std::string("nothing") : found->second;
+  };
+  const auto compare = [&](const auto& keys, bool unless_in_before) {
+    for (const auto& [key, value] : keys) {
+      if (unless_in_before && before.contains(key)) continue;
+      const std::string was = value_in(before, key), is = value_in(now, key);
+      if (was != is && key != "run.transitions") {
+        differ.push_back(fmt::format("{} = {}, expected {}", key, is, was));
+      }
+    }
+  };
+  compare(before, false);
+  compare(now, true);
+  std::int64_t seed = 0;
+  checkpoint.get("run.seed", &seed, 1);
+  if (seed != static_cast<std::int64_t>(options_.seed)) {
+    differ.push_back(fmt::format("--seed {}, expected {}", options_.seed, seed));
+  }
+  if (!differ.empty()) fail(fmt::format("found {}", fmt::join(differ, "; ")));
+  double length = 0.0;
+  checkpoint.get("run.transitions", &length, 1);
+  if (config_.run.transitions < length) {
+    fail(
+        fmt::format("found run.transitions = {:.0f}, expected at least the {:.0f} of the "
+                    "checkpoint: a training can only be made longer",
+                    config_.run.transitions, length));
   }
 }
 
@@ -178,9 +239,14 @@ void Training::save() {
     text->copy(names.data(), names.size() - 1);
     checkpoint.put(section, names.data(), names.size());
   }
+  const auto seed = static_cast<std::int64_t>(options_.seed);
+  checkpoint.put("run.seed", &seed, 1);
+  checkpoint.put("run.transitions", &config_.run.transitions, 1);
+  checkpoint.put("run.config", config_.effective.data(), config_.effective.size());
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
-  const PolicyFile policy = policy_file(snapshot(), learner_.averaged());
+  const Snapshot now = snapshot();
+  const PolicyFile policy = policy_file(now, learner_.averaged());
   write_policy_file(options_.out + "/policy.safetensors", policy);
   if (!best_is_written_) {
     PolicyFile best = policy_file(best_, best_parameters_);
@@ -190,8 +256,8 @@ void Training::save() {
   }
   progress_.write(options_.out);
   pool_.run(1, [&](int, int) {
-    write_file(options_.out + "/curve.html",
-               curve_page(progress_, policy, robot_, config_.task.command.speed_start_mps));
+    write_file(options_.out + "/curve.html", curve_page(progress_, policy, now.transitions, robot_,
+                                                        config_.task.command.speed_start_mps));
   });
   saved_at_s_ = wall_seconds();
   fallbacks_ = 0;

@@ -42,7 +42,9 @@ class Training {
   }
 
   /// Either of these comes before `run`. `resume` reads the checkpoint of the folder; throws
-  /// InputError if there is none or it belongs to another configuration, seed or robot.
+  /// InputError if there is none or it belongs to another configuration, seed or robot. A larger
+  /// `run.transitions` is allowed: what follows the length of a training, as settling does, follows
+  /// the new length from there on.
   void start();
   void resume();
   /// Before `start`: the weights of a policy file in place of random ones. Its normalisation and
@@ -56,6 +58,7 @@ class Training {
  private:
   void save();
   void restore(const learner::Checkpoint& checkpoint);
+  void require_same_settings(const learner::Checkpoint& checkpoint) const;
   void step_window();
   void settle();
   void run_battery();

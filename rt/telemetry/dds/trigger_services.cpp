@@ -14,7 +14,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr int kDepth = 10;  // rmw_qos_profile_services_default
+constexpr int kServiceDepth = 10;  // rmw_qos_profile_services_default
 // A client may have found us before we have found its reader of replies; rmw_cyclonedds waits
 // likewise.
 constexpr auto kFindReader = std::chrono::milliseconds(100);
@@ -51,9 +51,9 @@ TriggerServices::TriggerServices(const DdsParticipant& participant) {
     services_.push_back(
         {.request = request,
          .calls = participant.reader(fmt::format("rq/sandrunner/{}Request", request).c_str(),
-                                     std_srvs_srv_dds__Trigger_Request__desc, kDepth, true),
+                                     std_srvs_srv_dds__Trigger_Request__desc, kServiceDepth, true),
          .replies = participant.writer(fmt::format("rr/sandrunner/{}Reply", request).c_str(),
-                                       std_srvs_srv_dds__Trigger_Response__desc, kDepth)});
+                                       std_srvs_srv_dds__Trigger_Response__desc, kServiceDepth)});
   }
 }
 
@@ -93,7 +93,7 @@ void TriggerServices::answer(
                                     .message = nullptr},
                              .outcome = follow(service.request, asker)});
         },
-        kDepth);
+        kServiceDepth);
   }
   // All were followed before any is waited for: a client that is gone holds up no stop.
   const auto deadline = std::chrono::steady_clock::now() + kFindReader;

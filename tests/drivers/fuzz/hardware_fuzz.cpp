@@ -76,9 +76,9 @@ HardwareConfig read(ConfigTree& tree) {
   GateConfig gate = example_gate();
   HardwareConfig hardware = read_hardware_config(tree, example_robot(), gate);
   tree.reject_unknown();
-  adapt_gate(hardware, gate);
+  fit_gate_to(hardware, gate);
   for (const double limit_nm : gate.torque_limit_nm) require(limit_nm >= 0.0 && limit_nm <= 63.45);
-  match_gate(gate, hardware);
+  fit_drives_to(gate, hardware);
   return hardware;
 }
 

@@ -45,8 +45,8 @@ inline HardwareConfig example_hardware(const std::string& name,
   GateConfig gate = example_gate();
   HardwareConfig config = read_hardware_config(tree, example_robot(), gate);
   tree.reject_unknown();
-  adapt_gate(config, gate);
-  match_gate(gate, config);
+  fit_gate_to(config, gate);
+  fit_drives_to(gate, config);
   return config;
 }
 

@@ -139,8 +139,8 @@ TEST(HardwareConfigTest, AJointWithoutADriveIsNamed) {
 
 TEST(HardwareConfigTest, AgesOfTheGateFollowTheRateOfTheExchange) {
   GateConfig gate = example_gate();
-  adapt_gate(example_hardware("moteus", {"hardware.rate_hz=500", "hardware.torque_scale=0.5"}),
-             gate);
+  fit_gate_to(example_hardware("moteus", {"hardware.rate_hz=500", "hardware.torque_scale=0.5"}),
+              gate);
   EXPECT_EQ(gate.joints_limit_ticks, 10u);
   EXPECT_EQ(gate.joints_fault_ticks, 24u);
   EXPECT_DOUBLE_EQ(gate.torque_limit_nm[3], 0.5 * 63.45);
@@ -159,16 +159,16 @@ TEST(HardwareConfigTest, ASpeedThatIsAFaultIsOneThatRepliesCanTell) {
   for (const auto& [name, fastest_radps] : {std::pair{"mit", 50.0}, {"moteus", 51.47}}) {
     GateConfig gate = example_gate();
     gate.speed_fault_radps = 60.0;
-    adapt_gate(example_hardware(name), gate);
+    fit_gate_to(example_hardware(name), gate);
     EXPECT_NEAR(gate.speed_fault_radps, 0.98 * fastest_radps, 0.01) << name;
   }
 }
 
 TEST(HardwareConfigTest, TheSlowestRatesStayBelowTheGatesCeilings) {
   GateConfig gate = example_gate();
-  adapt_gate(example_hardware("moteus", {"hardware.rate_hz=400", "hardware.imu.rate_hz=100",
-                                         "hardware.imu.quaternion_rate_hz=100"}),
-             gate);
+  fit_gate_to(example_hardware("moteus", {"hardware.rate_hz=400", "hardware.imu.rate_hz=100",
+                                          "hardware.imu.quaternion_rate_hz=100"}),
+              gate);
   EXPECT_EQ(gate.joints_fault_ticks, 30u);
   EXPECT_EQ(gate.imu_limit_ticks, 44u);
   EXPECT_EQ(gate.imu_fault_ticks, 120u);

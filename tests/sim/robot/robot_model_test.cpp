@@ -174,21 +174,68 @@ TEST(RobotModelTest, RefusesMissingAndForeignParts) {
   expect_refused(edited(urdf, "joint name=\"LH_S2F\"", "fixed", "floating"), "moving joints");
 }
 
+// A link of 5 kg, as a child of `parent` 0.1 m above it and turned by a quarter about x.
+std::string with_battery(const std::string& urdf, const std::string& parent) {
+  return edited(
+      urdf, "</robot>", "</robot>",
+      "<link name=\"battery\"><inertial><origin xyz=\"0 0.2 0\" rpy=\"0 0 0\"/><mass value=\"5\"/>"
+      "<inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.2\" iyz=\"0\" izz=\"0.3\"/></inertial>"
+      "</link><joint name=\"mount\" type=\"fixed\"><parent link=\"" +
+          parent +
+          "\"/><child link=\"battery\"/>"
+          "<origin xyz=\"0 0 0.1\" rpy=\"1.5707963267948966 0 0\"/></joint></robot>");
+}
+
+TEST(RobotModelTest, LinksFixedToALinkAreMergedIntoIt) {
+  const Robot plain = load_raibo();
+  const Robot robot =
+      parse_robot(shipped_map(), "map", with_battery(shipped_urdf(), "base"), "urdf");
+  const Body<double>&a = plain.model.base, &b = robot.model.base;
+  EXPECT_NEAR(b.mass, a.mass + 5.0, 1e-12);
+  // The turn brings the battery's y to z: its centre is 0.3 m above the base's origin.
+  EXPECT_NEAR(b.com.x, a.mass * a.com.x / b.mass, 1e-12);
+  EXPECT_NEAR(b.com.y, a.mass * a.com.y / b.mass, 1e-12);
+  EXPECT_NEAR(b.com.z, (a.mass * a.com.z + 5.0 * 0.3) / b.mass, 1e-12);
+  const auto yy_at_origin = [](const Body<double>& body) {
+    return body.inertia.yy + body.mass * (body.com.x * body.com.x + body.com.z * body.com.z);
+  };
+  EXPECT_NEAR(yy_at_origin(b), yy_at_origin(a) + 0.3 + 5.0 * 0.3 * 0.3, 1e-12);
+  EXPECT_NEAR(robot.model.mass(), plain.model.mass() + 5.0, 1e-12);
+}
+
+TEST(RobotModelTest, RotorsOfALegAreMergedIntoTheLinkThatCarriesThem) {
+  const Robot plain = load_raibo();
+  const Robot robot =
+      parse_robot(shipped_map(), "map", with_battery(shipped_urdf(), "RF_THIGH"), "urdf");
+  EXPECT_NEAR(robot.model.legs[1].thigh.mass, plain.model.legs[1].thigh.mass + 5.0, 1e-12);
+  EXPECT_EQ(robot.model.base.mass, plain.model.base.mass);
+}
+
+TEST(RobotModelTest, ARootWithoutAMassIsPartOfTheBase) {
+  const Robot plain = load_raibo();
+  const std::string urdf = edited(
+      shipped_urdf(), "</robot>", "</robot>",
+      "<link name=\"root\"/><joint name=\"floating_base\" type=\"fixed\"><parent link=\"root\"/>"
+      "<child link=\"base\"/><origin xyz=\"0 0 0.25\" rpy=\"0 0 0\"/></joint></robot>");
+  // The map names the root, or the link that carries the legs.
+  const Robot root =
+      parse_robot(edited(shipped_map(), "base =", "\"base\"", "\"root\""), "map", urdf, "urdf");
+  EXPECT_EQ(root.model.base.mass, plain.model.base.mass);
+  EXPECT_NEAR(root.model.base.com.z, plain.model.base.com.z + 0.25, 1e-12);
+  EXPECT_NEAR(root.model.base_box_centre_m.z, plain.model.base_box_centre_m.z + 0.25, 1e-12);
+  EXPECT_NEAR(root.model.legs[0].haa.z, plain.model.legs[0].haa.z + 0.25, 1e-12);
+  EXPECT_EQ(root.model.legs[0].hfe.y, plain.model.legs[0].hfe.y);
+  const Robot carrier = parse_robot(shipped_map(), "map", urdf, "urdf");
+  EXPECT_EQ(carrier.model.base.com.z, plain.model.base.com.z);
+  EXPECT_EQ(carrier.model.legs[0].haa.z, plain.model.legs[0].haa.z);
+}
+
 TEST(RobotModelTest, RefusesAMassThatItWouldLeaveOut) {
-  const std::string fixed =
-      "<joint name=\"mount\" type=\"fixed\"><parent link=\"base\"/><child link=\"battery\"/>"
-      "<origin xyz=\"0 0 0.1\" rpy=\"0 0 0\"/></joint></robot>";
-  const std::string inertial =
-      "<inertial><mass value=\"5\"/><inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" "
-      "iyz=\"0\" izz=\"0.1\"/></inertial>";
-  const std::string urdf = shipped_urdf();
-  expect_refused(edited(urdf, "</robot>", "</robot>",
-                        "<link name=\"battery\">" + inertial + "</link>" + fixed),
-                 "battery");
-  // A link without one is a frame.
-  EXPECT_NO_THROW(parse_robot(
-      shipped_map(), "map",
-      edited(urdf, "</robot>", "</robot>", "<link name=\"battery\"/>" + fixed), "urdf"));
+  const std::string above =
+      edited(with_battery(shipped_urdf(), "top"), "name=\"mount\"", "\"top\"", "\"battery\"");
+  expect_refused(
+      edited(above, "name=\"mount\"", "<child link=\"battery\"/>", "<child link=\"base\"/>"),
+      "battery");
 }
 
 TEST(RobotModelTest, RefusesOtherAxesAndRotatedJoints) {

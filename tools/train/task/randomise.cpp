@@ -142,7 +142,7 @@ void Task::new_ground(int env, Env& e, float x_m) {
   // The robot stands anywhere in between.
   const double shift = x_m - terrain.start_x[count - 1] * uniform(env, e);
   for (int i = 1; i < count; ++i) terrain.start_x[i] += shift;
-  terrain.highest = terrain.ground[0].roughness * 3.4641016151377544;
+  terrain.highest = sim::highest_of(terrain.ground[0].roughness);
   e.terrain = sim::convert_terrain<float>(terrain);
   batch_.set_terrain(env, e.terrain);
 }

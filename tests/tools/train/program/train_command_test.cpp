@@ -302,12 +302,32 @@ TEST_F(TrainCommandTest, ResumeOfACompleteTrainingChangesNothing) {
   EXPECT_EQ(read_file(folder_.path("c") + "/policy.safetensors"), before);
 }
 
+TEST_F(TrainCommandTest, ATrainingCanBeMadeLongerAndSaysWhatThatMeans) {
+  ASSERT_EQ(run("l", {"--set", "run.transitions=1024"}), 0);
+  const Ended longer = run_process(training("l", {"--resume", "--set", "run.transitions=2048"}));
+  ASSERT_EQ(longer.code, 0) << longer;
+  EXPECT_NE(longer.err.find("run.transitions is larger than before"), std::string::npos) << longer;
+  const auto provenance = policy("l").spec.provenance;
+  EXPECT_EQ(provenance.at("transitions"), "2048");
+  EXPECT_NE(provenance.at("origin").find("made longer at 1024 transitions"), std::string::npos);
+  // It settles at the new end.
+  const std::string curve = read_file(folder_.path("l") + "/curve.csv");
+  EXPECT_EQ(std::count(curve.begin(), curve.end(), '\n'), 5) << curve;
+  EXPECT_EQ(run("l", {"--resume", "--set", "run.transitions=2048"}), 0);
+  expect_refused("l", {"--resume", "--set", "run.transitions=1024"}, "can only be made longer");
+}
+
 TEST_F(TrainCommandTest, ForeignAndTruncatedCheckpointsAreRefusedAndLeftAlone) {
   ASSERT_EQ(run("b", {"--set", "run.transitions=600"}), 0);
   const std::string path = folder_.path("b") + "/checkpoint.bin";
   const std::string good = read_file(path);
   expect_refused("b", {}, "holds a training");
-  expect_refused("b", {"--resume"}, "another config or seed");  // other transitions
+  expect_refused("b", {"--resume", "--set", "run.transitions=600", "--set", "learner.window=16"},
+                 "checkpoint.bin: found learner.window = 16, expected 8");
+  expect_refused("b", {"--resume", "--set", "run.transitions=600", "--seed", "3"},
+                 "found --seed 3, expected 1");
+  expect_refused("b", {"--resume", "--set", "run.transitions=512"},
+                 "found run.transitions = 512, expected at least the 600 of the checkpoint");
   write_file(path, good.substr(0, good.size() / 2));
   expect_refused("b", {"--resume", "--set", "run.transitions=600"}, "checkpoint.bin");
   EXPECT_EQ(read_file(path).size(), good.size() / 2);
