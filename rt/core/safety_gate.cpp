@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "rt/core/joint_pd.h"
 #include "rt/core/same_bits.h"
 
 namespace sandrunner {
