@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/step/ground_truth.h"
 #include "tests/sim/support.h"
 
 namespace sandrunner::sim {
@@ -172,6 +173,20 @@ TEST(SpringGroundTest, ABouncingRobotGainsNoEnergy) {
     } else {
       EXPECT_GT(lost, 0.1) << p.stiffness_npm;
     }
+  }
+}
+
+TEST(SpringGroundTest, BodyHeightCountsThePresentDepthOfSprings) {
+  Table table(springs(750.0, 170.0, 0.0));
+  for (const double depth : {0.05, 0.09, 0.03}) {  // pressed deeper and released again
+    table.put(depth);
+    table.bench.state.rigid.velocity = {};
+    Bench probe = table.bench;
+    probe.step({});
+    table.bench.state.feet = probe.state.feet;
+    const StateEstimate truth =
+        ground_truth(table.bench.robot.model, table.bench.state, table.bench.terrain);
+    EXPECT_NEAR(truth.body_height_m, table.surface_m, 1e-9);
   }
 }
 
