@@ -37,12 +37,15 @@ TEST_P(EveryPresetTest, RobotStandsUpStaysAndIsLetDown) {
   EXPECT_LT(end.base_position_m[2], 0.22);
   EXPECT_LT(std::fabs(end.base_position_m[2] - result.record.samples.end()[-11].base_position_m[2]),
             0.005);
-  // The base as high over the feet as in the nominal pose, level and at rest.
+  // The base as high over the feet as in the nominal pose, level and at rest. It leans where feet
+  // sink in by centimetres.
+  const bool deep = GetParam() == "air-mattress" || GetParam() == "memory-foam";
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    EXPECT_NEAR(last.base_position_m[2] - last.foot_position_m[leg][2], 0.4725 - 0.0295, 0.02);
+    EXPECT_NEAR(last.base_position_m[2] - last.foot_position_m[leg][2], 0.4725 - 0.0295,
+                deep ? 0.06 : 0.02);
   }
   const auto& [w, x, y, z] = last.orientation_wxyz;
-  EXPECT_GT(1.0 - 2.0 * (x * x + y * y), 0.995);
+  EXPECT_GT(1.0 - 2.0 * (x * x + y * y), deep ? 0.99 : 0.995);
   EXPECT_LT(std::hypot(last.vx_mps, last.vy_mps), 0.08);  // it still sways
 }
 
