@@ -176,6 +176,28 @@ TEST(SpringGroundTest, ABouncingRobotGainsNoEnergy) {
   }
 }
 
+// The light feet of free legs meet the largest damping that a training draws, at its time step.
+TEST(SpringGroundTest, TheStiffestDampedSpringsOfATrainingGiveALimpRobotNoEnergy) {
+  for (const double ratio : {0.1, 1.0}) {
+    const double quarter_kg = load_raibo().model.mass() / kNumLegs;
+    Table table(springs(33e3, 0.0, 2.0 * ratio * std::sqrt(33e3 * quarter_kg)));
+    table.bench.robot = load_raibo();
+    table.bench.remove_stops();
+    table.bench.settings.dt_s = 0.5e-3;
+    table.put(-0.02);
+    table.bench.state.rigid.velocity.z = -1.0;
+    const double start = table.energy();
+    double most = 0.0, deepest = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      table.bench.step({});
+      deepest = std::max(deepest, table.bench.report.penetration[0]);
+      most = std::max(most, table.energy() - start);
+    }
+    EXPECT_LT(most, 0.005 * 0.5 * table.mass_kg) << ratio;
+    EXPECT_GT(deepest, 1e-4) << ratio;
+  }
+}
+
 TEST(SpringGroundTest, BodyHeightCountsThePresentDepthOfSprings) {
   Table table(springs(750.0, 170.0, 0.0));
   for (const double depth : {0.05, 0.09, 0.03}) {  // pressed deeper and released again
