@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/ground/ground.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "rt/core/split_mix.h"
@@ -51,6 +52,7 @@ Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double
   g.inverse_tan_crater = cosine / sine;
   g.stiffness = p.stiffness_npm;
   g.damping = p.damping_nspm;
+  g.coupling = p.kind == GroundKind::kLinear ? std::sqrt(p.coupling_npm) : 0.0;
   const bool rough = p.kind == GroundKind::kRigid && p.roughness_m > 0.0;
   g.roughness = rough ? p.roughness_m : 0.0;
   g.wave_number = 2.0 * std::numbers::pi / p.roughness_wavelength_m;

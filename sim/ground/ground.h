@@ -52,6 +52,9 @@ struct GroundParameters {
   // Linear: spring and damper.
   double stiffness_npm = 10.0e3;  ///< k_s
   double damping_nspm = 200.0;    ///< b_s
+  /// k_c: feet on such ground share one pressure. Its force on each of them is k_c times the sum of
+  /// their depths, from the energy k_c/2 (sum of depths)^2.
+  double coupling_npm = 0.0;
 
   // Rigid: uneven height field of this standard deviation and shortest wavelength; 0: flat.
   double roughness_m = 0.0;
@@ -82,7 +85,8 @@ struct Ground {
   S stroke_stiffness{}, stroke_damping{}, stroke_depth_scaling{};  ///< k_h, b_h, beta_d
   S stroke_offset{};  ///< r_f/sin(gamma_c) - r_c - r_f/tan(gamma_c), m
   S inverse_tan_crater{};
-  S stiffness{}, damping{};               ///< k_s, b_s
+  S stiffness{}, damping{};  ///< k_s, b_s
+  S coupling{};  ///< sqrt(k_c), so that feet on patches with different k_c share an energy too
   S roughness{}, wave_number{}, phase{};  ///< m, rad/m, rad
 };
 

@@ -24,6 +24,7 @@ struct Terrain {
       start_x{};  ///< where patch i begins, m; ascending, that of patch 0 is ignored
   /// Upper bound of the surface's height, m: 0 without roughness.
   S highest{};
+  S coupled{};  ///< 1: feet on some patch share a pressure
 
   /// Index of the patch at x.
   S region_at(S x) const noexcept {
@@ -69,6 +70,7 @@ Terrain<To> convert_terrain(const Terrain<double>& from) noexcept {
   Terrain<To> to;
   to.count = To(from.count);
   to.highest = To(from.highest);
+  to.coupled = To(from.coupled);
   for (int i = 0; i < kMaxRegions; ++i) {
     const From values = std::bit_cast<From>(from.ground[i]);
     Values converted;

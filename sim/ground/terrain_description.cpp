@@ -64,6 +64,7 @@ void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) 
   p.crater_angle_rad = degrees * (std::numbers::pi / 180.0);
   number("stiffness_npm", p.stiffness_npm, 1.0, 1e6);
   number("damping_nspm", p.damping_nspm, 0.0, 2e3);
+  number("coupling_npm", p.coupling_npm, 0.0, 1e6);
   number("roughness_m", p.roughness_m, 0.0, 0.2);
   number("roughness_wavelength_m", p.roughness_wavelength_m, 0.05, 100.0);
   p.roughness_seed = static_cast<std::uint64_t>(c.integer(
@@ -164,6 +165,7 @@ Terrain<double> make_terrain(const TerrainDescription& description, const FootPr
   for (std::size_t i = 0; i < count; ++i) {
     terrain.ground[i] = derive_ground(description.patches[i].ground, foot, model.foot_radius_m);
     terrain.start_x[i] = description.patches[i].from_x_m;
+    if (terrain.ground[i].coupling > 0.0) terrain.coupled = 1.0;
     terrain.highest = std::fmax(terrain.highest, highest_of(terrain.ground[i].roughness));
   }
   return terrain;

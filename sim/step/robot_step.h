@@ -74,6 +74,7 @@ class RobotStepper {
                  PointContact<S>& c) noexcept;
   void add_feet(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
                 S dt, RobotState<S>& x, StepReport<S>& report) noexcept;
+  void couple_feet(const Terrain<S>& terrain, S dt, StepReport<S>& report) noexcept;
   void add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain, RobotState<S>& x,
                        StepReport<S>& report) noexcept;
   void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const Vec3<S>& r_base,
@@ -93,7 +94,8 @@ class RobotStepper {
   std::array<int, kNumJoints> stop_joints_{};
   int num_stops_ = 0;
   std::array<GranularForce<S>, kNumLegs> granular_;
-  Ground<S> mixed_ground_;  // of lanes that stand on different patches
+  std::array<S, kNumLegs> spring_, coupling_;  // N, before it is cut at zero; as in Ground
+  Ground<S> mixed_ground_;                     // of lanes that stand on different patches
 };
 
 }  // namespace sandrunner::sim

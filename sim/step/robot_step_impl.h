@@ -107,8 +107,9 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     const Mask<S> touching = penetration >= zero;
     const Mask<S> granular = ground.is_granular == one;
     const Mask<S> linear = ground.is_linear == one;
-    const S spring =
-        max(fma(ground.stiffness, penetration, ground.damping * penetration_rate), zero);
+    spring_[l] = fma(ground.stiffness, penetration, ground.damping * penetration_rate);
+    coupling_[l] = ground.coupling;
+    const S spring = max(spring_[l], zero);
     const S normal = select(granular, granular_[l].normal, select(linear, spring, zero));
     const S bound = select(granular, granular_[l].friction_bound,
                            select(linear, ground.friction * spring, zero));
@@ -128,6 +129,28 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     c.disc = bound * dt;
     c.impulse = {x.impulse[l][0], x.impulse[l][1], select(c.hard, x.impulse[l][2], normal * dt)};
     ++num_points_;
+  }
+  couple_feet(terrain, dt, report);
+}
+
+// Adds what a foot bears of the pressure that all feet on coupled ground make. The points are those
+// of the feet.
+template <typename S>
+void RobotStepper<S>::couple_feet(const Terrain<S>& terrain, S dt, StepReport<S>& report) noexcept {
+  const S zero = S(0.0);
+  if (!any(terrain.coupled > zero)) return;
+  S pressure = zero;
+  for (int l = 0; l < kNumLegs; ++l) {
+    pressure = fma(coupling_[l], max(report.penetration[l], zero), pressure);
+  }
+  for (int i = 0; i < num_points_; ++i) {
+    PointContact<S>& c = points_[i];
+    const int l = slots_[i];
+    const Mask<S> shares = both(c.active, coupling_[l] > zero);
+    const S normal = max(fma(coupling_[l], pressure, spring_[l]), zero);
+    report.raw_force[l] = select(shares, normal, report.raw_force[l]);
+    c.disc = select(shares, c.friction * normal * dt, c.disc);
+    c.impulse[2] = select(shares, normal * dt, c.impulse[2]);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/heading.h"
 #include "rt/core/messages.h"
@@ -17,6 +18,8 @@ constexpr int kBlock = static_cast<int>(sim::BatchWidth::kSixteen);
 constexpr double kStand_s = 0.5;      // as in sandrunner-evaluate
 constexpr double kStart = 0.1;        // rad, m/s and rad/s by which starts are disturbed; likewise
 constexpr double kYawLength_m = 0.5;  // a yaw rate as a speed
+// Of springs: damping ratio of a quarter of the robot, and friction as on dry sand.
+constexpr double kSpringDamping = 0.5, kSpringFriction = 0.8;
 
 // The training's task without what is drawn.
 TaskConfig without_randomness(TaskConfig c) {
@@ -82,7 +85,7 @@ std::deque<Battery::Ground> Battery::make_grounds(const BatterySettings& setting
                                                   const sim::Robot& robot) {
   const bool patchy = g.patchy_envs > 0;
   const bool hard = g.rigid_envs > 0 || (patchy && g.patch_rigid_share > 0.0);
-  const bool soil =
+  const bool yields =
       g.rigid_envs + g.patchy_envs < block_envs || (patchy && g.patch_rigid_share < 1.0);
   std::deque<Ground> grounds;
   const auto add = [&](const sim::TerrainDescription& terrain) {
@@ -91,21 +94,42 @@ std::deque<Battery::Ground> Battery::make_grounds(const BatterySettings& setting
         {terrain.name, sim::convert_terrain<float>(sim::make_terrain(terrain, foot, robot.model))});
   };
   if (hard) add(preset("rigid"));
-  if (!soil) return grounds;
+  if (!yields) return grounds;
+  if (g.yielding == sim::GroundKind::kLinear) {
+    for (const auto& [name, wanted_npm] :
+         {std::pair{"stiff-spring", 33e3}, std::pair{"spring", 10e3}, std::pair{"soft-spring", 4e3},
+          std::pair{"softest", settings.softest_spring_npm}}) {
+      sim::TerrainDescription spring = preset("athletic-track");
+      spring.name = name;
+      sim::GroundParameters& p = spring.patches.front().ground;
+      p.stiffness_npm = std::clamp(wanted_npm, g.spring_low, g.spring_high);
+      const double ratio =
+          std::clamp(kSpringDamping, g.spring_damping_ratio_low, g.spring_damping_ratio_high);
+      p.damping_nspm = spring_damping_nspm(p.stiffness_npm, ratio, robot.model.mass());
+      p.friction = kSpringFriction;
+      add(spring);
+    }
+    return grounds;
+  }
+  const double inertial = std::clamp(1.0, g.inertial_low, g.inertial_high);
+  const auto add_soil = [&](sim::TerrainDescription terrain) {
+    terrain.patches.front().ground.grain_density_kgpm3 *= inertial;
+    add(terrain);
+  };
   for (const char* name : {"wet-sand", "grass", "dry-sand"}) {
     const sim::TerrainDescription terrain = preset(name);
     const sim::GroundParameters& p = terrain.patches.front().ground;
     const bool within =
         p.sigma_flat_npm3 >= g.sigma_flat_low && p.sigma_flat_npm3 <= g.sigma_flat_high &&
         p.sigma_cone_npm3 >= g.sigma_cone_low && p.sigma_cone_npm3 <= g.sigma_cone_high;
-    if (within) add(terrain);
+    if (within) add_soil(terrain);
   }
   sim::TerrainDescription softest = preset("dry-sand");
   softest.name = "softest";
   sim::GroundParameters& p = softest.patches.front().ground;
   p.sigma_flat_npm3 = std::clamp(settings.softest_flat_npm3, g.sigma_flat_low, g.sigma_flat_high);
   p.sigma_cone_npm3 = std::clamp(settings.softest_cone_npm3, g.sigma_cone_low, g.sigma_cone_high);
-  add(softest);
+  add_soil(softest);
   return grounds;
 }
 

@@ -25,6 +25,7 @@ struct BatterySettings {
   std::array<double, kForwardSpeeds> forward_share{};  ///< of the largest commanded speed
   double softest_flat_npm3 = 0.0;                      ///< stiffness of the softest soil, ...
   double softest_cone_npm3 = 0.0;                      ///< ... limited to those of the training
+  double softest_spring_npm = 0.0;                     ///< of a training on springs; likewise
   double tracked_error = 0.0;    ///< most tracking error of a policy that tracks its commands
   double too_fast_weight = 0.0;  ///< in the score, in units of the cost of transport
   double drift_weight = 0.0;     ///< in the score, per m/s
@@ -55,9 +56,10 @@ double score_of(const BatteryFigures& figures, const BatterySettings& settings);
 
 /// A fixed set of runs by which a training judges its policy: from rest to steady running forward
 /// at several speeds, backwards, sideways and turning, without noise or pushes, on the hard ground
-/// and those soils that the training has. The runs are episodes of a Task of its own, so that the
-/// training's random draws stay as they are. Robots are the nominal one, with the training's
-/// delays. Same weights: same figures, bit for bit, for any number of threads.
+/// and those soils or springs that the training has. The runs are episodes of a Task of its own, so
+/// that the training's random draws stay as they are. Robots are the nominal one, with the
+/// training's delays; soils have the usual inertia, if the training has it. Same weights: same
+/// figures, bit for bit, for any number of threads.
 class Battery {
  public:
   /// `block_envs`: of the training, whose ground settings count environments of a block. `pool`

@@ -28,6 +28,7 @@ constexpr NumberSetting<B> kBattery[] = {
     {"duration_s", &B::duration_s, 1.0, 60.0},
     {"softest_flat_npm3", &B::softest_flat_npm3, 1.0, 1e10},
     {"softest_cone_npm3", &B::softest_cone_npm3, 1.0, 1e10},
+    {"softest_spring_npm", &B::softest_spring_npm, 1.0, 1e6},
     {"tracked_error", &B::tracked_error, 0.0, 100.0},
     {"too_fast_weight", &B::too_fast_weight, 0.0, 1e3},
     {"drift_weight", &B::drift_weight, 0.0, 1e3},
@@ -102,6 +103,21 @@ void read_gate(ConfigTree& config, const BatterySettings& battery, GateSettings&
   }
 }
 
+// Settings that have one value: another is refused, as nothing would come of it.
+void read_wiring(ConfigTree& config) {
+  const auto only = [&](const std::string& key, const char* value, const char* lacks) {
+    require_key(config, key);
+    if (const std::string found = config.text(key, value); found != value) {
+      throw InputError(
+          fmt::format("training config: {} = '{}', expected '{}': the trainer has no {} yet", key,
+                      found, value, lacks));
+    }
+  };
+  only("network.encoder", "lstm", "other encoder");
+  only("network.actor", "encoding, estimate", "actor with other inputs");
+  only("imitation.teacher", "", "imitation of a teacher");
+}
+
 // What one table asks of another.
 void check_blocks(const TrainConfig& c) {
   const int block_envs = c.learner.block_envs;
@@ -135,6 +151,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   c.window = read_integer(config, "learner.window", 1, 4096);
   c.learner = read_learner_config(config);
   c.task = read_task_config(config);
+  read_wiring(config);
   check_blocks(c);
   config.reject_unknown();
   c.effective = config.effective();

@@ -36,12 +36,14 @@ TEST_P(EveryPresetTest, RobotStandsUpStaysAndIsLetDown) {
   EXPECT_EQ(mode_of(end), Mode::kDamping);
   EXPECT_LT(end.position_m[2], 0.22);
   EXPECT_LT(std::fabs(end.position_m[2] - result.record.rows.end()[-11].position_m[2]), 0.005);
-  // The base as high over the feet as in the nominal pose, level and at rest.
+  // The base as high over the feet as in the nominal pose, level and at rest. It leans where feet
+  // sink in by centimetres.
+  const bool deep = GetParam() == "air-mattress" || GetParam() == "memory-foam";
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    EXPECT_NEAR(last.position_m[2] - last.foot_m[leg][2], 0.4725 - 0.0295, 0.02);
+    EXPECT_NEAR(last.position_m[2] - last.foot_m[leg][2], 0.4725 - 0.0295, deep ? 0.06 : 0.02);
   }
   const auto& [w, x, y, z] = last.orientation_wxyz;
-  EXPECT_GT(1.0f - 2.0f * (x * x + y * y), 0.995f);
+  EXPECT_GT(1.0f - 2.0f * (x * x + y * y), deep ? 0.99f : 0.995f);
   EXPECT_LT(std::hypot(last.motion[0], last.motion[1]), 0.08);  // it still sways
 }
 

@@ -50,6 +50,7 @@ GroundParameters random_ground(Draw& draw, Kind kind) {
   g.recruitment = draw(1.5, 2.5);
   g.stroke_stiffness_npm = draw(50.0, 2000.0);
   g.stiffness_npm = draw(5e3, 30e3);
+  if (kind == kSpring) g.coupling_npm = draw(0.0, 1.0) < 0.7 ? draw(100.0, 5e3) : 0.0;
   if (kind == kRoughRock) {
     g.roughness_m = draw(0.005, 0.03);
     g.roughness_seed = static_cast<std::uint64_t>(draw(1.0, 1e6));

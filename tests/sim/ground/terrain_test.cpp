@@ -64,6 +64,13 @@ TEST(TerrainTest, PresetsHaveTheirFigures) {
   EXPECT_EQ(sand.crater_radius_m, 0.05);
   EXPECT_EQ(preset("rigid").patches[0].ground.kind, GroundKind::kRigid);
   EXPECT_EQ(preset("rigid").patches[0].ground.friction, 0.8);
+  const GroundParameters mattress = preset("air-mattress").patches[0].ground;
+  EXPECT_EQ(mattress.kind, GroundKind::kLinear);
+  EXPECT_EQ(mattress.stiffness_npm, 750.0);
+  EXPECT_EQ(mattress.coupling_npm, 170.0);
+  EXPECT_EQ(mattress.damping_nspm, 60.0);
+  EXPECT_EQ(preset("memory-foam").patches[0].ground.stiffness_npm, 900.0);
+  EXPECT_EQ(preset("memory-foam").patches[0].ground.coupling_npm, 0.0);
   const TerrainDescription t = preset("dry-sand");
   EXPECT_EQ(t.foot_shape, FootShape::kTyre);
   EXPECT_EQ(t.hydraulic_factor, 0.0);  // 4 for a tyre

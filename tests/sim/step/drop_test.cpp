@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "sim/ground/granular.h"
 #include "tests/sim/support.h"
@@ -80,6 +81,33 @@ TEST(DropTest, DepthsAndPeakForcesMatchTheGoldenDrops) {
     const Drop d = drop(row);
     EXPECT_NEAR(1e3 * d.max_depth_m, row.at("max_depth_mm"), 0.01);
     EXPECT_NEAR(d.peak_force_n, row.at("peak_force_n"), 1e-3 * row.at("peak_force_n"));
+  }
+}
+
+TEST(DropTest, WithoutInertiaTheQuasistaticForceTakesAllOfTheFall) {
+  for (const auto& [flat, cone] :
+       {std::pair{1.0, 0.2}, std::pair{5.0, 0.4}, std::pair{10.0, 0.6}}) {
+    for (const double height_m : {0.0, 0.05, 0.2}) {
+      GroundParameters parameters;
+      parameters.sigma_flat_npm3 = 1e6 * flat;
+      parameters.sigma_cone_npm3 = 1e6 * cone;
+      const FootProfile<double> foot =
+          fit_foot_profile(FootShape::kTyre, kFootRadius_m, 0.025, 4.0);
+      const Ground<double> ground = derive_ground(parameters, foot, kFootRadius_m);
+      double depth_m = 0.0, work_j = 0.0;
+      do {
+        double p0, p1;
+        foot.integrals(depth_m + 0.5e-6, p0, p1);
+        work_j +=
+            1e-6 * quasistatic_force(ground, cone_integrals(ground, depth_m + 0.5e-6, p0, p1));
+        depth_m += 1e-6;
+      } while (work_j < kMass_kg * kGravity_mps2 * (height_m + depth_m));
+      DropSettings settings{flat, cone, kFootRadius_m + height_m, true, false, 0.05e-3};
+      EXPECT_NEAR(drop(settings).max_depth_m, depth_m, 0.005 * depth_m) << flat << " " << height_m;
+      if (height_m == 0.0) continue;
+      settings.quasistatic = false;  // with inertia it takes less depth
+      EXPECT_LT(drop(settings).max_depth_m, 0.99 * depth_m);
+    }
   }
 }
 

@@ -96,6 +96,22 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     p.roughness_m = uneven ? curriculum_.ground * uniform(env, e, 0.0, g.roughness_m) : 0.0;
     p.roughness_wavelength_m = g.roughness_wavelength_m;
     p.roughness_seed = static_cast<std::uint64_t>(env) * 131 + e.draws;
+  } else if (g.yielding == sim::GroundKind::kLinear) {
+    const double low = log_between(g.spring_low_start, g.spring_low, curriculum_.ground, 1.0);
+    p.kind = sim::GroundKind::kLinear;
+    p.stiffness_npm = log_between(low, g.spring_high, uniform(env, e), g.softness_exponent);
+    if (is_patchy(env) && uniform(env, e) < g.patch_loose_share) {
+      p.stiffness_npm /= uniform(env, e, 1.0, g.patch_loose_factor);
+    }
+    const double ratio = uniform(env, e, g.spring_damping_ratio_low, g.spring_damping_ratio_high);
+    p.damping_nspm = spring_damping_nspm(p.stiffness_npm, ratio, robot_.model.mass());
+    features = {0.0f,
+                static_cast<float>(std::log10(p.stiffness_npm / 10e3)),
+                static_cast<float>(4.0 * (ratio - 0.55)),
+                static_cast<float>(3.0 * (p.friction - 0.75)),
+                0.0f,
+                0.0f};
+    return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
   } else {
     const double open = curriculum_.ground;
     const double flat_low = log_between(g.sigma_flat_low_start, g.sigma_flat_low, open, 1.0);
@@ -113,8 +129,8 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     p.cone_angle_rad += uniform(env, e, -1.0, 1.0) * g.cone_angle_spread_deg * kDegree_rad;
     inertial = uniform(env, e, g.inertial_low, g.inertial_high);
     p.grain_density_kgpm3 *= inertial;
-    p.stroke_stiffness_npm = uniform(env, e, 50.0, std::fmax(50.0, g.stroke_stiffness_high));
-    p.stroke_damping_nspm = uniform(env, e, 0.0, g.stroke_damping_high);
+    p.stroke_stiffness_npm = uniform(env, e, g.stroke_stiffness_low, g.stroke_stiffness_high);
+    p.stroke_damping_nspm = uniform(env, e, g.stroke_damping_low, g.stroke_damping_high);
   }
   features = {rigid ? 1.0f : 0.0f,
               rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),

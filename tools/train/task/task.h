@@ -121,7 +121,7 @@ class Task {
   double uniform(int env, Env& e, double low, double high) const;
   double normal(int env, Env& e) const;
   bool is_rigid(int env) const { return env % block_envs_ < config_.ground.rigid_envs; }
-  /// The kind of ground by which the curricula go: soil, if there is any.
+  /// The kind of ground by which the curricula go: that which yields, if there is any.
   int decisive_kind() const { return config_.ground.rigid_envs < block_envs_ ? 1 : 0; }
   bool is_patchy(int env) const {
     return env % block_envs_ >= block_envs_ - config_.ground.patchy_envs;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "rt/core/messages.h"
+#include "sim/ground/terrain_description.h"
 #include "tools/train/task/settings.h"
 
 namespace sandrunner::train {
@@ -86,8 +87,15 @@ constexpr NumberSetting<G> kGround[] = {
     {"cone_angle_spread_deg", &G::cone_angle_spread_deg, 0.0, 20.0},
     {"inertial_low", &G::inertial_low, 0.0, kNoLimit},
     {"inertial_high", &G::inertial_high, 0.0, kNoLimit},
+    {"stroke_stiffness_low", &G::stroke_stiffness_low, 0.0, kNoLimit},
     {"stroke_stiffness_high", &G::stroke_stiffness_high, 0.0, kNoLimit},
+    {"stroke_damping_low", &G::stroke_damping_low, 0.0, kNoLimit},
     {"stroke_damping_high", &G::stroke_damping_high, 0.0, kNoLimit},
+    {"spring_low_start", &G::spring_low_start, 1.0, 1e6},
+    {"spring_low", &G::spring_low, 1.0, 1e6},
+    {"spring_high", &G::spring_high, 1.0, 1e6},
+    {"spring_damping_ratio_low", &G::spring_damping_ratio_low, 0.0, 10.0},
+    {"spring_damping_ratio_high", &G::spring_damping_ratio_high, 0.0, 10.0},
 };
 
 using R = RobotSettings;
@@ -134,6 +142,19 @@ GroundSettings read_ground_settings(ConfigTree& config) {
                 g.patch_length_high_m);
   require_order("ground.friction_low", g.friction_low, "ground.friction_high", g.friction_high);
   require_order("ground.inertial_low", g.inertial_low, "ground.inertial_high", g.inertial_high);
+  require_order("ground.stroke_stiffness_low", g.stroke_stiffness_low,
+                "ground.stroke_stiffness_high", g.stroke_stiffness_high);
+  require_order("ground.stroke_damping_low", g.stroke_damping_low, "ground.stroke_damping_high",
+                g.stroke_damping_high);
+  require_key(config, "ground.yielding");
+  const std::string granular = sim::kind_name(sim::GroundKind::kGranular);
+  const std::string linear = sim::kind_name(sim::GroundKind::kLinear);
+  const bool springs = config.choice("ground.yielding", granular, {granular, linear}) == linear;
+  g.yielding = springs ? sim::GroundKind::kLinear : sim::GroundKind::kGranular;
+  require_order("ground.spring_low", g.spring_low, "ground.spring_low_start", g.spring_low_start);
+  require_order("ground.spring_low_start", g.spring_low_start, "ground.spring_high", g.spring_high);
+  require_order("ground.spring_damping_ratio_low", g.spring_damping_ratio_low,
+                "ground.spring_damping_ratio_high", g.spring_damping_ratio_high);
   return g;
 }
 

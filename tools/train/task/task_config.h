@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "rt/base/config_tree.h"
+#include "rt/core/messages.h"
+#include "sim/ground/ground.h"
 #include "tools/train/task/reward.h"
 
 namespace sandrunner::train {
@@ -91,9 +94,24 @@ struct GroundSettings {
   double cone_angle_spread_deg = 0;  ///< largest deviation from the usual angle
   double inertial_low = 0;           ///< least factor of added mass and drag
   double inertial_high = 0;          ///< largest factor of added mass and drag
+  double stroke_stiffness_low = 0;   ///< least, N/m
   double stroke_stiffness_high = 0;  ///< largest, N/m
+  double stroke_damping_low = 0;     ///< least, N s/m
   double stroke_damping_high = 0;    ///< largest, N s/m
+  /// Of ground that yields: soil, or springs (kLinear).
+  sim::GroundKind yielding = sim::GroundKind::kGranular;
+  double spring_low_start = 0;           ///< softest at the start of the training, N/m
+  double spring_low = 0;                 ///< softest at its end, N/m
+  double spring_high = 0;                ///< stiffest, N/m
+  double spring_damping_ratio_low = 0;   ///< least, of a spring under a quarter of the robot's mass
+  double spring_damping_ratio_high = 0;  ///< largest
 };
+
+/// Damping of a spring under a foot, N s/m; the ratio is that of a quarter of the robot's mass on
+/// it.
+inline double spring_damping_nspm(double stiffness_npm, double ratio, double robot_mass_kg) {
+  return 2.0 * ratio * std::sqrt(stiffness_npm * robot_mass_kg / kNumLegs);
+}
 
 /// How robots differ from the one in the robot's file.
 struct RobotSettings {

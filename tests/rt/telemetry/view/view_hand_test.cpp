@@ -230,7 +230,7 @@ TEST_F(HandTest, WhatSetRefusesIsRefusedInTheSameLine) {
             "stiffness_npm, friction, drag, packing");
   EXPECT_EQ(say(R"({"say":"terrain","preset":"/etc/passwd","set":{}})"),
             "terrain: '/etc/passwd', expected one of dry-sand, wet-sand, grass, athletic-track, "
-            "vinyl, rigid");
+            "vinyl, rigid, air-mattress, memory-foam");
   EXPECT_EQ(hand->ground().wanted.set.size(), 0u);
 }
 

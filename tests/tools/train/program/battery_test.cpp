@@ -65,6 +65,12 @@ TEST(BatteryTest, GroundsAreThoseOfTheTraining) {
             (std::vector<std::string>{"wet-sand", "grass", "softest"}));
 }
 
+TEST(BatteryTest, GroundsOfATrainingOnSpringsAreSprings) {
+  EXPECT_EQ(
+      Judge({"ground.yielding=linear"}).battery.grounds(),
+      (std::vector<std::string>{"rigid", "stiff-spring", "spring", "soft-spring", "softest"}));
+}
+
 TEST(BatteryTest, FiguresAreTheSameForAnyNumberOfThreadsAndEachTime) {
   Judge one(kBrief, 1), two(kBrief, 2);
   const BatteryFigures first = one.figures(1);

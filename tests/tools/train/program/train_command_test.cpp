@@ -161,6 +161,12 @@ TEST_F(TrainCommandTest, HardGroundAloneCanBeTrainedOn) {
             0);
 }
 
+TEST_F(TrainCommandTest, SettingsThatHaveOneValueRefuseAnother) {
+  expect_refused("a", {"--set", "network.encoder=tcn"}, "network.encoder = 'tcn', expected 'lstm'");
+  expect_refused("a", {"--set", "network.actor=encoding"}, "network.actor = 'encoding'");
+  expect_refused("a", {"--set", "imitation.teacher=teacher.safetensors"}, "imitation.teacher");
+}
+
 TEST_F(TrainCommandTest, WeightsDoNotDependOnTheNumberOfThreads) {
   const std::vector<std::string> two_blocks = {"--set", "run.envs=128"};
   auto with = [&](const char* threads) {

@@ -1,0 +1,45 @@
+#!/bin/sh
+# train.sh DIR SEED [NAME ...]: trains the controllers of trainings/ (all of them without a name) with
+# this seed in DIR/NAME-SEED. It continues a training that was interrupted. Of one that is complete it
+# puts the best policy and a short learning curve into DIR: NAME-SEED.safetensors, NAME-SEED.csv.
+# TRANSITIONS: length of each training, the same for all controllers that are compared.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+program=${SANDRUNNER_TRAIN:-$here/../../build/release/bin/sandrunner-train}
+transitions=${TRANSITIONS:-60e6}
+if [ $# -lt 2 ]; then
+  echo "train.sh: found $# arguments, expected DIR SEED [NAME ...]" >&2
+  exit 2
+fi
+out=$1 seed=$2
+shift 2
+[ $# -gt 0 ] || set -- ours env-rigid env-linear env-quasistatic
+for name in "$@"; do
+  if [ ! -f "$here/trainings/$name.toml" ]; then
+    echo "train.sh: found '$name', expected one of" "$(cd "$here/trainings" && echo *.toml)" >&2
+    exit 2
+  fi
+done
+mkdir -p "$out"
+for name in "$@"; do
+  run=$out/$name-$seed
+  resume=
+  [ ! -f "$run/checkpoint.bin" ] || resume=--resume
+  "$program" --config "$here/trainings/$name.toml" --set run.transitions="$transitions" \
+    --seed "$seed" --out "$run" $resume
+  if ! awk -F, -v all="$transitions" 'END { exit !($2 + 0 >= all + 0) }' "$run/curve.csv"; then
+    echo "train.sh: $run is not complete: run the same command again" >&2
+    exit 1
+  fi
+  cp "$run/best.safetensors" "$run.safetensors"
+  # Every twentieth row and the last one.
+  awk -F, -v names="transitions core_hours reward battery_alive battery_error \
+battery_cost_of_transport command_speed_mps ground_open" '
+    function print_row(fields) {
+      for (i = 1; i <= wanted; ++i) printf "%s%s", fields[column[name[i]]], i < wanted ? "," : "\n"
+    }
+    NR == 1 { wanted = split(names, name, " "); for (i = 1; i <= NF; ++i) column[$i] = i }
+    { count = split($0, last, ",") }
+    NR == 1 || NR % 20 == 2 { print_row(last); printed = NR }
+    END { if (printed != NR) print_row(last) }' "$run/curve.csv" > "$run.csv"
+done
