@@ -34,11 +34,7 @@ class PenaltyGate {
   double unsettled() const;
 
   void save(learner::Checkpoint& checkpoint) const { checkpoint.put("gate", &state_, 1); }
-  /// Of a training that is longer than the checkpoint's: settling may be still to come again.
-  void load(const learner::Checkpoint& checkpoint) {
-    checkpoint.get("gate", &state_, 1);
-    if (unsettled() >= 1.0) state_.most = 1.0;
-  }
+  void load(const learner::Checkpoint& checkpoint) { checkpoint.get("gate", &state_, 1); }
 
  private:
   struct State {
