@@ -229,8 +229,8 @@ TEST_F(HandTest, WhatSetRefusesIsRefusedInTheSameLine) {
             "terrain: 'roughness_m', expected one of sigma_flat_npm3, sigma_cone_npm3, "
             "stiffness_npm, friction, drag, packing");
   EXPECT_EQ(say(R"({"say":"terrain","preset":"/etc/passwd","set":{}})"),
-            "terrain: '/etc/passwd', expected one of dry-sand, wet-sand, grass, athletic-track, "
-            "vinyl, rigid, air-mattress, memory-foam");
+            "terrain: '/etc/passwd', expected one of air-mattress, athletic-track, dry-sand, "
+            "grass, memory-foam, rigid, vinyl, wet-sand");
   EXPECT_EQ(hand->ground().wanted.set.size(), 0u);
 }
 
