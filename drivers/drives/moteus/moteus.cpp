@@ -84,8 +84,8 @@ constexpr RegisterOf<MoteusRequest> kRequestRegisters[] = {
 };
 
 /// The row of a table; null: it has no such register.
-template <typename Values, std::size_t size>
-const RegisterOf<Values>* find(const RegisterOf<Values> (&table)[size],
+template <typename Values, std::size_t kSize>
+const RegisterOf<Values>* find(const RegisterOf<Values> (&table)[kSize],
                                MoteusRegister reg) noexcept {
   const auto* const row =
       std::find_if(std::begin(table), std::end(table), [&](const auto& r) { return r.reg == reg; });
@@ -93,8 +93,8 @@ const RegisterOf<Values>* find(const RegisterOf<Values> (&table)[size],
 }
 
 /// Takes a register that was read or written, if the table has it.
-template <typename Values, std::size_t size>
-void take(const RegisterOf<Values> (&table)[size], const MoteusItem& item,
+template <typename Values, std::size_t kSize>
+void take(const RegisterOf<Values> (&table)[kSize], const MoteusItem& item,
           Values& values) noexcept {
   const RegisterOf<Values>* const row = find(table, item.reg);
   if (row != nullptr) values.*row->member = item.value * row->factor;

@@ -62,7 +62,7 @@ class BrokenRobotTest : public EveryModeTest {
   using F = SensorFrame&;
   using G = const SensorFrame&;
   using N = std::uint64_t;
-  static auto spoil(std::function<void(F, G, N)> how) {
+  static auto spoil(const std::function<void(F, G, N)>& how) {
     return [how](DisturbedLoop& loop) { loop.robot.spoil = how; };
   }
 };
