@@ -124,8 +124,10 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kEncoderJump, "encoder_jump",
      "a joint's position changed by more than its speed explains", "drives", kMoving, "1 tick"},
     {Fault::kEncoderFrozen, "encoder_frozen",
-     "a joint's values stay the same while its speed, its target or the body moves", "drives",
-     kDriven, "0.005 rad by its speed, 0.2 rad by its target and 50 ms, 0.1 rad by the gyroscope"},
+     "a joint's values stay the same while its speed or its target moves, or all do while the body "
+     "moves",
+     "drives", kDriven,
+     "0.005 rad by its speed, 0.2 rad by its target and 50 ms, 0.1 rad by the gyroscope"},
     {Fault::kPolicyFrozen, "policy_frozen", "the policy gives the same targets to the bit",
      "policy", kWalkOnly, "0.2 s"},
     {Fault::kOverload, "overload", "a drive gives more torque than it can for long (I2t)", "drives",
@@ -157,8 +159,8 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "pose: verify its zero with `sandrunner check`",
      "drives", mode_set(Mode::kDamping), "the tick of `arm`"},
     {Fault::kForeignTraffic, "foreign_traffic",
-     "somebody else commands a drive, or it answers more often than it is asked", "drives", kAlways,
-     "2 frames in 10 ms"},
+     "another program commands a drive, or a drive answers more often than it is asked", "drives",
+     kAlways, "2 frames in 10 ms"},
 }};
 
 /// After these the values of the joints that they are about are not to be trusted.

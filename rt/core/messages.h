@@ -87,8 +87,8 @@ struct SensorFrame {
   ImuSample imu;
   std::uint64_t emergency_stop = 0;  ///< 1: somebody presses it
   std::uint64_t drives_cut = 0;      ///< 1: RobotIo::cut_drives was called
-  /// Joints whose drive somebody else commands, or which answers more often than it is asked: bit j
-  /// for joint j.
+  /// Joints whose drive another program commands, or which answers more often than it is asked: bit
+  /// j for joint j.
   std::uint64_t foreign_traffic = 0;
 };
 
