@@ -183,13 +183,14 @@ TEST(RunTest, InterruptLiesDownAndIsNoFall) {
     Policy policy = random_policy();
     const ProcessConfig config =
         config_of("rigid", {"controller.walk.kp_nmprad=100"}, &policy.spec());
-    const RunResult result = simulate(
-        {.config = config,
-         .policy = &policy,
-         .command = "0,0,0",
-         .plan = {.walk_s = 100.0},
-         .interrupts = &interrupt,
-         .row_tap = [&](const RunRow& row, auto) { interrupt = interrupt || row.t_s >= when_s; }});
+    const RunResult result = simulate({.config = config,
+                                       .policy = &policy,
+                                       .command = "0,0,0",
+                                       .plan = {.walk_s = 100.0},
+                                       .interrupts = &interrupt,
+                                       .row_tap = [&, at_s = when_s](const RunRow& row, auto) {
+                                         interrupt = interrupt || row.t_s >= at_s;
+                                       }});
     EXPECT_TRUE(result.interrupted);
     EXPECT_TRUE(result.survived) << "interrupted after " << when_s << " s: " << result.fall_reason;
     EXPECT_GE(result.end.time_s, when_s + earliest_s - 0.001);
