@@ -27,8 +27,8 @@ struct CheckTask {
 
 /// Does it: prints the report to standard output, and what a person is asked to standard error.
 /// Returns the exit code: 0, or kExitFailed if something is wrong. Throws InputError: zeros
-/// that cannot be, a file that cannot be written, nobody who answers, a nudge of a robot that does
-/// not hang.
+/// that cannot be, a file that cannot be written, no drive that answers, a nudge of a robot that
+/// does not hang.
 int run_check(const CheckTask& task);
 
 }  // namespace sandrunner

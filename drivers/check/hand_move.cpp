@@ -92,11 +92,7 @@ HandMove judge_move(const JointTrace& trace, int joint) {
 
 std::string move_words(const HandMove& move, int joint, const HardwareConfig& config,
                        const RobotDescription& robot) {
-  const auto name_of = [&](int j) {
-    const DriveConfig& drive = config.drives[j];
-    return fmt::format("{} ({} id {})", robot.joint_names[j], config.buses[drive.bus].interface,
-                       drive.id());
-  };
+  const auto name_of = [&](int j) { return drive_name(config, robot, j); };
   const std::string name = name_of(joint);
   switch (move.verdict) {
     case HandMove::Verdict::kGood:

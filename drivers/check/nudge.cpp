@@ -179,11 +179,7 @@ Nudge nudge(int joint, double torque_nm, const JointArray<bool>& damped,
 
 std::string nudge_words(const Nudge& n, int joint, const HardwareConfig& config,
                         const RobotDescription& robot) {
-  const auto name_of = [&](int j) {
-    const DriveConfig& drive = config.drives[j];
-    return fmt::format("{} ({} id {})", robot.joint_names[j], config.buses[drive.bus].interface,
-                       drive.id());
-  };
+  const auto name_of = [&](int j) { return drive_name(config, robot, j); };
   const std::string name = name_of(joint);
   switch (n.verdict) {
     case Verdict::kGood:

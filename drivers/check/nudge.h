@@ -23,7 +23,7 @@ struct NudgeState {
   bool stop = false;        ///< a person wants an end
 };
 
-/// What the drives are sent in one exchange; one without a set-point is told to be off.
+/// What the drives get in one exchange; a drive without a set-point gets an off frame.
 using NudgePoints = JointArray<std::optional<JointSetPoint>>;
 /// Makes one exchange, every few milliseconds.
 using NudgeExchange = std::function<NudgeState(const NudgePoints&)>;

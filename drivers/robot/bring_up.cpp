@@ -90,12 +90,10 @@ std::vector<std::string> drive_problems(const HardwareConfig& config, const Robo
                                         const JointArray<FoundDrive>& found) {
   std::vector<std::string> problems;
   for (int j = 0; j < kNumJoints; ++j) {
-    const DriveConfig& drive = config.drives[j];
-    if (!sockets[drive.bus]) continue;
+    if (!sockets[config.drives[j].bus]) continue;
     const std::string problem = problem_of(config, gate, sockets, found[j], j);
     if (problem.empty()) continue;
-    problems.push_back(fmt::format("{} ({} id {}): {}", robot.joint_names[j],
-                                   config.buses[drive.bus].interface, drive.id(), problem));
+    problems.push_back(fmt::format("{}: {}", drive_name(config, robot, j), problem));
   }
   return problems;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether anybody else talks to the drives, before the first frame is sent.
+// Whether another program talks to the drives, before the first frame is sent.
 #pragma once
 
 #include <memory>

@@ -82,7 +82,7 @@ class CanRobot final : public RobotIo {
 
   HardwareConfig config_;
   std::unique_ptr<EmergencyStop> emergency_stop_;  // null: there is none
-  CanSockets sockets_;  // before the IMU: where another program runs the drives, that is said
+  CanSockets sockets_;  // before the IMU: another program that runs the drives is reported first
   ImuThread imu_;
   std::vector<BusCounters> counters_;
   JointArray<Drive> drives_;

@@ -309,4 +309,10 @@ std::vector<std::string> unguarded(const HardwareConfig& config) {
   return lines;
 }
 
+std::string drive_name(const HardwareConfig& hardware, const RobotDescription& robot, int joint) {
+  const DriveConfig& drive = hardware.drives[joint];
+  return fmt::format("{} ({} id {})", robot.joint_names[joint], hardware.buses[drive.bus].interface,
+                     drive.id());
+}
+
 }  // namespace sandrunner

@@ -92,4 +92,7 @@ void fit_drives_to(const GateConfig& gate, HardwareConfig& hardware);
 /// the supply.
 std::vector<std::string> unguarded(const HardwareConfig& config);
 
+/// "LF_HAA (can0 id 1)": the drive of a joint, as messages call it.
+std::string drive_name(const HardwareConfig& hardware, const RobotDescription& robot, int joint);
+
 }  // namespace sandrunner

@@ -36,7 +36,6 @@ class FaultyRobot final : public RobotIo {
   }
   void write(const SafeCommand& command) noexcept override {
     last = command;
-    if (weak) return simulator_.write(sim::pass_gate(JointCommand{}));
     simulator_.write(as_driven(command));
   }
   void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
@@ -49,8 +48,7 @@ class FaultyRobot final : public RobotIo {
   /// What happens to each frame; `good` is the last one before, `n` counts from 0.
   std::function<void(SensorFrame& frame, const SensorFrame& good, std::uint64_t n)> spoil;
   SafeCommand last;
-  bool weak = false;           ///< the drives give no torque
-  std::uint64_t limp = 0;      ///< nor do these, bit j for joint j
+  std::uint64_t limp = 0;      ///< these drives give no torque, bit j for joint j
   std::uint64_t inverted = 0;  ///< these give it in the wrong direction
 
  private:
