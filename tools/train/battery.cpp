@@ -237,7 +237,8 @@ BatteryFigures Battery::figures() const {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Mean alive, error, cost, too_fast, drift, yaw_drift;
   std::array<Mean, kForwardSpeeds> alive_at, cost_at;
-  const double steady = steps_ - (steps_ + 1) / 2;
+  const int steady_from = (steps_ + 1) / 2;
+  const double steady = steps_ - steady_from;
   const double weight_n = robot_.model.mass() * kGravity_mps2;
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const Sums& s = sums_[i];

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -48,7 +50,8 @@ struct Judge {
 };
 
 bool same_bits(const BatteryFigures& a, const BatteryFigures& b) {
-  return std::memcmp(&a, &b, sizeof(a)) == 0;
+  using Words = std::array<std::uint64_t, sizeof(BatteryFigures) / sizeof(std::uint64_t)>;
+  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
 
 TEST(BatteryTest, GroundsAreThoseOfTheTraining) {
