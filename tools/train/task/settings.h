@@ -18,6 +18,10 @@ inline void require_key(const ConfigTree& config, const std::string& key) {
   if (!config.has(key)) throw InputError(fmt::format("training config: '{}' is missing", key));
 }
 
+/// A row whose member is a number.
+template <typename Settings>
+using NumberSetting = Setting<Settings>;
+
 /// Reads all rows of `numbers` from the table `table`. Throws InputError for a number that is
 /// missing or out of its range.
 template <typename Settings, std::size_t kRows>
@@ -26,7 +30,7 @@ void read_numbers(ConfigTree& config, const std::string& table,
   for (const NumberSetting<Settings>& number : numbers) {
     const std::string key = table + "." + number.key;
     require_key(config, key);
-    settings.*number.member = config.number(key, 0.0, number.min, number.max);
+    read_setting(config, key, number, settings);
   }
 }
 
