@@ -7,10 +7,15 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "rt/core/messages.h"
 #include "rt/core/robot_description.h"
 #include "sim/lanes/vec.h"
+
+namespace sandrunner {
+struct SettingLine;  // rt/base/settings.h
+}
 
 namespace sandrunner::sim {
 
@@ -100,6 +105,9 @@ Robot load_robot(const std::string& map_path);
 /// As load_robot, from texts; `map_name` and `urdf_name` appear in errors.
 Robot parse_robot(const std::string& map_text, const std::string& map_name,
                   const std::string& urdf_text, const std::string& urdf_name);
+
+/// The keys of a robot's file, for the reference.
+std::vector<SettingLine> robot_file_settings();
 
 /// The same figures in another scalar (one robot in float, or all lanes alike).
 template <typename To>
