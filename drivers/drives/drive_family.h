@@ -17,6 +17,7 @@
 
 #include "drivers/can/can_frame.h"
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 
 namespace sandrunner {
 
@@ -84,7 +85,7 @@ struct DriveQuestion {
 template <typename Drive>
 concept DriveFamily = std::is_trivially_copyable_v<Drive> &&
     requires(const Drive& drive, Drive& changed, const CanFrame& received, CanFrame& frame,
-             DriveState& state, ConfigTree& table) {
+             DriveState& state, ConfigTree& table, std::vector<SettingLine>& lines) {
   /// The value of hardware.bus.protocol.
   { Drive::kProtocol } -> std::convertible_to<const char*>;
 
@@ -94,6 +95,8 @@ concept DriveFamily = std::is_trivially_copyable_v<Drive> &&
   set_address(changed, int{}, CanFormat{});
   /// Reads the family's own keys of a table [[hardware.drive]]; the text names the drive in errors.
   read_drive(changed, table, std::string{});
+  /// Lists these keys for the reference, as keys of the table that the text names.
+  list_drive_settings(drive, lines, std::string{});
   { drive_id(drive) } -> std::same_as<int>;
   /// The identifier of its replies, where that is a setting.
   { reply_id(drive) } -> std::same_as<std::optional<std::uint32_t>>;

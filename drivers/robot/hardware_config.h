@@ -11,6 +11,7 @@
 #include "drivers/robot/drive_families.h"
 #include "drivers/robot/emergency_stop.h"
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 #include "rt/core/gate_config.h"
 #include "rt/core/messages.h"
 #include "rt/core/robot_description.h"
@@ -69,13 +70,14 @@ struct HardwareConfig {
 };
 
 /// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu],
-/// [hardware.emergency_stop]. Drives are
-/// named by the joints of `robot`, each exactly once. Throws InputError: a joint without a drive or
-/// with two, two drives of one identifier, an unknown protocol or model, a rate that does not
-/// divide the control rate, a drive whose range is below what `gate` lets through (torque, speed,
-/// positions, gains).
+/// [hardware.emergency_stop]. Drives are named by the joints of `robot`, each exactly once. Throws
+/// InputError: a joint without a drive or with two, two drives of one identifier, an unknown
+/// protocol or model, a rate that does not divide the control rate, a drive whose range is below
+/// what `gate` lets through (torque, speed, positions, gains).
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
+/// The keys of these tables, for the reference.
+std::vector<SettingLine> hardware_settings();
 
 /// What hardware changes of the gate's thresholds: ages follow the rate of the exchange, the speed
 /// fault is one that can be told, torque limits are scaled by `torque_scale`, and whether the robot
