@@ -37,6 +37,7 @@
 #include "rt/run/run.h"
 #include "rt/run/run_files.h"
 #include "rt/run/scene.h"
+#include "rt/run/settings_reference.h"
 #include "rt/run/signals.h"
 #include "rt/run/simulator_hand.h"
 #include "rt/telemetry/view/view_feed.h"
@@ -231,6 +232,10 @@ std::string dry_run(const ProcessConfig& config) {
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
+  if (options->settings) {
+    fmt::print("{}", settings_reference());
+    return kExitOk;
+  }
   if (options->rt_report) {
     print_rt_report();
     return kExitOk;

@@ -116,6 +116,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false)
       ->always_capture_default(false);
+  app.add_flag("--settings", o.settings,
+               "prints every setting with its default, unit, range and meaning");
   app.add_option("--out", o.out_dir,
                  "folder for summary.json, config.toml, run.csv, run.html, run.png, strip.png")
       ->type_name("DIR");
