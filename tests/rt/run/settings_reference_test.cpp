@@ -14,7 +14,8 @@ namespace {
 
 /// Whether a line of the reference begins with this key.
 bool lists(const std::string& key) {
-  return settings_reference().find("\n| " + key + " ") != std::string::npos;
+  static const std::string kReference = settings_reference();
+  return kReference.find("\n| " + key + " ") != std::string::npos;
 }
 
 class SettingsReferenceTest : public ProgramTest {
