@@ -77,9 +77,9 @@ class Task {
   }
   const sim::Batch& batch() const { return batch_; }
 
-  /// Means over the window just done; clears its sums and advances the curricula and the ramp of
-  /// the costs. `transitions`: since the start of the training; `late`: share of the late penalties
-  /// from now on, 0 to 1.
+  /// Means over the window just done; clears its sums and advances the curricula and the
+  /// schedule of the reward. `transitions`: since the start of the training; `late`: share of the
+  /// late penalties from now on, 0 to 1.
   WindowStats end_window(double transitions, double late);
   const Curriculum& curriculum() const { return curriculum_; }
   CommandRange command_range() const;
@@ -161,7 +161,7 @@ class Task {
   std::vector<Env> envs_;
   std::vector<WindowSums> sums_;  // one a block
   Curriculum curriculum_;
-  CostRamp cost_ramp_;
+  RewardSchedule schedule_;
   double tilt_end_cos_;
 };
 
