@@ -38,6 +38,12 @@ std::string robot_settings(const sim::Robot& robot) {
   set("speed_step_mps", 0.02 * speed);  // each update that passes the gate; recipe
   set("backward_mps", speed);           // recipe; the next too
   set("lateral_mps", 0.5 * speed);
+  toml += "[noise]\n";
+  const sim::ObservationNoise noise;
+  set("gravity", noise.gravity);
+  set("angular_velocity_radps", noise.angular_velocity_radps);
+  set("joint_position_rad", noise.joint_position_rad);
+  set("joint_velocity_radps", noise.joint_velocity_radps);
   toml += "[penalty]\n";
   set("energy.torque_weight",
       1.0e-3 / std::pow(weight * length, 2));  // per N^2 m^2: copper losses; recipe

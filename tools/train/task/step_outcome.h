@@ -9,10 +9,6 @@
 
 namespace sandrunner::train {
 
-/// A foot is loaded when it carried more than this in the last two policy steps: on sand the normal
-/// force comes in pulses.
-inline constexpr float kLoaded_n = 3.0f;
-
 /// What a policy step (10 ms) is judged by. Velocities are those of the base origin in the heading
 /// frame.
 struct StepOutcome {

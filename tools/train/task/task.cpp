@@ -115,7 +115,7 @@ StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
   for (int l = 0; l < kNumLegs; ++l) {
     const bool was_loaded = e.unloaded_steps[l] < kUnloadedSteps;
     e.unloaded_steps[l] =
-        sums.foot_load[l] * kPerTick > kLoaded_n ? 0 : std::min(e.unloaded_steps[l] + 1, 1000);
+        sums.foot_load[l] * kPerTick > sim::kLoaded_n ? 0 : std::min(e.unloaded_steps[l] + 1, 1000);
     s.contact[l] = e.unloaded_steps[l] < kUnloadedSteps;
     e.air_s[l] = s.contact[l] ? 0.0f : e.air_s[l] + kStep_s;
     e.stance_s[l] = s.contact[l] ? e.stance_s[l] + kStep_s : 0.0f;

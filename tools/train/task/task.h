@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "sim/batch/batch.h"
+#include "sim/batch/disturbances.h"
+#include "sim/batch/sensors.h"
 #include "tools/train/data/checkpoint.h"
 #include "tools/train/data/rollout.h"
 #include "tools/train/data/symmetry.h"
@@ -104,9 +106,10 @@ class Task {
     std::int32_t stand_steps_left = 0;         // before it does
     std::int32_t step = 0, command_steps_left = 0;
     JointArray<float> action{}, action_1{}, action_2{};  // the latest, and those before it
-    JointArray<float> joint_offset{};
+    sim::SensorErrors sensors;
     std::array<float, kNumLegs> air_s{}, stance_s{}, since_touchdown_s{};
-    std::array<std::int32_t, kNumLegs> unloaded_steps{}, was_active{};
+    std::array<std::int32_t, kNumLegs> unloaded_steps{};
+    sim::TouchdownWatch touchdowns;
     std::array<float, 3> drift{};  // vx, vy, yaw rate, low-passed
     float noise_level = 1.0f;
     // For the critic: of each patch of ground, and of the robot.

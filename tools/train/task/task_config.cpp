@@ -184,12 +184,6 @@ RewardSettings read_reward_settings(ConfigTree& config) {
 
 }  // namespace
 
-NoiseSettings read_noise_settings(ConfigTree& config) {
-  NoiseSettings noise;
-  read_numbers(config, "noise", kNoise, noise);
-  return noise;
-}
-
 TaskConfig read_task_config(ConfigTree& config) {
   TaskConfig c;
   read_numbers(config, "policy", kPolicy, c.policy);
@@ -205,7 +199,7 @@ TaskConfig read_task_config(ConfigTree& config) {
   }
   c.ground = read_ground_settings(config);
   c.robot = read_robot_settings(config);
-  c.noise = read_noise_settings(config);
+  read_numbers(config, "noise", kNoise, c.noise);
   c.reward = read_reward_settings(config);
   return c;
 }

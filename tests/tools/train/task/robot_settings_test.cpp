@@ -25,6 +25,15 @@ TEST(RobotSettingsTest, TheShippedRobotGetsTheFiguresItsTrainingWasTunedWith) {
   EXPECT_NEAR(config.reward.penalties.Height::target_m, 0.475, 1e-9);
 }
 
+TEST(RobotSettingsTest, SensorsAreAsNoisyAsThoseOfAnEvaluation) {
+  const NoiseSettings training = settings_of(sim::load_raibo()).noise;
+  const sim::ObservationNoise evaluation;
+  EXPECT_EQ(training.gravity, evaluation.gravity);
+  EXPECT_EQ(training.angular_velocity_radps, evaluation.angular_velocity_radps);
+  EXPECT_EQ(training.joint_position_rad, evaluation.joint_position_rad);
+  EXPECT_EQ(training.joint_velocity_radps, evaluation.joint_velocity_radps);
+}
+
 TEST(RobotSettingsTest, ARobotThatStandsAskewIsNotTrained) {
   sim::Robot robot = sim::load_raibo();
   const TaskConfig config = settings_of(robot);
