@@ -215,14 +215,14 @@ struct Height {
   }
 };
 
+inline constexpr const char* kClearanceNames[] = {"clearance_lf", "clearance_rf", "clearance_lh",
+                                                  "clearance_rh"};
 /// Of a foot that moves through the air near the surface. A term for each leg decides how the whole
 /// is rounded: without it the weights of every seed would be others.
 template <int kLeg>
 struct Clearance {
   static constexpr const char* kTable = "clearance";
-  static constexpr const char* kNames[] = {"clearance_lf", "clearance_rf", "clearance_lh",
-                                           "clearance_rh"};
-  static constexpr const char* kName = kNames[kLeg];
+  static constexpr const char* kName = kClearanceNames[kLeg];
   double weight = 0;    ///< per m^2 below the target, times the root of the foot's speed
   double target_m = 0;  ///< of the foot above the surface
   static constexpr NumberSetting<Clearance> kSettings[] = {
