@@ -26,6 +26,10 @@ struct BatchDrive {
 /// Share of a joint's speed limit above which a speed counts in `speed_excess`.
 inline constexpr double kSpeedMargin = 0.9;
 
+/// A foot is loaded when it carries more than this on average over one of the last two policy
+/// steps: on sand the normal force comes in pulses.
+inline constexpr float kLoaded_n = 3.0f;
+
 /// Sums over the ticks of one policy period, for rewards and statistics.
 template <typename S>
 struct BatchSums {

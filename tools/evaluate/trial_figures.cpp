@@ -8,14 +8,13 @@
 #include "estimator/cost_of_transport.h"
 #include "estimator/heading.h"
 #include "rt/base/quantile.h"
-#include "tools/train/task/step_outcome.h"
 
 namespace sandrunner::evaluate {
 namespace {
 
 constexpr double kStep_s = 1.0 / kPolicyHz;
-// A foot is loaded as in the training; a lift-off takes two periods without.
-using train::kLoaded_n;
+// A lift-off takes two periods without a load.
+using sim::kLoaded_n;
 constexpr std::size_t kSettled = kPolicyHz;  // periods before the tracking errors count
 constexpr double kUsualGaitCycle_s = 0.5;    // where no stride is seen
 constexpr double kShortestGaitCycle_s = 0.2, kLongestGaitCycle_s = 1.0;
