@@ -79,7 +79,7 @@ std::string problem_of(const HardwareConfig& config, const GateConfig& gate,
   if (!problem.empty()) return problem;
   const bool hidden = std::visit([](const auto& d) { return hides_timeout(d); }, drive.drive);
   if (!hidden || config.timeout_unverified) return "";
-  return "cannot tell its time-out over CAN; set it in the drive, then set "
+  return "cannot report its time-out over CAN: set it in the drive with the maker's tool, then set "
          "hardware.timeout_unverified=true";
 }
 
