@@ -9,6 +9,7 @@
 
 #include "rt/base/command_line.h"
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 #include "sim/ground/terrain_description.h"
 
 namespace sandrunner {
@@ -69,7 +70,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("FILE")
       ->capture_default_str();
   app.add_option("--robot", o.robot_path,
-                 "map of a robot (sim/robot/README.md; default: the one that ships)")
+                 "robot file (sim/robot/README.md; default: that of Raibo)")
       ->type_name("FILE")
       ->capture_default_str();
   app.add_option("--hardware", o.hardware_path,
@@ -148,6 +149,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     return o;
   }
   const bool hardware = !o.hardware_path.empty();
+  if (hardware) require_regular_file(o.hardware_path, "a hardware file (drivers/robot/README.md)");
   if (hardware && (o.start_walking || (app.count("--clock") > 0 && clock == "lockstep"))) {
     throw InputError(
         "--hardware: a robot lies first and has its own time: expected neither --start walk nor "
@@ -176,9 +178,10 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   }
   if (o.dry_run && !hardware) throw InputError("--dry-run: expected --hardware with it");
   if (hardware && !o.live && !o.arm && !o.dry_run) {
-    throw InputError(
-        "--hardware: this command would move the robot by itself: expected --arm, or --command dds "
-        "(operators decide)");
+    throw InputError(fmt::format(
+        "--hardware: this command would move the robot. First look: sandrunner check {0}, and "
+        "--hardware {0} --dry-run. Then add --arm, or --command dds to let operators decide",
+        o.hardware_path));
   }
   if (o.arm && !hardware) throw InputError("--arm: expected --hardware with it");
   o.seed = seed_of(seed);

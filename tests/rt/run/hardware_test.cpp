@@ -80,7 +80,9 @@ TEST_F(HardwareTest, WhatCannotWorkIsRefusedBeforeAnyFrameIsSent) {
 
 TEST_F(HardwareTest, ARobotDoesNotMoveByItselfUnlessArmed) {
   write_changed("mit.toml", "", "");
-  expect_refused("--hardware hardware.toml", "expected --arm, or --command dds");
+  expect_refused("--hardware hardware.toml", "First look: sandrunner check hardware.toml");
+  expect_refused("--hardware absent.toml",
+                 "absent.toml: cannot be read (No such file or directory)");
   expect_refused("--arm", "--arm: expected --hardware");
   expect_refused("--dry-run", "--dry-run: expected --hardware");
 }
