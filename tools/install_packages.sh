@@ -1,10 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the Debian packages that are missing of those that
-# everything needs (all, deb: the package, too); the program sandrunner alone; everything and what only tests run;
-# everything and the checks of .ci/run. If none is missing it only asks dpkg: no network, no permissions, a fraction of a
-# second.
+# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the missing Debian packages with apt-get, as root or
+# with sudo. If none is missing it only queries dpkg: no network and no permissions are needed.
+#   all, deb    everything, the Debian package included
+#   sandrunner  the program sandrunner only
+#   test        everything, and what only tests run
+#   checks      everything, and the checks of .ci/run
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 packages=(
   # fonts-dejavu-core is what the pictures are lettered with

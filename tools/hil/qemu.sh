@@ -13,6 +13,9 @@
 # The kernel comes from Debian's package, whose name is asked for at run time, and is kept in
 # ${XDG_CACHE_HOME:-~/.cache}/sandrunner-hil.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 bin=$root/build/release/bin out="" limit=170 parallel=false

@@ -14,6 +14,9 @@
 #   full      all of these
 # Files are left in build/hil.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 lane=${1:-} bin=${2:-$root/build/release/bin}
