@@ -31,8 +31,10 @@ template <typename S>
 struct BatchSums {
   S torque_squared{};  ///< sum over joints of tau^2, N^2 m^2
   S power{};           ///< signed sum of tau qd, W
-  S speed_squared{};   ///< sum over joints of qd^2, rad^2/s^2
-  S speed_excess{};    ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
+  /// Sum over HFE and KFE of max(tau, 0) max(qd, 0), W: legs that push off extend both.
+  S extension_power{};
+  S speed_squared{};  ///< sum over joints of qd^2, rad^2/s^2
+  S speed_excess{};   ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
   S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
   S slip{};                               ///< sum over feet in contact of |v_xy|^2, m^2/s^2
   std::array<S, kNumLegs> foot_load{};    ///< normal force of each foot, N
