@@ -85,7 +85,7 @@ bool Drive::is_command(const CanFrame& frame) const noexcept {
   return std::visit([&](const auto& drive) { return is_command_to(drive, frame); }, config_.drive);
 }
 
-void Drive::hear_command(std::uint64_t tick) noexcept {
+void Drive::note_foreign_command(std::uint64_t tick) noexcept {
   ++foreign_commands_;
   foreign_until_ = tick + kForeign_ticks;
 }

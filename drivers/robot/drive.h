@@ -57,7 +57,7 @@ class Drive {
   /// is another program's.
   bool is_command(const CanFrame& frame) const noexcept;
   /// A frame came that is_command().
-  void hear_command(std::uint64_t tick) noexcept;
+  void note_foreign_command(std::uint64_t tick) noexcept;
   /// Whether another program spoke to this drive within kForeign_ticks: a command of it was heard,
   /// or the drive answered twice within kSurplus_ticks what this program did not ask.
   bool has_foreign_traffic(std::uint64_t tick) const noexcept { return foreign_until_ > tick; }

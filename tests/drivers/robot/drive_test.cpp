@@ -339,7 +339,7 @@ TEST(DriveTest, ACommandToItsIdIsForeignTrafficAndAReplyIsNot) {
   command.error = true;
   --command.id;
   EXPECT_FALSE(pair.drive.is_command(command));
-  pair.drive.hear_command(7);
+  pair.drive.note_foreign_command(7);
   EXPECT_TRUE(pair.drive.has_foreign_traffic(7));
   EXPECT_EQ(pair.drive.foreign_commands(), 1u);
 }
