@@ -12,12 +12,12 @@ namespace sandrunner {
 /// own code, which has the low 8 bits.
 enum class DriveTrouble : std::uint64_t {
   kNone = 0,
-  kNotEnabled = 1u << 8,      ///< told to enable, it did not within kEnable_s
-  kSwitchedOff = 1u << 9,     ///< it is off though nobody told it to: reboot, its time-out, its
-                              ///< maker's tool
-  kHot = 1u << 10,            ///< above HardwareConfig::temperature_limit_degc
-  kVoltage = 1u << 11,        ///< its supply is outside the range
-  kBusOff = 1u << 12,         ///< its bus was off since the drives were enabled
+  kNotEnabled = 1u << 8,        ///< told to enable, it did not within kEnable_s
+  kSwitchedOff = 1u << 9,       ///< it is off though nobody told it to: reboot, its time-out, its
+                                ///< maker's tool
+  kOverTemperature = 1u << 10,  ///< above HardwareConfig::temperature_limit_degc
+  kVoltage = 1u << 11,          ///< its supply is outside the range
+  kBusOff = 1u << 12,           ///< its bus was off since the drives were enabled
   kForgotTimeout = 1u << 13,  ///< a drive that forgets_timeout() and whose supply was off, or that
                               ///< was silent for so long that it may have been. Until the next
                               ///< start, which tells it one

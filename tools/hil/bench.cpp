@@ -194,7 +194,7 @@ void Bench::make(const TimedFault& fault, double now_s) {
     case BenchFault::kCode:
       faults.code = static_cast<std::uint8_t>(fault.value);
       break;
-    case BenchFault::kHot:
+    case BenchFault::kOverTemperature:
       faults.temperature_degc = fault.value;
       break;
     case BenchFault::kReversed:

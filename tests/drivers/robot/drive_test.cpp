@@ -262,7 +262,7 @@ TEST(DriveTest, HeatIsAFaultAsLongAsItLasts) {
   EXPECT_EQ(pair.drive.fault(), 0u);
   pair.state.temperature_degc = 81.0;
   pair.exchange(nullptr);
-  EXPECT_TRUE(pair.said(DriveTrouble::kHot));
+  EXPECT_TRUE(pair.said(DriveTrouble::kOverTemperature));
   EXPECT_EQ(drive_fault_words(pair.config(), pair.drive.fault()), "too hot");
   pair.state.temperature_degc = 60.0;
   pair.exchange(nullptr);
