@@ -25,7 +25,7 @@ struct Kind {
 };
 
 constexpr std::array<Kind, 23> kKinds = {{
-    {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive hears and says nothing"},
+    {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive receives and sends nothing"},
     {BenchFault::kReboot, "reboot", Takes::kJointAndNumber, "JOINT S: off, and back after S s"},
     {BenchFault::kLoses, "loses", Takes::kJointAndNumber, "JOINT N: one of N replies is lost"},
     {BenchFault::kSwapped, "swapped", Takes::kTwoJoints, "JOINT JOINT: each has the other's id"},
