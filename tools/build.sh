@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/build.sh [sandrunner|deb]: installs missing packages (sudo apt-get) and builds in release, into build/release.
+# tools/build.sh [sandrunner|deb]: installs missing packages (sudo apt-get) and builds in release,
+# into build/release.
 #   (without)   everything
 #   sandrunner  the program sandrunner only: half the packages and a fifth of the time
 #   deb         the Debian package for a robot's computer (tools/deploy)

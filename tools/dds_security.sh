@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# dds_security.sh DIR: creates the files for DDS Security in a new folder DIR: a certificate authority, the identities
-# robot, operator and viewer with their permissions, and the rules of the domain. Run the robot with DIR as
-# dds.security_dir. Give an operator's or viewer's computer only ca.pem, governance.p7s and the three files of its
-# identity, never ca.key.
+# dds_security.sh DIR: creates the files for DDS Security in a new folder DIR: a certificate
+# authority, the identities robot, operator and viewer with their permissions, and the rules of the
+# domain. Run the robot with DIR as dds.security_dir. Give an operator's or viewer's computer only
+# ca.pem, governance.p7s and the three files of its identity, never ca.key.
 set -euo pipefail
 for word; do
   case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the missing Debian packages with apt-get, as root or
-# with sudo. If none is missing it only queries dpkg: no network and no permissions are needed.
+# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the missing Debian packages
+# with apt-get, as root or with sudo. If none is missing it only queries dpkg: no network and no
+# permissions are needed.
 #   all, deb    everything, the Debian package included
 #   sandrunner  the program sandrunner only
 #   test        everything, and what only tests run

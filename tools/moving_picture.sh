@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/moving_picture.sh FILE.webp [OPTION of sandrunner ...]: makes an animated picture of three seconds of a run, for
-# READMEs, papers and chats. Chromium draws the 3D view of run.html without a window. The README's picture:
+# tools/moving_picture.sh FILE.webp [OPTION of sandrunner ...]: makes an animated picture of three
+# seconds of a run, for READMEs, papers and chats. Chromium draws the 3D view of run.html without a
+# window. The README's picture:
 #
 #   tools/moving_picture.sh running.webp --terrain dry-sand --command 2.5,0,0
 #

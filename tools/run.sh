@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/run.sh [OPTION...]: installs missing packages (sudo apt-get), builds, and runs sandrunner with the options in the
-# current folder. Only the program writes to stdout. --help lists the options once the program is built.
+# tools/run.sh [OPTION...]: installs missing packages (sudo apt-get), builds, and runs sandrunner
+# with the options in the current folder. Only the program writes to stdout. --help lists the
+# options once the program is built.
 set -euo pipefail
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/test.sh [OPTION...]: installs missing packages (sudo apt-get), builds, and runs all tests. Options go to ctest
-# (tools/test.sh -R Config). Prints the skipped tests with their reasons at the end; exits with the code of ctest.
+# tools/test.sh [OPTION...]: installs missing packages (sudo apt-get), builds, and runs all tests.
+# Options go to ctest (tools/test.sh -R Config). Prints the skipped tests with their reasons at the
+# end; exits with the code of ctest.
 set -euo pipefail
 for word; do
   case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac

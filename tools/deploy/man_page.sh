@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/deploy/man_page.sh PROGRAM SUMMARY FILE [SUBCOMMAND...]: writes the man page of PROGRAM to FILE, from its --help and
-# that of its subcommands. SUMMARY is the page's one-line description. Needs help2man.
+# tools/deploy/man_page.sh PROGRAM SUMMARY FILE [SUBCOMMAND...]: writes the man page of PROGRAM to
+# FILE, from its --help and that of its subcommands. SUMMARY is the page's one-line description.
+# Needs help2man.
 set -euo pipefail
 for word; do
   case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
