@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/moving_picture.sh FILE.webp [OPTION of sandrunner ...]: makes an animated picture of three seconds of a run, for
-# READMEs, papers and chats. Chromium draws the 3D view of run.html without a window. The README's picture:
+# tools/moving_picture.sh FILE.webp [OPTION of sandrunner ...]: makes an animated picture of three
+# seconds of a run, for READMEs, papers and chats. Chromium draws the 3D view of run.html without a
+# window. The README's picture:
 #
 #   tools/moving_picture.sh running.webp --terrain dry-sand --command 2.5,0,0
 #
 # Needs tools/build.sh first, and Debian's chromium-headless-shell and webp.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
-usage() { sed -n '3,$s/^# \{0,1\}//p;/^set /q' tools/moving_picture.sh | sed '/^set /d'; }
 case ${1:-} in
--h | --help) usage; exit ;;
 '' | -*) echo "moving_picture.sh: expected FILE.webp first; see --help" >&2; exit 2 ;;
 esac
 picture=$(realpath -m -- "$1")

@@ -215,7 +215,7 @@ void require_range(const DriveConfig& d, int j, const std::string& joint, double
     if (needed <= range) return;
     throw InputError(
         fmt::format("hardware.drive of {}: {} up to {:.4g} {} needed, {:.4g} is what "
-                    "the drive can be told",
+                    "a command to the drive can express",
                     joint, what, needed, unit, range));
   };
   const DriveRanges ranges = d.ranges();
@@ -378,6 +378,16 @@ std::vector<SettingLine> hardware_settings() {
   return lines;
 }
 
+namespace {
+
+/// Joint speed that the replies of every drive can report, with a margin: a threshold above it
+/// would never be passed.
+double reportable_speed_radps(const HardwareConfig& h) noexcept {
+  double most = std::numeric_limits<double>::infinity();
+  for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
+  return most;
+}
+
 void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
   const auto ticks = static_cast<std::uint64_t>(h.ticks_per_exchange());
   // A value is sent for in one exchange, comes in the ticks up to the next one, and may be lost:
@@ -388,7 +398,7 @@ void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
   gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
-  gate.speed_fault_radps = std::min(gate.speed_fault_radps, told_speed_radps(h));
+  gate.speed_fault_radps = std::min(gate.speed_fault_radps, reportable_speed_radps(h));
   gate.hanging = h.hanging;
 }
 
@@ -402,12 +412,12 @@ void fit_drives_to(const GateConfig& gate, HardwareConfig& h) {
                     "miss and an exchange takes (controller.gate.stall_fault_ticks)",
                     h.drive_timeout_s, stall_s));
   }
-  const double told_radps = told_speed_radps(h);
-  if (gate.speed_fault_radps > told_radps) {
+  const double reportable_radps = reportable_speed_radps(h);
+  if (gate.speed_fault_radps > reportable_radps) {
     throw InputError(
         fmt::format("controller.gate.speed_fault_radps: {} rad/s is more than the drives' replies "
-                    "can tell, {:.1f}; it would never be a fault",
-                    gate.speed_fault_radps, told_radps));
+                    "can report, {:.1f}; it would never be a fault",
+                    gate.speed_fault_radps, reportable_radps));
   }
   for (int j = 0; j < kNumJoints; ++j) {
     DriveConfig& drive = h.drives[j];

@@ -82,10 +82,10 @@ struct GateConfig {
   /// tolerated.
   std::uint64_t stall_fault_ticks = 120;
   // Fault: new samples of a joint are the same to the bit ...
-  double frozen_moved_rad = 0.005;   ///< ... while by its own speed it has moved by this: some ten
-                                     ///< counts of an encoder; or ...
-  double frozen_told_rad = 0.2;      ///< ... while its target has moved by this ...
-  std::uint64_t frozen_ticks = 200;  ///< ... for this long
+  double frozen_moved_rad = 0.005;    ///< ... while by its own speed it has moved by this: some ten
+                                      ///< counts of an encoder; or ...
+  double frozen_commanded_rad = 0.2;  ///< ... while its target has moved by this ...
+  std::uint64_t frozen_ticks = 200;   ///< ... for this long
   std::uint64_t policy_frozen_steps = 20;  ///< fault: steps of the policy with the same targets
 };
 
@@ -126,7 +126,7 @@ inline constexpr GateThreshold<double> kGateThresholds[] = {
     {"free_fall_s", &GateConfig::free_fall_s, 0.0, 1.0,
      "Fault: the accelerometer reports a free fall for this long."},
     {nullptr, &GateConfig::frozen_moved_rad, 0.0, 0.1, ""},
-    {nullptr, &GateConfig::frozen_told_rad, 0.0, 1.0, ""},
+    {nullptr, &GateConfig::frozen_commanded_rad, 0.0, 1.0, ""},
 };
 
 inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {

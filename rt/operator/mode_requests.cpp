@@ -35,6 +35,9 @@ RequestDecision decide(std::string_view name, Mode mode, const char* no_walk) no
     return {.request = ModeRequest::kPassive};
   }
   if (no_walk) return {.refusal = no_walk};
+  if (mode == Mode::kStandUp) {
+    return {.refusal = "the robot is still standing up, try again when it stands"};
+  }
   if (mode != Mode::kStand && mode != Mode::kWalk) {
     return {.refusal = "the robot does not stand, stand comes first"};
   }

@@ -347,7 +347,15 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
 }
 
 Robot load_robot(const std::string& map_path) {
-  const std::string map_text = read_input_file(map_path, "the map of a robot");
+  const std::string map_text = read_input_file(map_path, "a robot file");
+  const std::size_t first = map_text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && map_text[first] == '<') {
+    throw InputError(
+        fmt::format("{}: found XML, expected a robot file (TOML) that names the URDF; "
+                    "sim/robot/README.md tells "
+                    "how to write one",
+                    map_path));
+  }
   RobotFile file;
   Map(map_text, map_path).read("", std::span(kFile).last<1>(), file);
   const std::string urdf_path =

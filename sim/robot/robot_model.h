@@ -69,11 +69,11 @@ struct TorqueSpeedLine {
   double no_load_speed_radps = 0.0;
 };
 
-/// A RobotModel with what controller and program must know beside it, all from the robot's file
-/// (sim/robot/README.md says what each figure is and where it comes from).
+/// A RobotModel and the other figures of its robot file that controller and program need
+/// (sim/robot/README.md explains each).
 struct Robot {
   RobotDescription description;
-  std::string map;  ///< text of its map, as read: with the URDF's, all that there is to know
+  std::string map;  ///< text of its robot file, as read
   RobotModel<double> model;
   JointArray<double> nominal_rad{};  ///< posture of Stand; pose of `--start walk`
   double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching
