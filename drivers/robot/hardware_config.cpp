@@ -308,9 +308,9 @@ StopLineConfig read_emergency_stop(ConfigTree& config) {
   return stop;
 }
 
-/// Joint speed that every drive's replies can tell, with some to spare: a threshold above it would
-/// never be passed.
-double told_speed_radps(const HardwareConfig& h) noexcept {
+/// Joint speed that the replies of every drive can report, with a margin: a threshold above it
+/// would never be passed.
+double reportable_speed_radps(const HardwareConfig& h) noexcept {
   double most = std::numeric_limits<double>::infinity();
   for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
   return most;
@@ -376,16 +376,6 @@ std::vector<SettingLine> hardware_settings() {
   list_settings(lines, hardware + ".emergency_stop", kStopChip);
   list_settings(lines, hardware + ".emergency_stop", kStopLine);
   return lines;
-}
-
-namespace {
-
-/// Joint speed that the replies of every drive can report, with a margin: a threshold above it
-/// would never be passed.
-double reportable_speed_radps(const HardwareConfig& h) noexcept {
-  double most = std::numeric_limits<double>::infinity();
-  for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
-  return most;
 }
 
 void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
