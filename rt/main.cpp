@@ -8,11 +8,10 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <thread>
+#include <vector>
 
 #include "drivers/check/check.h"
 #include "drivers/robot/bus_plan.h"
@@ -25,9 +24,12 @@
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
 #include "rt/core/floating_point.h"
+#include "rt/core/mode_machine.h"
+#include "rt/core/slower_rate.h"
 #include "rt/operator/operator_desk.h"
 #include "rt/operator/stand_again.h"
 #include "rt/realtime/rt_report.h"
+#include "rt/report/body_motion.h"
 #include "rt/report/summary.h"
 #include "rt/run/command_source.h"
 #include "rt/run/dds_bridge.h"
@@ -50,14 +52,29 @@ namespace {
 
 constexpr int kLastWords_ms = 2000;
 
-void show_progress(const RunRow& row) {
-  const std::string where =
-      (row.flags & kRowHasTruth) != 0
-          ? fmt::format("{:6.2f} m/s  x {:7.2f} m ", row.motion[0], row.position_m[0])
-          : "";
-  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", row.t_s, mode_name(mode_of(row)), where),
-                    0);
-}
+/// A line on a terminal, twice a second, that is gone at the end.
+class ProgressLine final : public TickSink {
+ public:
+  void add(const TickRecord& tick) override {
+    if (!rate_.due(tick.input.sensors.tick)) return;
+    const RobotTruth& truth = tick.truth;
+    const std::string where =
+        tick.has_truth != 0 ? fmt::format("{:6.2f} m/s  x {:7.2f} m ",
+                                          body_motion(truth.orientation_wxyz, truth.velocity_mps,
+                                                      truth.angular_velocity_radps)
+                                              .vx_mps,
+                                          truth.position_m[0])
+                            : "";
+    to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}",
+                                  static_cast<double>(tick.input.sensors.tick) * kControlPeriod_s,
+                                  mode_name(tick.output.mode), where),
+                      0);
+  }
+  void end() override { to_standard_error(fmt::format("\r{:60}\r", "")); }
+
+ private:
+  SlowerRate rate_{2};
+};
 
 std::string recording_line(const RecordingResult& r, const std::string& dir) {
   if (r.ticks == 0 && r.stopped_because.empty()) return "recorded nothing: no tick ran\n";
@@ -135,7 +152,7 @@ TheRobot make_robot(const Options& options, const ProcessConfig& config) {
 }
 
 // A run in a browser.
-struct LiveView {
+struct LiveView final : BetweenTicks {
   /// `simulator`: null unless in lockstep on simulated ground; so is `stand_again` without
   /// operators.
   LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
@@ -153,42 +170,33 @@ struct LiveView {
     to_standard_error(fmt::format("sandrunner: look at {}\n", server->url()));
   }
 
+  bool act(std::uint64_t next, TickSinks sinks) override {
+    pace->wait();
+    return hand && hand->act(next, sinks);
+  }
+
   ViewFeed feed;
   std::optional<ViewPace> pace;
   std::optional<SimulatorHand> hand;
   std::optional<ViewServer> server;
 };
 
-// Everything that listens to the ticks of a run, in ordinary threads.
-struct Listeners {
-  std::optional<DdsBridge> dds;
+// What takes the ticks of a run.
+struct Sinks {
+  std::optional<ProgressLine> progress;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<BlackBox> black_box;
+  std::optional<DdsBridge> dds;
   std::optional<LiveView> view;
 
-  TickTap tap() {
-    if (!recorder && !black_box && !dds && !view) return {};
-    return [this](const TickRecord& tick) {
-      if (recorder) recorder->add(tick);
-      if (black_box) black_box->add(tick);
-      if (dds) dds->add(tick);
-      if (view) view->feed.set_tick(tick.input.sensors.tick);
-    };
-  }
-  BetweenTicks between() {
-    if (!view || !view->pace) return {};
-    return [this](std::uint64_t next) {
-      view->pace->wait();
-      return view->hand &&
-             view->hand->act(next, [this](std::uint64_t tick, const auto& kind, const auto& text) {
-               if (recorder) recorder->note(tick, kind, text);
-             });
-    };
-  }
-  void begin(std::int64_t start_ns) {
-    if (recorder) recorder->begin(start_ns);
-    if (black_box) black_box->begin(start_ns);
-    if (dds) dds->begin(start_ns);
+  std::vector<TickSink*> all() {
+    std::vector<TickSink*> sinks;
+    if (progress) sinks.push_back(&*progress);
+    if (recorder) sinks.push_back(recorder.get());
+    if (black_box) sinks.push_back(black_box.get());
+    if (dds) sinks.push_back(&*dds);
+    if (view) sinks.push_back(&view->feed);
+    return sinks;
   }
 };
 
@@ -281,11 +289,11 @@ int run(int argc, char** argv) {
   OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   std::optional<StandAgain> stand_again;
   if (remote && options->view && !options->realtime) stand_again.emplace(*remote);
-  Listeners listeners;
-  if (config.dds.enabled) listeners.dds.emplace(config, open_desk, !options->realtime);
+  Sinks sinks;
+  if (config.dds.enabled) sinks.dds.emplace(config, open_desk, !options->realtime);
   Policy* const brain = policy ? &*policy : nullptr;
-  listeners.recorder = make_recorder(*options, config, policy_text, brain);
-  listeners.black_box = make_black_box(*options, config, policy_text, brain);
+  sinks.recorder = make_recorder(*options, config, policy_text, brain);
+  sinks.black_box = make_black_box(*options, config, policy_text, brain);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
   if (robot.hardware) {
@@ -296,16 +304,11 @@ int run(int argc, char** argv) {
 
   const RunScene scene = scene_of(config, policy_name);
   if (options->view) {
-    listeners.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
-                           robot.simulator.get(), stand_again ? &*stand_again : nullptr);
+    sinks.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
+                       robot.simulator.get(), stand_again ? &*stand_again : nullptr);
   }
 
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  SlowerRate progress_rate(2);
-  const auto row_tap = [&](const RunRow& row, std::span<const Footprint> footprints) {
-    if (terminal && progress_rate.due(ticks_from_s(row.t_s))) show_progress(row);
-    if (listeners.view) listeners.view->feed.add(row, footprints);
-  };
+  if (isatty(STDERR_FILENO) != 0) sinks.progress.emplace();
   const RunParts parts{
       .robot = robot.io(),
       .controller = config.controller,
@@ -316,19 +319,16 @@ int run(int argc, char** argv) {
               : remote    ? &*remote
                           : nullptr,
       .scene = scene,
-      .row_tap = row_tap,
-      .tap = listeners.tap(),
-      .begin_tap = [&](std::int64_t start_ns) { listeners.begin(start_ns); },
-      .between = listeners.between(),
+      .row_sinks = sinks.view ? std::vector<RowSink*>{&sinks.view->feed} : std::vector<RowSink*>(),
+      .sinks = sinks.all(),
+      .between = sinks.view && sinks.view->pace ? &*sinks.view : nullptr,
       .interrupts = signals.interrupts()};
   SystemClock clock;
   const RunResult result =
       options->realtime ? run_in_realtime(parts, config.realtime, clock) : run_in_lockstep(parts);
-  if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
 
-  const RecordingResult recorded =
-      listeners.recorder ? listeners.recorder->close() : RecordingResult();
-  const BlackBoxResult kept = listeners.black_box ? listeners.black_box->close() : BlackBoxResult();
+  const RecordingResult recorded = sinks.recorder ? sinks.recorder->result() : RecordingResult();
+  const BlackBoxResult kept = sinks.black_box ? sinks.black_box->result() : BlackBoxResult();
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
@@ -352,8 +352,8 @@ int run(int argc, char** argv) {
     not_written = std::make_exception_ptr(
         InputError(fmt::format("--record: the recording is cut: {}", recorded.stopped_because)));
   }
-  if (listeners.recorder) written += recording_line(recorded, options->record_dir);
-  if (listeners.black_box) written += black_box_lines(kept);
+  if (sinks.recorder) written += recording_line(recorded, options->record_dir);
+  if (sinks.black_box) written += black_box_lines(kept);
   if (robot.hardware) {
     written += hardware_report(*robot.hardware, *config.hardware, config.robot.description);
   }
@@ -362,9 +362,8 @@ int run(int argc, char** argv) {
     fmt::print("{}{}", summary_table(result, info), written);
   }
   if (not_written) std::rethrow_exception(not_written);
-  if (listeners.view) {
+  if (sinks.view) {
     std::fflush(stdout);
-    listeners.view->feed.end();
     while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return result.survived ? kExitOk : kExitFailed;

@@ -30,19 +30,21 @@ void Lockstep::restore(const LockstepState& state, std::uint64_t next_tick) noex
 }
 
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
-                     const StartTap& begin_tap, const BetweenTicks& between) {
+                     OperatorInput& op, const std::atomic<int>& interrupts, TickSinks sinks,
+                     BetweenTicks* between) {
   Lockstep loop(robot, config, start, policy);
-  if (begin_tap) begin_tap(clock_ns(CLOCK_REALTIME));
+  const std::int64_t start_ns = clock_ns(CLOCK_REALTIME);
+  for (TickSink* sink : sinks) sink->begin(start_ns);
   const auto begin = std::chrono::steady_clock::now();
   bool running = true;
   while (running) {
     running = loop.tick(op, interrupts.load(std::memory_order_relaxed));
-    tap(loop.record());
-    if (running && between && between(loop.next_tick())) loop.robot_changed();
+    for (TickSink* sink : sinks) sink->add(loop.record());
+    if (running && between && between->act(loop.next_tick(), sinks)) loop.robot_changed();
   }
   robot.shut_down();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  for (TickSink* sink : sinks) sink->end();
 
   LoopEnd end;
   end.time_s = static_cast<double>(loop.next_tick()) * kControlPeriod_s;

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <type_traits>
 
 #include "policy/policy.h"
 #include "rt/core/state_hash.h"
 #include "rt/loop/control_loop.h"
+#include "rt/loop/tick_sink.h"
 
 namespace sandrunner {
 
@@ -53,13 +53,13 @@ class Lockstep {
   std::uint64_t next_tick_ = 0;
 };
 
-/// Gets every tick of a run, in an ordinary thread: figures, recorders, telemetry.
-using TickTap = std::function<void(const TickRecord&)>;
-/// Is told the wall clock of slot 0, ns since 1970, before the first tick, in the same thread.
-using StartTap = std::function<void(std::int64_t)>;
-/// Is called between two ticks, with the number of the next one, in the same thread; true: it has
-/// changed the robot.
-using BetweenTicks = std::function<bool(std::uint64_t)>;
+/// What happens between two ticks of a run in lockstep, in the thread of the ticks.
+class BetweenTicks {
+ public:
+  virtual ~BetweenTicks() = default;
+  /// Before tick `next`; what it does is noted in `sinks`. True: it has changed the robot.
+  virtual bool act(std::uint64_t next, TickSinks sinks) = 0;
+};
 
 /// How a loop ended.
 struct LoopEnd {
@@ -69,9 +69,10 @@ struct LoopEnd {
   GateState gate;
 };
 
-/// Ticks until `op` ends it, which sees the `interrupts`, then the drives are off.
+/// Ticks until `op` ends it, which sees the `interrupts`, then the drives are off. `between` may be
+/// null.
 LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
-                     const StartTap& begin_tap = {}, const BetweenTicks& between = {});
+                     OperatorInput& op, const std::atomic<int>& interrupts, TickSinks sinks,
+                     BetweenTicks* between = nullptr);
 
 }  // namespace sandrunner

@@ -91,12 +91,10 @@ void end_if_it_hangs(const Watchdog& watchdog, const std::atomic<std::uint64_t>&
   std::_Exit(kExitFailed);
 }
 
-}  // namespace
-
-RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
-                         const RealtimeConfig& realtime, Mode start, Policy* policy,
-                         OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
-                         Clock& clock, const StartTap& begin_tap) {
+RealtimeEnd run_threads(RobotIo& robot, const ControllerConfig& config,
+                        const RealtimeConfig& realtime, Mode start, Policy* policy,
+                        OperatorInput& op, const std::atomic<int>& interrupts, TickSinks sinks,
+                        Clock& clock) {
   RealtimeSetup setup(realtime);
   const auto exchange = std::make_unique<PolicyExchange>();
   const auto ring = std::make_unique<TickRing>();
@@ -108,12 +106,12 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   if (policy) policy_thread.emplace(*policy, *exchange, clock);
 
   RealtimeEnd end;
-  // At most what the ring holds, or a tap slower than the ticks would never return.
+  // At most what the ring holds, or a sink slower than the ticks would never return.
   const auto drain = [&] {
     for (std::size_t n = 0; n < kTickRingSize; ++n) {
       const TickRecord* tick = ring->front();
       if (!tick) return;
-      tap(*tick);
+      for (TickSink* sink : sinks) sink->add(*tick);
       ring->pop();
     }
   };
@@ -124,7 +122,7 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
     if (!missing.empty()) to_standard_error(fmt::format("sandrunner: {}\n", missing));
     const std::int64_t start_ns = clock_ns(CLOCK_REALTIME) + kLeadTime_ns;
     threads.start();
-    if (begin_tap) begin_tap(start_ns);
+    for (TickSink* sink : sinks) sink->begin(start_ns);
     std::uint64_t ticks_seen = 0;
     std::int64_t alive_ns = clock.now_ns();
     while (!threads.done()) {
@@ -151,6 +149,19 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   end.report.records_dropped = ring->dropped();
   end.report.watchdog_gap_ns = watchdog.longest_gap_ns();
   end.report.setup = setup.items();
+  return end;
+}
+
+}  // namespace
+
+RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
+                         const RealtimeConfig& realtime, Mode start, Policy* policy,
+                         OperatorInput& op, const std::atomic<int>& interrupts, TickSinks sinks,
+                         Clock& clock) {
+  const RealtimeEnd end =
+      run_threads(robot, config, realtime, start, policy, op, interrupts, sinks, clock);
+  // Files are finished when memory and processors are free again.
+  for (TickSink* sink : sinks) sink->end();
   return end;
 }
 

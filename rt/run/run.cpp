@@ -4,28 +4,24 @@
 namespace sandrunner {
 namespace {
 
-// A run but for its loop: `loop(start, op, tap)` runs that and returns how it ended.
+// A run but for its loop: `loop(start, op, sinks, result)` runs that.
 template <typename Loop>
 RunResult run(const RunParts& parts, const Loop& loop) {
   RunScript script(parts.command, parts.plan,
                    parts.policy != nullptr && !parts.controller.gate.hanging);
-  RunObserver observer(parts.scene, parts.row_tap);
+  RunObserver observer(parts.scene, parts.row_sinks);
+  // Rows first: a live view that ends has all of them.
+  std::vector<TickSink*> sinks = {&observer};
+  sinks.insert(sinks.end(), parts.sinks.begin(), parts.sinks.end());
   RunResult result;
-  std::uint64_t walked_ticks = 0;
-  const TickTap tap = [&](const TickRecord& tick) {
-    result.has_truth = tick.has_truth != 0;
-    walked_ticks += tick.counts;
-    observer.add(tick);
-    if (parts.tap) parts.tap(tick);
-  };
   OperatorInput& op = parts.live ? *parts.live : script;
-  loop(parts.plan.start_walking ? Mode::kWalk : Mode::kPassive, op, tap, result);
+  loop(parts.plan.start_walking ? Mode::kWalk : Mode::kPassive, op, sinks, result);
   if (parts.live) {
     result.interrupted = parts.interrupts > 0;
     const Fault fault = result.end.gate.first_fault;
     result.survived = fault == Fault::kNone;  // no fault since, whoever has reset it
     if (!result.survived) result.fall_reason = fault_name(fault);
-    result.walked_s = static_cast<double>(walked_ticks) * kControlPeriod_s;
+    result.walked_s = static_cast<double>(observer.counted_ticks()) * kControlPeriod_s;
   } else {
     result.survived = script.survived();
     if (!result.survived) {
@@ -37,6 +33,7 @@ RunResult run(const RunParts& parts, const Loop& loop) {
     result.walked_s = script.walked_s();
   }
   result.record = observer.take_record();
+  result.has_truth = result.record.rows.empty() || result.record.has_truth();
   result.figures = run_figures(result.record);
   return result;
 }
@@ -44,17 +41,16 @@ RunResult run(const RunParts& parts, const Loop& loop) {
 }  // namespace
 
 RunResult run_in_lockstep(const RunParts& parts) {
-  return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
+  return run(parts, [&](Mode start, OperatorInput& op, TickSinks sinks, RunResult& result) {
     result.end = run_lockstep(parts.robot, parts.controller, start, parts.policy, op,
-                              parts.interrupts, tap, parts.begin_tap, parts.between);
+                              parts.interrupts, sinks, parts.between);
   });
 }
 
 RunResult run_in_realtime(const RunParts& parts, const RealtimeConfig& realtime, Clock& clock) {
-  return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
-    const RealtimeEnd end =
-        run_realtime(parts.robot, parts.controller, realtime, start, parts.policy, op,
-                     parts.interrupts, tap, clock, parts.begin_tap);
+  return run(parts, [&](Mode start, OperatorInput& op, TickSinks sinks, RunResult& result) {
+    const RealtimeEnd end = run_realtime(parts.robot, parts.controller, realtime, start,
+                                         parts.policy, op, parts.interrupts, sinks, clock);
     result.end = end;
     result.realtime = end.report;
   });

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
+#include <vector>
 
 #include "policy/policy.h"
 #include "rt/realtime/clock.h"
@@ -23,10 +23,9 @@ struct RunParts {
   /// Operator in place of the script that `command` and `plan` make; null: that script.
   OperatorInput* live = nullptr;
   RunScene scene = {};
-  RowTap row_tap = {};        ///< gets every row: live view, progress
-  TickTap tap = {};           ///< gets every tick: recorders, telemetry
-  StartTap begin_tap = {};    ///< is told when it starts
-  BetweenTicks between = {};  ///< of a run in lockstep
+  std::vector<RowSink*> row_sinks = {};  ///< live view
+  std::vector<TickSink*> sinks = {};     ///< recorders, telemetry, progress
+  BetweenTicks* between = nullptr;       ///< of a run in lockstep; may be null
   /// How often somebody has wanted it to end: at the first time it ends gently, at the second in
   /// damping at once.
   const std::atomic<int>& interrupts;

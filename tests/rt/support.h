@@ -48,6 +48,23 @@ inline RunRow last_standing(const RunRecord& record) {
   return *(last + 151);
 }
 
+/// Calls functions of a test; those that are unset are left out.
+struct CallingSink final : TickSink, RowSink {
+  std::function<void(std::int64_t start_ns)> at_begin = {};
+  std::function<void(const TickRecord& tick)> at_tick = {};
+  std::function<void(const RunRow& row)> at_row = {};
+
+  void begin(std::int64_t start_ns) override {
+    if (at_begin) at_begin(start_ns);
+  }
+  void add(const TickRecord& tick) override {
+    if (at_tick) at_tick(tick);
+  }
+  void add(const RunRow& row, std::span<const Footprint>) override {
+    if (at_row) at_row(row);
+  }
+};
+
 /// A run of the simulated robot.
 struct SimulatedRun {
   const ProcessConfig& config;
@@ -55,9 +72,9 @@ struct SimulatedRun {
   std::string command = "1,0,0";
   RunPlan plan = {};
   const std::atomic<int>* interrupts = nullptr;
-  RowTap row_tap = {};
-  TickTap tap = {};
-  StartTap begin_tap = {};
+  std::function<void(const RunRow& row)> at_row = {};
+  std::function<void(const TickRecord& tick)> at_tick = {};
+  std::function<void(std::int64_t start_ns)> at_begin = {};
   OperatorInput* live = nullptr;
   bool realtime = false;
   Clock* clock = nullptr;  ///< null: the system's
@@ -68,6 +85,10 @@ inline RunResult simulate(const SimulatedRun& run) {
   if (!run.plan.start_walking) simulator.reset_lying();
   const CommandSource command(run.command);
   const std::atomic<int> nobody{false};
+  CallingSink sink;
+  sink.at_begin = run.at_begin;
+  sink.at_tick = run.at_tick;
+  sink.at_row = run.at_row;
   const RunParts parts{.robot = simulator,
                        .controller = run.config.controller,
                        .policy = run.policy,
@@ -75,9 +96,8 @@ inline RunResult simulate(const SimulatedRun& run) {
                        .plan = run.plan,
                        .live = run.live,
                        .scene = scene_of(run.config, run.policy ? run.policy->spec().name : ""),
-                       .row_tap = run.row_tap,
-                       .tap = run.tap,
-                       .begin_tap = run.begin_tap,
+                       .row_sinks = {&sink},
+                       .sinks = {&sink},
                        .interrupts = run.interrupts ? *run.interrupts : nobody};
   SystemClock system;
   return run.realtime ? run_in_realtime(parts, run.config.realtime, run.clock ? *run.clock : system)

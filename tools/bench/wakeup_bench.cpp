@@ -33,9 +33,8 @@ Wakeups ours(const ProcessConfig& config, Policy& policy) {
   const CommandSource command("1,0,0");
   RunScript script(command, {.walk_s = kSample_s, .start_walking = true}, true);
   SystemClock clock;
-  const RealtimeEnd end = run_realtime(
-      simulator, config.controller, config.realtime, Mode::kWalk, &policy, script, nobody,
-      [](const TickRecord&) {}, clock);
+  const RealtimeEnd end = run_realtime(simulator, config.controller, config.realtime, Mode::kWalk,
+                                       &policy, script, nobody, {}, clock);
   const LogHistogram& late = end.report.control.late;
   return {1e-3 * static_cast<double>(late.quantile_ns(0.5)),
           1e-3 * static_cast<double>(late.quantile_ns(0.99))};

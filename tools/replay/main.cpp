@@ -9,7 +9,6 @@
 #include <exception>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -114,9 +113,7 @@ struct Player {
       feed.emplace(scene,
                    ViewFeed::Limits{.frames = kMostFrames, .footprints = 16'384, .tiles = 2048});
     }
-    observer.emplace(scene, [this](const RunRow& row, std::span<const Footprint> footprints) {
-      if (feed) feed->add(row, footprints);
-    });
+    observer.emplace(scene, feed ? std::vector<RowSink*>{&*feed} : std::vector<RowSink*>());
   }
 
   ProcessConfig config;
@@ -134,7 +131,7 @@ std::string seconds(std::uint64_t tick) {
 // Until Ctrl-C.
 void serve(Player& player) {
   SignalWatch signals;
-  player.observer->take_record();  // its last row
+  player.observer->end();
   player.feed->end();
   const ViewServer server(player.config.view_port, {.feed = *player.feed, .recorded = true});
   to_standard_error(fmt::format("sandrunner-replay: look at {}\n", server.url()));
@@ -165,7 +162,7 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     ++(compares ? compared : not_compared);
     ++drawn;
     if (player->observer) player->observer->add(recorded);
-    if (player->feed) player->feed->set_tick(last_tick);
+    if (player->feed) player->feed->add(recorded);
     if (found && !difference) difference = std::move(found);
     // A picture wants the rest too.
     return (!difference && player->replay) || player->observer;

@@ -51,15 +51,14 @@ BlackBox::BlackBox(std::string folder, RecordingInfo info, const ControllerConfi
   thread_ = std::thread([this] { work(); });
 }
 
-BlackBox::~BlackBox() { close(); }
+BlackBox::~BlackBox() { BlackBox::end(); }
 
-BlackBoxResult BlackBox::close() {
+void BlackBox::end() {
   if (thread_.joinable()) {
     queue_.finish();
     thread_.join();
     result_.dropped = queue_.dropped();
   }
-  return result_;
 }
 
 void BlackBox::work() {

@@ -13,6 +13,7 @@
 #include "policy/policy.h"
 #include "rt/core/controller.h"
 #include "rt/loop/replay.h"
+#include "rt/loop/tick_sink.h"
 #include "rt/telemetry/recording/recording_writer.h"
 #include "rt/telemetry/recording/tick_queue.h"
 
@@ -58,22 +59,22 @@ struct BlackBoxResult {
 ///
 /// All this happens in an ordinary thread of its own. Measured on a simulated walk: 93 MB of
 /// memory, 105 MB with encoder noise; 1.6 % of a core, and 0.7 s of that core per file.
-class BlackBox {
+class BlackBox final : public TickSink {
  public:
   /// `policy` is copied; null if the run has none. `wait`: as for Recorder.
   BlackBox(std::string folder, RecordingInfo info, const ControllerConfig& config,
            const Policy* policy, double window_s = kBlackBox_s, bool wait = false);
-  ~BlackBox();
+  ~BlackBox() override;
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
-  /// As Recorder::begin.
-  void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
-  /// Every tick, in order, from one ordinary thread. If the queue, which holds two seconds, is
-  /// full, the newest ticks are dropped and counted.
-  void add(const TickRecord& tick) { queue_.add(tick); }
-  /// Writes files that are still due. Nothing may be added afterwards.
-  BlackBoxResult close();
+  void begin(std::int64_t start_ns) override { info_.start_time_ns = start_ns; }
+  /// If the queue, which holds two seconds, is full, the newest ticks are dropped and counted.
+  void add(const TickRecord& tick) override { queue_.add(tick); }
+  /// Writes files that are still due.
+  void end() override;
+  /// After the end.
+  const BlackBoxResult& result() const noexcept { return result_; }
 
  private:
   /// Consecutive ticks, compressed.

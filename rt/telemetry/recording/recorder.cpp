@@ -27,14 +27,14 @@ Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingL
   thread_ = std::thread([this] { work(); });
 }
 
-Recorder::~Recorder() { close(); }
+Recorder::~Recorder() { Recorder::end(); }
 
 void Recorder::note(std::uint64_t tick, const std::string& kind, const std::string& text) {
   const std::lock_guard lock(notes_mutex_);
   notes_.push_back({tick, kind, text});
 }
 
-RecordingResult Recorder::close() {
+void Recorder::end() {
   if (thread_.joinable()) {
     queue_.finish();
     thread_.join();
@@ -42,7 +42,6 @@ RecordingResult Recorder::close() {
     if (writer_) result_.bytes = writer_->bytes_written();
     result_.removed = writer_ && ::access(path_.c_str(), F_OK) != 0;
   }
-  return result_;
 }
 
 void Recorder::work() {

@@ -11,6 +11,7 @@
 #include "policy/policy.h"
 #include "rt/core/controller.h"
 #include "rt/loop/replay.h"
+#include "rt/loop/tick_sink.h"
 #include "rt/telemetry/recording/recording_writer.h"
 #include "rt/telemetry/recording/tick_queue.h"
 
@@ -39,26 +40,24 @@ struct RecordingResult {
 /// A disk that fills up, a limit or a lack of memory ends the recording, not the run. A process
 /// that is killed loses at most the last second. The file is created with the first tick: a run
 /// that is refused leaves the previous recording untouched.
-class Recorder {
+class Recorder final : public TickSink {
  public:
   /// `wait`: while the queue is full, add() waits (in lockstep, where that hurts nobody) instead of
   /// dropping and counting the newest ticks. `policy` is copied; null if the run has none. Throws
   /// InputError if the file cannot be written.
   Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits, bool wait,
            const ControllerConfig* config = nullptr, const Policy* policy = nullptr);
-  ~Recorder();
+  ~Recorder() override;
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Wall clock at tick 0, ns since 1970, which is known later than the rest of the info. Call it
-  /// before the first add().
-  void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
-  /// Every tick, in order, from one ordinary thread.
-  void add(const TickRecord& tick) { queue_.add(tick); }
-  /// What somebody did to the robot or its ground before the tick that is added next; same thread.
-  void note(std::uint64_t tick, const std::string& kind, const std::string& text);
-  /// Finishes the file. Nothing may be added afterwards.
-  RecordingResult close();
+  void begin(std::int64_t start_ns) override { info_.start_time_ns = start_ns; }
+  void add(const TickRecord& tick) override { queue_.add(tick); }
+  void note(std::uint64_t tick, const std::string& kind, const std::string& text) override;
+  /// Finishes the file.
+  void end() override;
+  /// After the end.
+  const RecordingResult& result() const noexcept { return result_; }
 
  private:
   void work();

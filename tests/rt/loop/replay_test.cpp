@@ -20,7 +20,7 @@ std::vector<TickRecord> recorded_run(const ProcessConfig& config, bool realtime)
                      .policy = &policy,
                      .command = "1,0,0.5",
                      .plan = {.walk_s = 1.0, .start_walking = realtime},
-                     .tap = [&](const TickRecord& tick) { ticks.push_back(tick); },
+                     .at_tick = [&](const TickRecord& tick) { ticks.push_back(tick); },
                      .realtime = realtime})
                .fall_reason;
   });

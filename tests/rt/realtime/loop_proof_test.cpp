@@ -84,7 +84,7 @@ TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
                                        .policy = &policy,
                                        .plan = {.start_walking = true},
                                        .interrupts = &interrupt,
-                                       .tap = at_each_tick,
+                                       .at_tick = at_each_tick,
                                        .live = &op,
                                        .realtime = true,
                                        .clock = &clock});

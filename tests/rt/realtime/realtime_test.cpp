@@ -33,7 +33,7 @@ RunResult run_live(LiveOperator& op, const std::function<void()>& at_each_tick) 
   return simulate({.config = config,
                    .policy = &policy,
                    .plan = {.start_walking = true},
-                   .tap = [&](const TickRecord&) { at_each_tick(); },
+                   .at_tick = [&](const TickRecord&) { at_each_tick(); },
                    .live = &op,
                    .realtime = true});
 }
@@ -61,7 +61,7 @@ TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFi
   simulate({.config = config,
             .policy = &policy,
             .plan = {.walk_s = 0.3, .start_walking = true},
-            .tap =
+            .at_tick =
                 [&](const TickRecord& tick) {
                   ticks_before_start += start_ns == 0;
                   const std::int64_t now_ns = clock_ns(CLOCK_REALTIME);
@@ -71,7 +71,7 @@ TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFi
                       tick.timing.late_ns;
                   least_ns = std::min(least_ns, now_ns - began_ns);
                 },
-            .begin_tap = [&](std::int64_t at_ns) { start_ns = at_ns; },
+            .at_begin = [&](std::int64_t at_ns) { start_ns = at_ns; },
             .realtime = true});
   EXPECT_EQ(ticks_before_start, 0);
   EXPECT_GT(least_ns, -200'000);  // no stamp leads; before, by up to 5 ms
@@ -167,7 +167,7 @@ RunResult walk_until(const std::function<bool(const TickRecord&)>& interrupts) {
                    .policy = &policy,
                    .plan = {.walk_s = 60.0, .start_walking = true},
                    .interrupts = &interrupt,
-                   .tap = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
+                   .at_tick = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
                    .realtime = true});
 }
 

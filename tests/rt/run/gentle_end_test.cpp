@@ -58,7 +58,7 @@ Landing land(const std::string& terrain, const std::string& command, bool live, 
                                      .command = command,
                                      .plan = {.walk_s = 60.0, .start_walking = true},
                                      .interrupts = &count,
-                                     .tap = tap,
+                                     .at_tick = tap,
                                      .live = live ? &remote : nullptr});
   EXPECT_TRUE(result.survived) << result.fall_reason;
   EXPECT_TRUE(result.interrupted);

@@ -188,7 +188,7 @@ TEST(RunTest, InterruptLiesDownAndIsNoFall) {
                                        .command = "0,0,0",
                                        .plan = {.walk_s = 100.0},
                                        .interrupts = &interrupt,
-                                       .row_tap = [&, at_s = when_s](const RunRow& row, auto) {
+                                       .at_row = [&, at_s = when_s](const RunRow& row) {
                                          interrupt = interrupt || row.t_s >= at_s;
                                        }});
     EXPECT_TRUE(result.interrupted);

@@ -51,7 +51,7 @@ TEST(ShippedPolicyTest, StandsForAMinuteAfterAWalkThatLeftItsFeetInTheSand) {
   const RunResult result = simulate({.config = config,
                                      .policy = &policy,
                                      .plan = {.start_walking = true},
-                                     .tap =
+                                     .at_tick =
                                          [&](const TickRecord& tick) {
                                            last = tick.output.mode;
                                            const std::uint64_t n = tick.input.sensors.tick;

@@ -149,7 +149,6 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
                                                .command = command,
                                                .plan = {.walk_s = 5.0, .start_walking = true},
                                                .scene = scene_of(config, policy.spec().name),
-                                               .tap = {},
                                                .interrupts = interrupt});
     ASSERT_TRUE(process.survived);
     const sandrunner::RunFigures& p = process.figures;

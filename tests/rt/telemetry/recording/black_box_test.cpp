@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -54,6 +55,10 @@ class BlackBoxTest : public RecordingProgramTest {
       loop_.tick(command);
       if (tick < lost_.first || tick >= lost_.second) box_->add(loop_.record());
     }
+  }
+  BlackBoxResult close() {
+    box_->end();
+    return box_->result();
   }
   void request(ModeRequest request) {
     command_.request = request;
@@ -110,7 +115,7 @@ TEST_F(BlackBoxTest, HoldsTheWindowBeforeTheFaultAndTheLetDownAndReplaysFromItsS
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   EXPECT_TRUE(std::filesystem::exists(path(20000)));
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_FALSE(result.difference) << result.difference->what;
   EXPECT_EQ(result.dropped, 0u);
   ASSERT_EQ(result.files.size(), 1u);
@@ -136,7 +141,7 @@ TEST_F(BlackBoxTest, HoldsTheWindowBeforeTheFaultAndTheLetDownAndReplaysFromItsS
 TEST_F(BlackBoxTest, FlippedBitOfAnInputIsFoundAndNamed) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  box_->end();
   flip(path(20000), folder_.path("flipped.mcap"), 18000, word_named("joint_position_rad[7]"), 1);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
   expect_one_line("DIFFERS at tick 18000 (4.50000 s): released_joint_position_rad[7]");
@@ -145,7 +150,7 @@ TEST_F(BlackBoxTest, FlippedBitOfAnInputIsFoundAndNamed) {
 TEST_F(BlackBoxTest, FlippedBitOfTheStateIsFoundAtTheFirstTickThatItChanges) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  box_->end();
   const auto spoil = [](RecordingInfo& info) {
     ReplayState state = read_replay_state(info.state, "state");
     state.controller.target_rad[4] += 1e-9;
@@ -159,7 +164,7 @@ TEST_F(BlackBoxTest, FlippedBitOfTheStateIsFoundAtTheFirstTickThatItChanges) {
 TEST_F(BlackBoxTest, RangePicturesAndOtherSettingsWorkFromTheMiddle) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  box_->end();
   const std::string plots = "--plot '" + folder_.path("plots") + "' ";
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --from 4 --to 4.5 " + plots), 0) << output();
   EXPECT_NE(output().find("2001 ticks"), std::string::npos) << output();
@@ -176,7 +181,7 @@ TEST_F(BlackBoxTest, RangePicturesAndOtherSettingsWorkFromTheMiddle) {
 TEST_F(BlackBoxTest, FaultInTheFirstSecondHasTheWholeRun) {
   open(dir());
   walk_to(3990, {1000});
-  EXPECT_EQ(box_->close().files.size(), 1u);
+  EXPECT_EQ(close().files.size(), 1u);
   std::uint64_t last = 0;
   const RecordingContents contents = read(path(1000), last);
   EXPECT_EQ(contents.info.first_tick, 0u);
@@ -192,7 +197,7 @@ TEST_F(BlackBoxTest, EachFaultHasItsFile) {
   walk_to(12400);
   request(ModeRequest::kStand);
   walk_to(30000, {28000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   ASSERT_EQ(result.files.size(), 2u);
   EXPECT_FALSE(result.difference);
   std::uint64_t last = 0;
@@ -210,7 +215,7 @@ TEST_F(BlackBoxTest, RunHasTenFilesAtMost) {
     request(ModeRequest::kResetFault);
   }
   walk_to(29000);
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_EQ(result.files.size(), 10u);
   EXPECT_EQ(result.left_out, 2u);
   EXPECT_EQ(folder_.number_of_files(), 10u);
@@ -219,7 +224,7 @@ TEST_F(BlackBoxTest, RunHasTenFilesAtMost) {
 TEST_F(BlackBoxTest, RunWithoutAFaultHasNoFileAndIsVerified) {
   open(dir());
   walk_to(28000);
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_TRUE(result.files.empty());
   EXPECT_FALSE(result.difference) << result.difference->what;
   EXPECT_EQ(folder_.number_of_files(), 0u);
@@ -232,7 +237,7 @@ TEST_F(BlackBoxTest, RunThatDoesNotReplayIsReported) {
   ProcessConfig other = config_of("dry-sand", {"controller.walk.kd_nmsprad=0.6"}, &policy_.spec());
   box_.emplace(dir(), info_, other.controller, &policy_, kWindow_s, true);
   walk_to(24000);
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   ASSERT_TRUE(result.difference);
   EXPECT_EQ(result.difference->tick, 0u);
   EXPECT_EQ(result.difference->what.substr(0, 21), "command_kd_nmsprad[0]");
@@ -242,7 +247,7 @@ TEST_F(BlackBoxTest, TicksLostBeforeTheWindowLeaveAFileThatCannotBeReplayed) {
   lost_ = {5000, 5040};
   open(dir());
   walk_to(24000, {20000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_FALSE(result.difference) << result.difference->what;
   EXPECT_EQ(result.lost_from, 5000u);
   ASSERT_EQ(result.files.size(), 1u);
@@ -263,7 +268,7 @@ TEST_F(BlackBoxTest, TicksLostWithinTheWindowAreReportedAsLostAndNotAsADifferenc
   lost_ = {18000, 18040};
   open(dir());
   walk_to(24000, {20000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_FALSE(result.difference) << result.difference->what;
   EXPECT_EQ(result.lost_from, 18000u);
   EXPECT_TRUE(result.files.at(0).has_start);
@@ -287,7 +292,7 @@ TEST_F(BlackBoxTest, BatchesLostOnTheWayLeaveNoStateBehindThem) {
   lost_ = {8000, 12000};  // blocks as they are dropped when the queue is full
   open(dir());
   walk_to(28000, {20000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_FALSE(result.difference) << result.difference->what;
   EXPECT_EQ(result.lost_from, 8000u);
   EXPECT_FALSE(result.files.at(0).has_start);
@@ -297,7 +302,7 @@ TEST_F(BlackBoxTest, BatchesLostOnTheWayLeaveNoStateBehindThem) {
 TEST_F(BlackBoxTest, FirstTickThatTheFileDoesNotBeginWithIsRefused) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  box_->end();
   for (const std::uint64_t wrong : {std::uint64_t{0}, std::uint64_t{40}, ~std::uint64_t{0}}) {
     rewrite(path(20000), folder_.path("wrong.mcap"),
             [&](RecordingInfo& info) { info.first_tick = wrong; }, {});
@@ -313,7 +318,7 @@ TEST_F(BlackBoxTest, FileThatCannotBeWrittenIsReportedAndTheBlackBoxGoesOn) {
   walk_to(12000, {2000});
   request(ModeRequest::kResetFault);
   walk_to(24000, {20000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   ASSERT_EQ(result.files.size(), 2u);
   EXPECT_NE(result.files[0].problem.find(path(2000)), std::string::npos) << result.files[0].problem;
   EXPECT_EQ(result.files[0].problem.find('\n'), std::string::npos);
@@ -324,7 +329,7 @@ TEST_F(BlackBoxTest, FileThatCannotBeWrittenIsReportedAndTheBlackBoxGoesOn) {
 TEST_F(BlackBoxTest, FolderThatCannotBeWrittenIsReported) {
   open(folder_.path("absent"));
   walk_to(12000, {2000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   ASSERT_EQ(result.files.size(), 1u);
   EXPECT_NE(result.files[0].problem.find("absent/black-box-2000.mcap"), std::string::npos);
   EXPECT_EQ(result.files[0].problem.find('\n'), std::string::npos);
@@ -333,7 +338,7 @@ TEST_F(BlackBoxTest, FolderThatCannotBeWrittenIsReported) {
 TEST_F(BlackBoxTest, DamagedStateIsBadInput) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  box_->end();
   const std::string spoilt = folder_.path("spoilt.mcap");
   const auto refused = [&](const std::function<void(std::string&)>& spoil, const char* why) {
     rewrite(path(20000), spoilt, [&](RecordingInfo& info) { spoil(info.state); }, {});
@@ -352,7 +357,7 @@ TEST_F(BlackBoxTest, DamagedStateIsBadInput) {
 TEST_F(BlackBoxTest, DamagedChunkCostsItsOwnSpanOnly) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  box_->end();
   constexpr std::uint64_t kBlock = 400;  // states are known where blocks begin
   expect_damage_costs_its_own_span(path(20000), read_ticks(path(20000)).ticks, kBlock);
 }
@@ -362,8 +367,8 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   box_.emplace(dir(), info_, config_.controller, &policy_, 0.3);
   LiveOperator op;
   op.want(VelocityCommand{.vx_mps = 1.0});
-  const auto tap = [&](const TickRecord& tick) {
-    box_->add(tick);
+  CallingSink sink;
+  sink.at_tick = [&](const TickRecord&) {
     if (op.time_s() > 3.0 && op.faults() == 0) {
       op.want(VelocityCommand{.vx_mps = std::numeric_limits<double>::quiet_NaN()});
     }
@@ -374,8 +379,8 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   const std::atomic<int> never{0};
   SystemClock clock;
   run_realtime(simulator, config_.controller, config_.realtime, Mode::kWalk, &policy, op, never,
-               tap, clock);
-  const BlackBoxResult result = box_->close();
+               std::array<TickSink*, 2>{&*box_, &sink}, clock);
+  const BlackBoxResult result = close();
   EXPECT_FALSE(result.difference) << result.difference->what;
   ASSERT_EQ(result.files.size(), 1u);
   EXPECT_GT(read_ticks(result.files[0].path).info.first_tick, 0u);

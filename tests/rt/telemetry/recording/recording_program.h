@@ -55,7 +55,7 @@ inline void rewrite(const std::string& from, const std::string& to,
     return true;
   };
   read_recording(from, visitor);
-  recorder->close();
+  recorder->end();
 }
 
 /// The same with bits of one word of one tick flipped.

@@ -31,7 +31,7 @@ constexpr const char* kPushLeft = R"({"say":"push","direction":1.570796326794896
 Policy shipped() { return load_policy_text(std::string(shipped_policy_text()), "built in"); }
 
 /// A run in lockstep with a page that has the key.
-struct HandTest : testing::Test {
+struct HandTest : testing::Test, TickSink, BetweenTicks {
   HandTest() {
     const std::string url = server->url();
     page.emplace(std::stoi(url.substr(url.find(':', 6) + 1)));
@@ -49,32 +49,32 @@ struct HandTest : testing::Test {
     return refusal;
   }
 
+  void add(const TickRecord& tick) override { ticks.push_back(tick); }
+  void note(std::uint64_t tick, const std::string& kind, const std::string& text) override {
+    notes.push_back(std::to_string(tick) + " " + kind + ": " + text);
+  }
+  bool act(std::uint64_t next, TickSinks sinks) override {
+    if (before_tick) before_tick(next);
+    return hand->act(next, sinks);
+  }
+
   /// Walks for so long; `before` may say something before a tick.
   RunResult walk(double seconds, const std::function<void(std::uint64_t)>& before,
                  OperatorInput* live = nullptr) {
+    before_tick = before;
     const CommandSource command("1,0,0");
-    return run_in_lockstep(
-        {.robot = simulator,
-         .controller = config.controller,
-         .policy = &policy,
-         .command = command,
-         .plan = {.walk_s = seconds, .start_walking = live == nullptr},
-         .live = live,
-         .scene = {},
-         .tap =
-             [&](const TickRecord& tick) {
-               if (recorder) recorder->add(tick);
-               ticks.push_back(tick);
-             },
-         .between =
-             [&](std::uint64_t next) {
-               if (before) before(next);
-               return hand->act(next, [&](std::uint64_t tick, const auto& kind, const auto& text) {
-                 notes.push_back(std::to_string(tick) + " " + kind + ": " + text);
-                 if (recorder) recorder->note(tick, kind, text);
-               });
-             },
-         .interrupts = interrupt});
+    std::vector<TickSink*> sinks = {this};
+    if (recorder) sinks.push_back(recorder.get());
+    return run_in_lockstep({.robot = simulator,
+                            .controller = config.controller,
+                            .policy = &policy,
+                            .command = command,
+                            .plan = {.walk_s = seconds, .start_walking = live == nullptr},
+                            .live = live,
+                            .scene = {},
+                            .sinks = sinks,
+                            .between = this,
+                            .interrupts = interrupt});
   }
 
   /// Mean depth of the feet that touch the ground, m, from one tick to another.
@@ -106,6 +106,7 @@ struct HandTest : testing::Test {
   std::unique_ptr<Recorder> recorder;
   std::vector<TickRecord> ticks;
   std::vector<std::string> notes;
+  std::function<void(std::uint64_t)> before_tick;
 };
 
 TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingReplays) {
@@ -128,7 +129,6 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
   RecordProperty("before_mm", std::to_string(1e3 * before_m));
   RecordProperty("after_mm", std::to_string(1e3 * after_m));
 
-  recorder->close();
   Policy again = shipped();
   Replay replay(config.controller, Mode::kWalk, &again);
   std::vector<std::string> events;
