@@ -38,6 +38,7 @@
 #include "rt/run/recording.h"
 #include "rt/run/run.h"
 #include "rt/run/run_files.h"
+#include "rt/run/run_script.h"
 #include "rt/run/scene.h"
 #include "rt/run/signals.h"
 #include "rt/run/simulator_hand.h"
@@ -309,23 +310,25 @@ int run(int argc, char** argv) {
   }
 
   if (isatty(STDERR_FILENO) != 0) sinks.progress.emplace();
-  const RunParts parts{
-      .robot = robot.io(),
-      .controller = config.controller,
-      .policy = brain,
-      .command = command,
-      .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
-      .live = stand_again ? static_cast<OperatorInput*>(&*stand_again)
-              : remote    ? &*remote
-                          : nullptr,
-      .scene = scene,
-      .row_sinks = sinks.view ? std::vector<RowSink*>{&sinks.view->feed} : std::vector<RowSink*>(),
-      .sinks = sinks.all(),
-      .between = sinks.view && sinks.view->pace ? &*sinks.view : nullptr,
-      .interrupts = signals.interrupts()};
+  RunScript script(command,
+                   {.walk_s = options->duration_s, .start_walking = options->start_walking},
+                   no_walk == nullptr);
+  const Rig rig{.robot = robot.io(),
+                .controller = config.controller,
+                .start = options->start_walking ? Mode::kWalk : Mode::kPassive,
+                .policy = brain,
+                .op = stand_again ? static_cast<OperatorInput&>(*stand_again)
+                      : remote    ? static_cast<OperatorInput&>(*remote)
+                                  : script,
+                .sinks = sinks.all(),
+                .between = sinks.view && sinks.view->pace ? &*sinks.view : nullptr,
+                .interrupts = signals.interrupts()};
+  RunRows rows{.scene = scene};
+  if (sinks.view) rows.sinks.push_back(&sinks.view->feed);
   SystemClock clock;
-  const RunResult result =
-      options->realtime ? run_in_realtime(parts, config.realtime, clock) : run_in_lockstep(parts);
+  RunResult result = options->realtime ? run_in_realtime(rig, rows, config.realtime, clock)
+                                       : run_in_lockstep(rig, rows);
+  if (!remote) script.report(result);
 
   const RecordingResult recorded = sinks.recorder ? sinks.recorder->result() : RecordingResult();
   const BlackBoxResult kept = sinks.black_box ? sinks.black_box->result() : BlackBoxResult();

@@ -29,28 +29,28 @@ void Lockstep::restore(const LockstepState& state, std::uint64_t next_tick) noex
   next_tick_ = next_tick;
 }
 
-LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<int>& interrupts, TickSinks sinks,
-                     BetweenTicks* between) {
-  Lockstep loop(robot, config, start, policy);
+LoopEnd run_lockstep(const Rig& rig) {
+  Lockstep loop(rig.robot, rig.controller, rig.start, rig.policy);
   const std::int64_t start_ns = clock_ns(CLOCK_REALTIME);
-  for (TickSink* sink : sinks) sink->begin(start_ns);
+  for (TickSink* sink : rig.sinks) sink->begin(start_ns);
   const auto begin = std::chrono::steady_clock::now();
   bool running = true;
   while (running) {
-    running = loop.tick(op, interrupts.load(std::memory_order_relaxed));
-    for (TickSink* sink : sinks) sink->add(loop.record());
-    if (running && between && between->act(loop.next_tick(), sinks)) loop.robot_changed();
+    running = loop.tick(rig.op, rig.interrupts.load(std::memory_order_relaxed));
+    for (TickSink* sink : rig.sinks) sink->add(loop.record());
+    if (running && rig.between && rig.between->act(loop.next_tick(), rig.sinks)) {
+      loop.robot_changed();
+    }
   }
-  robot.shut_down();
+  rig.robot.shut_down();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  for (TickSink* sink : sinks) sink->end();
+  for (TickSink* sink : rig.sinks) sink->end();
 
   LoopEnd end;
   end.time_s = static_cast<double>(loop.next_tick()) * kControlPeriod_s;
   end.realtime_factor = end.time_s / wall.count();
   StateHash hash;
-  robot.add_to(hash);
+  rig.robot.add_to(hash);
   loop.add_to(hash);
   end.state_hash = hash.value();
   end.gate = loop.controller().state().gate;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
 #include <type_traits>
 
 #include "policy/policy.h"
 #include "rt/core/state_hash.h"
 #include "rt/loop/control_loop.h"
-#include "rt/loop/tick_sink.h"
+#include "rt/loop/rig.h"
 
 namespace sandrunner {
 
@@ -53,14 +52,6 @@ class Lockstep {
   std::uint64_t next_tick_ = 0;
 };
 
-/// What happens between two ticks of a run in lockstep, in the thread of the ticks.
-class BetweenTicks {
- public:
-  virtual ~BetweenTicks() = default;
-  /// Before tick `next`; what it does is noted in `sinks`. True: it has changed the robot.
-  virtual bool act(std::uint64_t next, TickSinks sinks) = 0;
-};
-
 /// How a loop ended.
 struct LoopEnd {
   double time_s = 0.0;           ///< of the robot, from the first slot on
@@ -69,10 +60,7 @@ struct LoopEnd {
   GateState gate;
 };
 
-/// Ticks until `op` ends it, which sees the `interrupts`, then the drives are off. `between` may be
-/// null.
-LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<int>& interrupts, TickSinks sinks,
-                     BetweenTicks* between = nullptr);
+/// Ticks until the operator ends it, then the drives are off.
+LoopEnd run_lockstep(const Rig& rig);
 
 }  // namespace sandrunner

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -32,9 +31,6 @@ struct RealtimeEnd : LoopEnd {
 /// control thread hangs; if it still hangs two seconds later, the process ends. Wanted rights that
 /// are missing are said on standard error before slot 0. `clock` is shared by all threads. Throws
 /// InputError if a required part of the set-up is not to be had.
-RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
-                         const RealtimeConfig& realtime, Mode start, Policy* policy,
-                         OperatorInput& op, const std::atomic<int>& interrupts, TickSinks sinks,
-                         Clock& clock);
+RealtimeEnd run_realtime(const Rig& rig, const RealtimeConfig& realtime, Clock& clock);
 
 }  // namespace sandrunner

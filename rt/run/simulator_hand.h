@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/loop/lockstep.h"
+#include "rt/loop/rig.h"
 #include "rt/operator/stand_again.h"
 #include "rt/telemetry/view/view_hand.h"
 #include "sim/simulator.h"

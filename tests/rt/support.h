@@ -15,6 +15,7 @@
 #include "rt/base/errors.h"
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
+#include "rt/run/run_script.h"
 #include "rt/run/scene.h"
 #include "sim/simulator.h"
 #include "tests/policy/random_policy.h"
@@ -89,19 +90,22 @@ inline RunResult simulate(const SimulatedRun& run) {
   sink.at_begin = run.at_begin;
   sink.at_tick = run.at_tick;
   sink.at_row = run.at_row;
-  const RunParts parts{.robot = simulator,
-                       .controller = run.config.controller,
-                       .policy = run.policy,
-                       .command = command,
-                       .plan = run.plan,
-                       .live = run.live,
-                       .scene = scene_of(run.config, run.policy ? run.policy->spec().name : ""),
-                       .row_sinks = {&sink},
-                       .sinks = {&sink},
-                       .interrupts = run.interrupts ? *run.interrupts : nobody};
+  RunScript script(command, run.plan, run.policy && !run.config.controller.gate.hanging);
+  const Rig rig{.robot = simulator,
+                .controller = run.config.controller,
+                .start = run.plan.start_walking ? Mode::kWalk : Mode::kPassive,
+                .policy = run.policy,
+                .op = run.live ? *run.live : script,
+                .sinks = {&sink},
+                .interrupts = run.interrupts ? *run.interrupts : nobody};
+  const RunRows rows{.scene = scene_of(run.config, run.policy ? run.policy->spec().name : ""),
+                     .sinks = {&sink}};
   SystemClock system;
-  return run.realtime ? run_in_realtime(parts, run.config.realtime, run.clock ? *run.clock : system)
-                      : run_in_lockstep(parts);
+  RunResult result = run.realtime ? run_in_realtime(rig, rows, run.config.realtime,
+                                                    run.clock ? *run.clock : system)
+                                  : run_in_lockstep(rig, rows);
+  if (!run.live) script.report(result);
+  return result;
 }
 
 /// In lockstep under "1,0,0", uninterrupted.

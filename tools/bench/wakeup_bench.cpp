@@ -10,8 +10,9 @@
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
+#include "rt/realtime/realtime_run.h"
 #include "rt/run/process_config.h"
-#include "rt/run/run.h"
+#include "rt/run/run_script.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 #include "tools/bench/realtime_bench.h"
@@ -33,8 +34,13 @@ Wakeups ours(const ProcessConfig& config, Policy& policy) {
   const CommandSource command("1,0,0");
   RunScript script(command, {.walk_s = kSample_s, .start_walking = true}, true);
   SystemClock clock;
-  const RealtimeEnd end = run_realtime(simulator, config.controller, config.realtime, Mode::kWalk,
-                                       &policy, script, nobody, {}, clock);
+  const RealtimeEnd end = run_realtime({.robot = simulator,
+                                        .controller = config.controller,
+                                        .start = Mode::kWalk,
+                                        .policy = &policy,
+                                        .op = script,
+                                        .interrupts = nobody},
+                                       config.realtime, clock);
   const LogHistogram& late = end.report.control.late;
   return {1e-3 * static_cast<double>(late.quantile_ns(0.5)),
           1e-3 * static_cast<double>(late.quantile_ns(0.99))};

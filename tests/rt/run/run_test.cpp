@@ -223,13 +223,15 @@ TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
   const CommandSource command("1,0,0");
   const std::atomic<int> nobody{false};
   RealRobot robot(config);
-  const RunResult result = run_in_lockstep({.robot = robot,
-                                            .controller = config.controller,
-                                            .policy = &policy,
-                                            .command = command,
-                                            .plan = {.walk_s = 1.0, .start_walking = true},
-                                            .scene = scene_of(config, "raibo"),
-                                            .interrupts = nobody});
+  RunScript script(command, {.walk_s = 1.0, .start_walking = true}, true);
+  RunResult result = run_in_lockstep({.robot = robot,
+                                      .controller = config.controller,
+                                      .start = Mode::kWalk,
+                                      .policy = &policy,
+                                      .op = script,
+                                      .interrupts = nobody},
+                                     {.scene = scene_of(config, "raibo")});
+  script.report(result);
   const RunResult known = simulate(
       {.config = config, .policy = &policy, .plan = {.walk_s = 1.0, .start_walking = true}});
   EXPECT_TRUE(result.survived);

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -378,8 +377,14 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   Policy policy = policy_;
   const std::atomic<int> never{0};
   SystemClock clock;
-  run_realtime(simulator, config_.controller, config_.realtime, Mode::kWalk, &policy, op, never,
-               std::array<TickSink*, 2>{&*box_, &sink}, clock);
+  run_realtime({.robot = simulator,
+                .controller = config_.controller,
+                .start = Mode::kWalk,
+                .policy = &policy,
+                .op = op,
+                .sinks = {&*box_, &sink},
+                .interrupts = never},
+               config_.realtime, clock);
   const BlackBoxResult result = close();
   EXPECT_FALSE(result.difference) << result.difference->what;
   ASSERT_EQ(result.files.size(), 1u);

@@ -65,16 +65,18 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
     const CommandSource command("1,0,0");
     std::vector<TickSink*> sinks = {this};
     if (recorder) sinks.push_back(recorder.get());
-    return run_in_lockstep({.robot = simulator,
-                            .controller = config.controller,
-                            .policy = &policy,
-                            .command = command,
-                            .plan = {.walk_s = seconds, .start_walking = live == nullptr},
-                            .live = live,
-                            .scene = {},
-                            .sinks = sinks,
-                            .between = this,
-                            .interrupts = interrupt});
+    RunScript script(command, {.walk_s = seconds, .start_walking = true}, true);
+    RunResult result = run_in_lockstep({.robot = simulator,
+                                        .controller = config.controller,
+                                        .start = live ? Mode::kPassive : Mode::kWalk,
+                                        .policy = &policy,
+                                        .op = live ? *live : script,
+                                        .sinks = sinks,
+                                        .between = this,
+                                        .interrupts = interrupt},
+                                       {});
+    if (!live) script.report(result);
+    return result;
   }
 
   /// Mean depth of the feet that touch the ground, m, from one tick to another.

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "policy/policy.h"
+#include "rt/core/controller.h"
+#include "rt/core/robot_io.h"
+#include "rt/loop/operator_input.h"
+#include "rt/loop/tick_sink.h"
+
+namespace sandrunner {
+
+/// What happens between two ticks of a run in lockstep, in the thread of the ticks.
+class BetweenTicks {
+ public:
+  virtual ~BetweenTicks() = default;
+  /// Before tick `next`; what it does is noted in `sinks`. True: it has changed the robot.
+  virtual bool act(std::uint64_t next, TickSinks sinks) = 0;
+};
+
+/// A run, assembled: run_lockstep and run_realtime take it. All parts outlive the run.
+struct Rig {
+  RobotIo& robot;
+  const ControllerConfig& controller;
+  Mode start = Mode::kPassive;  ///< of the controller
+  Policy* policy = nullptr;     ///< null: none
+  OperatorInput& op;            ///< commands the robot and ends the run
+  std::vector<TickSink*> sinks = {};
+  BetweenTicks* between = nullptr;  ///< in lockstep only; null: nothing
+  /// How often the end of the run was requested: at the first time the operator ends it gently, at
+  /// the second in damping at once.
+  const std::atomic<int>& interrupts;
+};
+
+}  // namespace sandrunner
