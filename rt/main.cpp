@@ -247,25 +247,24 @@ int run(int argc, char** argv) {
   if (options->check.asked) return check(*options);
   const CommandSource command(options->live ? "0,0,0" : options->command);
   std::string policy_text;
-  std::optional<Policy> policy;
+  PolicyRunner policy;
   if (options->policy_path.empty()) {
     policy_text = shipped_policy_text();
-    policy = load_policy_text(policy_text, "raibo.safetensors (built in)");
+    policy = PolicyRunner(load_policy_text(policy_text, "raibo.safetensors (built in)"));
   } else if (options->policy_path != kNoPolicy) {
     policy_text = read_input_file(options->policy_path, "a policy file");
-    policy = load_policy_text(policy_text, options->policy_path);
+    policy = PolicyRunner(load_policy_text(policy_text, options->policy_path));
   }
-  const std::string policy_name = policy ? policy->spec().name : "";
-  const ProcessConfig config = read_config(*options, policy ? &policy->spec() : nullptr);
+  const ProcessConfig config = read_config(*options, policy.spec());
   if (options->dry_run) {
     fmt::print("{}", dry_run(config));
     return kExitOk;
   }
-  if (policy && !policy->spec().has_envelope) {
+  if (policy.spec() && !policy.spec()->has_envelope) {
     to_standard_error(
         fmt::format("sandrunner: policy '{}' does not say which commands it can follow: they are "
                     "held to a narrow envelope (sandrunner-policy envelope)\n",
-                    policy_name));
+                    policy.name()));
   }
   if (config.controller.gate.hanging) {
     to_standard_error(
@@ -281,8 +280,8 @@ int run(int argc, char** argv) {
   std::optional<OperatorDesk> desk;
   const char* const no_walk = config.controller.gate.hanging
                                   ? "the robot hangs (hardware.hanging), it may not walk"
-                              : policy ? nullptr
-                                       : "no policy to walk with";
+                              : policy.is_none() ? "no policy to walk with"
+                                                 : nullptr;
   if (options->live) {
     remote.emplace(config.dds.stale_ticks());
     desk.emplace(*remote, config.dds.stale_s, no_walk);
@@ -292,9 +291,8 @@ int run(int argc, char** argv) {
   if (remote && options->view && !options->realtime) stand_again.emplace(*remote);
   Sinks sinks;
   if (config.dds.enabled) sinks.dds.emplace(config, open_desk, !options->realtime);
-  Policy* const brain = policy ? &*policy : nullptr;
-  sinks.recorder = make_recorder(*options, config, policy_text, brain);
-  sinks.black_box = make_black_box(*options, config, policy_text, brain);
+  sinks.recorder = make_recorder(*options, config, policy_text, policy);
+  sinks.black_box = make_black_box(*options, config, policy_text, policy);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
   if (robot.hardware) {
@@ -303,7 +301,7 @@ int run(int argc, char** argv) {
     }
   }
 
-  const RunScene scene = scene_of(config, policy_name);
+  const RunScene scene = scene_of(config, policy.name());
   if (options->view) {
     sinks.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
                        robot.simulator.get(), stand_again ? &*stand_again : nullptr);
@@ -316,7 +314,7 @@ int run(int argc, char** argv) {
   const Rig rig{.robot = robot.io(),
                 .controller = config.controller,
                 .start = options->start_walking ? Mode::kWalk : Mode::kPassive,
-                .policy = brain,
+                .policy = policy,
                 .op = stand_again ? static_cast<OperatorInput&>(*stand_again)
                       : remote    ? static_cast<OperatorInput&>(*remote)
                                   : script,
@@ -335,7 +333,7 @@ int run(int argc, char** argv) {
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
-  const RunInfo info{options->live ? options->command : command.text(), policy_name,
+  const RunInfo info{options->live ? options->command : command.text(), policy.name(),
                      robot.hardware ? "real" : options->terrain,
                      options->realtime ? "realtime" : "lockstep", options->seed};
   std::string written;

@@ -7,6 +7,11 @@
 
 namespace sandrunner {
 
+Lockstep::Lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, PolicyRunner& policy)
+    : policy_(policy), link_(policy), loop_(robot, config, start, link_, clock_) {
+  policy_.reset();
+}
+
 void Lockstep::tick(const OperatorCommand& command) noexcept {
   loop_.tick({.number = next_tick_++}, command, record_);
 }
@@ -19,7 +24,7 @@ LockstepState Lockstep::state() noexcept {
   LockstepState s;
   s.policy_output = policy_.newest();
   s.controller = loop_.controller().state();
-  if (policy_.policy()) s.network = policy_.policy()->state();
+  s.network = policy_.network();
   return s;
 }
 

@@ -3,7 +3,6 @@
 
 #include <type_traits>
 
-#include "policy/policy.h"
 #include "rt/core/state_hash.h"
 #include "rt/loop/control_loop.h"
 #include "rt/loop/rig.h"
@@ -22,9 +21,8 @@ static_assert(std::is_trivially_copyable_v<LockstepState>);
 /// the tick that releases it. Bit-identical from run to run, and as fast as the machine goes.
 class Lockstep {
  public:
-  /// `policy` may be null: then Walk holds the nominal pose until its output counts as stale.
-  Lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy)
-      : policy_(policy), loop_(robot, config, start, policy_, clock_) {}
+  /// Without a policy Walk holds the nominal pose until its output counts as stale.
+  Lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, PolicyRunner& policy);
 
   /// The next tick under the operator's latest command.
   void tick(const OperatorCommand& command) noexcept;
@@ -45,7 +43,8 @@ class Lockstep {
   void add_to(StateHash& hash) noexcept { hash.add(state()); }
 
  private:
-  InlinePolicy policy_;
+  PolicyRunner& policy_;
+  InlinePolicy link_;
   ManualClock clock_;
   ControlLoop loop_;
   TickRecord record_;

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "policy/policy.h"
 #include "rt/core/controller.h"
 #include "rt/core/robot_io.h"
 #include "rt/loop/operator_input.h"
+#include "rt/loop/policy_runner.h"
 #include "rt/loop/tick_sink.h"
 
 namespace sandrunner {
@@ -26,8 +26,8 @@ struct Rig {
   RobotIo& robot;
   const ControllerConfig& controller;
   Mode start = Mode::kPassive;  ///< of the controller
-  Policy* policy = nullptr;     ///< null: none
-  OperatorInput& op;            ///< commands the robot and ends the run
+  PolicyRunner& policy;
+  OperatorInput& op;  ///< commands the robot and ends the run
   std::vector<TickSink*> sinks = {};
   BetweenTicks* between = nullptr;  ///< in lockstep only; null: nothing
   /// How often the end of the run was requested: at the first time the operator ends it gently, at

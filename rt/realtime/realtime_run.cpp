@@ -100,7 +100,8 @@ RealtimeEnd run_threads(const Rig& rig, const RealtimeConfig& realtime, Clock& c
   ControlThread control(rig.robot, loop, rig.op, *ring, clock, rig.interrupts, stop);
   Watchdog watchdog(rig.robot, control.ticks(), clock);
   std::optional<PolicyThread> policy_thread;
-  if (rig.policy) policy_thread.emplace(*rig.policy, *exchange, clock);
+  rig.policy.reset();
+  if (!rig.policy.is_none()) policy_thread.emplace(rig.policy, *exchange, clock);
 
   RealtimeEnd end;
   // At most what the ring holds, or a sink slower than the ticks would never return.
@@ -135,7 +136,7 @@ RealtimeEnd run_threads(const Rig& rig, const RealtimeConfig& realtime, Clock& c
   StateHash hash;
   rig.robot.add_to(hash);
   hash.add(state);
-  if (rig.policy) hash.add(rig.policy->state());
+  hash.add(rig.policy.network());
   end.state_hash = hash.value();
   end.gate = state.gate;
   const ControlDeadlines& done = control.deadlines();

@@ -25,7 +25,7 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
 }  // namespace
 
 std::unique_ptr<Recorder> make_recorder(const Options& options, const ProcessConfig& config,
-                                        std::string_view policy_file, const Policy* policy) {
+                                        std::string_view policy_file, const PolicyRunner& policy) {
   if (options.record_dir.empty()) return nullptr;
   prepare_folder(options.record_dir, "--record");
   return std::make_unique<Recorder>(options.record_dir + "/run.mcap",
@@ -34,7 +34,7 @@ std::unique_ptr<Recorder> make_recorder(const Options& options, const ProcessCon
 }
 
 std::unique_ptr<BlackBox> make_black_box(const Options& options, const ProcessConfig& config,
-                                         std::string_view policy_file, const Policy* policy) {
+                                         std::string_view policy_file, const PolicyRunner& policy) {
   if (!options.realtime) return nullptr;
   const std::string folder = !options.record_dir.empty() ? options.record_dir
                              : !options.out_dir.empty()  ? options.out_dir

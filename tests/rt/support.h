@@ -69,7 +69,7 @@ struct CallingSink final : TickSink, RowSink {
 /// A run of the simulated robot.
 struct SimulatedRun {
   const ProcessConfig& config;
-  Policy* policy = nullptr;
+  PolicyRunner policy = {};
   std::string command = "1,0,0";
   RunPlan plan = {};
   const std::atomic<int>* interrupts = nullptr;
@@ -90,16 +90,16 @@ inline RunResult simulate(const SimulatedRun& run) {
   sink.at_begin = run.at_begin;
   sink.at_tick = run.at_tick;
   sink.at_row = run.at_row;
-  RunScript script(command, run.plan, run.policy && !run.config.controller.gate.hanging);
+  PolicyRunner policy = run.policy;
+  RunScript script(command, run.plan, !run.policy.is_none() && !run.config.controller.gate.hanging);
   const Rig rig{.robot = simulator,
                 .controller = run.config.controller,
                 .start = run.plan.start_walking ? Mode::kWalk : Mode::kPassive,
-                .policy = run.policy,
+                .policy = policy,
                 .op = run.live ? *run.live : script,
                 .sinks = {&sink},
                 .interrupts = run.interrupts ? *run.interrupts : nobody};
-  const RunRows rows{.scene = scene_of(run.config, run.policy ? run.policy->spec().name : ""),
-                     .sinks = {&sink}};
+  const RunRows rows{.scene = scene_of(run.config, policy.name()), .sinks = {&sink}};
   SystemClock system;
   RunResult result = run.realtime ? run_in_realtime(rig, rows, run.config.realtime,
                                                     run.clock ? *run.clock : system)
@@ -109,7 +109,8 @@ inline RunResult simulate(const SimulatedRun& run) {
 }
 
 /// In lockstep under "1,0,0", uninterrupted.
-inline RunResult run_once(const ProcessConfig& config, Policy* policy, const RunPlan& plan) {
+inline RunResult run_once(const ProcessConfig& config, const PolicyRunner& policy,
+                          const RunPlan& plan) {
   return simulate({.config = config, .policy = policy, .plan = plan});
 }
 

@@ -28,7 +28,7 @@ struct Wakeups {
   double p50_us = 0.0, p99_us = 0.0;
 };
 
-Wakeups ours(const ProcessConfig& config, Policy& policy) {
+Wakeups ours(const ProcessConfig& config, PolicyRunner& policy) {
   const std::atomic<int> nobody{0};
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command("1,0,0");
@@ -37,7 +37,7 @@ Wakeups ours(const ProcessConfig& config, Policy& policy) {
   const RealtimeEnd end = run_realtime({.robot = simulator,
                                         .controller = config.controller,
                                         .start = Mode::kWalk,
-                                        .policy = &policy,
+                                        .policy = policy,
                                         .op = script,
                                         .interrupts = nobody},
                                        config.realtime, clock);
@@ -91,10 +91,10 @@ Wakeups cyclictest(int cpu) {
 }  // namespace
 
 void run_wakeup_bench(int rounds, Report& report) {
-  Policy policy = load_shipped_policy();
+  PolicyRunner policy(load_shipped_policy());
   ConfigTree tree;
   sim::add_terrain_layer(tree, "dry-sand");
-  ProcessConfig config = read_process_config(tree, &policy.spec());
+  ProcessConfig config = read_process_config(tree, policy.spec());
   const int cpu = allowed_cpus().back();
   config.realtime.control_cpu = cpu;
   config.realtime.control_priority = kPriority;

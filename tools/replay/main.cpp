@@ -94,20 +94,22 @@ struct Player {
     tree.add_text(info.config, "the recording's settings");
     const std::string robot_name = tree.text("robot", "");
     for (const std::string& assignment : arguments.assignments) tree.set(assignment);
-    if (!info.policy.empty()) policy.emplace(load_policy_text(info.policy, "the recorded policy"));
+    PolicyRunner policy;
+    if (!info.policy.empty()) {
+      policy = PolicyRunner(load_policy_text(info.policy, "the recorded policy"));
+    }
     const sim::Robot robot = recorded_robot(info, arguments.file);
     const bool another = tree.text("robot", "") != robot_name;  // by --set
-    config =
-        read_process_config(tree, policy ? &policy->spec() : nullptr, another ? nullptr : &robot);
+    config = read_process_config(tree, policy.spec(), another ? nullptr : &robot);
     if (info.first_tick == 0 || !info.state.empty()) {
-      replay.emplace(config.controller, start_mode_of(info), policy ? &*policy : nullptr);
+      replay.emplace(config.controller, start_mode_of(info), policy);
       if (info.first_tick > 0) {
         replay->restore(read_replay_state(
             info.state, fmt::format("{}: attachment '{}'", arguments.file, kStateAttachment)));
       }
     }
     if (arguments.plot_dir.empty() && !arguments.view) return;
-    const RunScene scene = scene_of(config, policy ? policy->spec().name : "");
+    const RunScene scene = scene_of(config, policy.name());
     if (arguments.view) {
       constexpr std::size_t kMostFrames = 10 * 60 * kPolicyHz;
       feed.emplace(scene,
@@ -117,7 +119,6 @@ struct Player {
   }
 
   ProcessConfig config;
-  std::optional<Policy> policy;
   std::optional<Replay> replay;         ///< nothing: the recording has no state to start from
   bool in_step = true;                  ///< false: behind lost ticks, until the next state
   std::optional<ViewFeed> feed;         ///< with --view

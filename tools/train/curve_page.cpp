@@ -28,7 +28,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, double 
   ConfigTree tree;
   sim::add_terrain_layer(tree, kGround);
   const ProcessConfig config = read_process_config(tree, &file.spec, &robot);
-  Policy policy(file.spec, Network(file.parameters));
+  PolicyRunner policy(Policy(file.spec, Network(file.parameters)));
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command(fmt::format("{},0,0", speed_mps));
   const std::atomic<int> nobody{false};
@@ -36,7 +36,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, double 
   RunResult run = run_in_lockstep({.robot = simulator,
                                    .controller = config.controller,
                                    .start = Mode::kWalk,
-                                   .policy = &policy,
+                                   .policy = policy,
                                    .op = script,
                                    .interrupts = nobody},
                                   {.scene = scene_of(config, file.spec.name)});

@@ -41,13 +41,12 @@ TickQueue::Batch uncompressed(std::span<const std::byte> bytes, std::size_t tick
 }  // namespace
 
 BlackBox::BlackBox(std::string folder, RecordingInfo info, const ControllerConfig& config,
-                   const Policy* policy, double window_s, bool wait)
+                   PolicyRunner policy, double window_s, bool wait)
     : folder_(std::move(folder)),
       info_(std::move(info)),
       kept_ticks_(ticks_from_s(window_s + kBlackBoxAfter_s)),
       queue_(kBlockTicks, kQueuedBlocks, wait),
-      policy_(policy ? std::optional<Policy>(*policy) : std::nullopt),
-      replay_(config, start_mode_of(info_), policy_ ? &*policy_ : nullptr) {
+      replay_(config, start_mode_of(info_), std::move(policy)) {
   thread_ = std::thread([this] { work(); });
 }
 

@@ -10,7 +10,6 @@
 #include <thread>
 #include <vector>
 
-#include "policy/policy.h"
 #include "rt/core/controller.h"
 #include "rt/loop/replay.h"
 #include "rt/loop/tick_sink.h"
@@ -61,9 +60,9 @@ struct BlackBoxResult {
 /// memory, 105 MB with encoder noise; 1.6 % of a core, and 0.7 s of that core per file.
 class BlackBox final : public TickSink {
  public:
-  /// `policy` is copied; null if the run has none. `wait`: as for Recorder.
+  /// `policy`: that of the run. `wait`: as for Recorder.
   BlackBox(std::string folder, RecordingInfo info, const ControllerConfig& config,
-           const Policy* policy, double window_s = kBlackBox_s, bool wait = false);
+           PolicyRunner policy, double window_s = kBlackBox_s, bool wait = false);
   ~BlackBox() override;
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
@@ -103,7 +102,6 @@ class BlackBox final : public TickSink {
   const std::uint64_t kept_ticks_;
   TickQueue queue_;
   // Only its thread uses what follows.
-  std::optional<Policy> policy_;
   Replay replay_;  // behind the newest tick, or at the difference or lost ticks
   std::deque<std::shared_ptr<const Block>> window_;
   std::size_t bytes_ = 0;

@@ -16,13 +16,12 @@ constexpr std::size_t kQueuedBatches = 200;  // two seconds
 }  // namespace
 
 Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits,
-                   bool wait, const ControllerConfig* config, const Policy* policy)
+                   bool wait, const ControllerConfig* config, PolicyRunner policy)
     : path_(path),
       limits_(limits),
       info_(std::move(info)),
-      queue_(kTicksPerMessage, kQueuedBatches, wait),
-      policy_(policy ? std::optional<Policy>(*policy) : std::nullopt) {
-  if (config) replay_.emplace(*config, start_mode_of(info_), policy_ ? &*policy_ : nullptr);
+      queue_(kTicksPerMessage, kQueuedBatches, wait) {
+  if (config) replay_.emplace(*config, start_mode_of(info_), std::move(policy));
   McapWriter::try_path(path_);
   thread_ = std::thread([this] { work(); });
 }

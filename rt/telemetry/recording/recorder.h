@@ -8,7 +8,6 @@
 #include <thread>
 #include <vector>
 
-#include "policy/policy.h"
 #include "rt/core/controller.h"
 #include "rt/loop/replay.h"
 #include "rt/loop/tick_sink.h"
@@ -43,10 +42,10 @@ struct RecordingResult {
 class Recorder final : public TickSink {
  public:
   /// `wait`: while the queue is full, add() waits (in lockstep, where that hurts nobody) instead of
-  /// dropping and counting the newest ticks. `policy` is copied; null if the run has none. Throws
+  /// dropping and counting the newest ticks. `policy`: that of the run. Throws
   /// InputError if the file cannot be written.
   Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits, bool wait,
-           const ControllerConfig* config = nullptr, const Policy* policy = nullptr);
+           const ControllerConfig* config = nullptr, PolicyRunner policy = {});
   ~Recorder() override;
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -77,7 +76,6 @@ class Recorder final : public TickSink {
   std::mutex notes_mutex_;
   std::vector<Note> notes_;  // that are not written yet
   // Only the thread that writes uses what follows.
-  std::optional<Policy> policy_;
   std::optional<Replay> replay_;  // before the next tick; nothing once ticks are missing
   std::optional<RecordingWriter> writer_;
   std::uint64_t bytes_at_state_ = 0;  // of the file, when the last state was written

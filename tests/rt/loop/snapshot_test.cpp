@@ -13,7 +13,7 @@ struct Loop {
   Loop(const ProcessConfig& config, Mode start, const Policy& policy_in)
       : policy(policy_in),
         simulator(config.robot, config.simulator),
-        loop(simulator, config.controller, start, &policy) {
+        loop(simulator, config.controller, start, policy) {
     if (start != Mode::kWalk) simulator.reset_lying();
   }
 
@@ -39,7 +39,7 @@ struct Loop {
     return hash.value();
   }
 
-  Policy policy;
+  PolicyRunner policy;
   sim::Simulator simulator;
   Lockstep loop;
 };

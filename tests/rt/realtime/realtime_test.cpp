@@ -28,10 +28,10 @@ RunResult run_unless_stalled(const std::function<RunResult()>& run) {
 }
 
 RunResult run_live(LiveOperator& op, const std::function<void()>& at_each_tick) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   return simulate({.config = config,
-                   .policy = &policy,
+                   .policy = policy,
                    .plan = {.start_walking = true},
                    .at_tick = [&](const TickRecord&) { at_each_tick(); },
                    .live = &op,
@@ -54,12 +54,12 @@ class Steps {
 };
 
 TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFirst) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   std::int64_t start_ns = 0, least_ns = std::numeric_limits<std::int64_t>::max();
   int ticks_before_start = 0;
   simulate({.config = config,
-            .policy = &policy,
+            .policy = policy,
             .plan = {.walk_s = 0.3, .start_walking = true},
             .at_tick =
                 [&](const TickRecord& tick) {
@@ -78,11 +78,11 @@ TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFi
 }
 
 TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   const RunResult result = run_unless_stalled([&] {
     return simulate({.config = config,
-                     .policy = &policy,
+                     .policy = policy,
                      .plan = {.walk_s = 2.0, .start_walking = true},
                      .realtime = true});
   });
@@ -160,11 +160,11 @@ TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
 
 /// A walk in which `interrupts` sees every tick, and says when to interrupt it.
 RunResult walk_until(const std::function<bool(const TickRecord&)>& interrupts) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   std::atomic<int> interrupt{false};
   return simulate({.config = config,
-                   .policy = &policy,
+                   .policy = policy,
                    .plan = {.walk_s = 60.0, .start_walking = true},
                    .interrupts = &interrupt,
                    .at_tick = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
@@ -192,13 +192,13 @@ TEST(RealtimeTest, InterruptReachesARobotWhoseTicksAreTakenTooSlowly) {
 }
 
 TEST(RealtimeTest, RequiredProcessorThatIsRefusedIsBadInput) {
-  Policy policy = load_shipped_policy();
+  PolicyRunner policy(load_shipped_policy());
   // No machine has this processor.
   const ProcessConfig config = config_of(
-      "dry-sand", {"realtime.affinity=require", "realtime.control_cpu=1023"}, &policy.spec());
+      "dry-sand", {"realtime.affinity=require", "realtime.control_cpu=1023"}, policy.spec());
   const auto start = [&] {
     simulate({.config = config,
-              .policy = &policy,
+              .policy = policy,
               .plan = {.walk_s = 1.0, .start_walking = true},
               .realtime = true});
   };

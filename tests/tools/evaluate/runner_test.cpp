@@ -135,7 +135,8 @@ TEST_F(RunnerTest, FactsAreTheRobotsWithTheLowerOfTwoTorqueLimits) {
 // The control process in double and the evaluation in float are two programs around the same steps.
 TEST_F(RunnerTest, AgreesWithTheControlProcess) {
   flush_denormals_to_zero();
-  Policy policy = load_shipped_policy();
+  const Policy policy = load_shipped_policy();
+  PolicyRunner runner(policy);
   for (const char* ground : {"dry-sand", "rigid"}) {
     SCOPED_TRACE(ground);
     ConfigTree tree;
@@ -148,7 +149,7 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     RunResult process = run_in_lockstep({.robot = simulator,
                                          .controller = config.controller,
                                          .start = Mode::kWalk,
-                                         .policy = &policy,
+                                         .policy = runner,
                                          .op = script,
                                          .interrupts = interrupt},
                                         {.scene = scene_of(config, policy.spec().name)});

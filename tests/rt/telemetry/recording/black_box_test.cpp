@@ -41,7 +41,7 @@ class BlackBoxTest : public RecordingProgramTest {
 
   std::string dir() const { return std::filesystem::path(folder_.path("")).parent_path(); }
   void open(const std::string& folder) {
-    box_.emplace(folder, info_, config_.controller, &policy_, kWindow_s, true);
+    box_.emplace(folder, info_, config_.controller, policy_, kWindow_s, true);
   }
 
   /// Walks on to tick `end`. In the ticks `faults` the command is not a number, which is a fault.
@@ -91,10 +91,10 @@ class BlackBoxTest : public RecordingProgramTest {
     EXPECT_NE(last.find(part), std::string::npos) << text;
   }
 
-  Policy policy_ = load_shipped_policy();
+  const PolicyRunner policy_{load_shipped_policy()};
   const ProcessConfig config_ = config_of(
       "dry-sand", {"sim.noise.joint_position_rad=0.005", "controller.damping.fault_s=0.5"},
-      &policy_.spec());
+      policy_.spec());
   RecordingInfo info_;
   OperatorCommand command_;
   std::pair<std::uint64_t, std::uint64_t> lost_{};  ///< from, to: the black box does not get these
@@ -102,8 +102,8 @@ class BlackBoxTest : public RecordingProgramTest {
 
  private:
   sim::Simulator simulator_{config_.robot, config_.simulator};
-  Policy walking_ = policy_;
-  Lockstep loop_{simulator_, config_.controller, Mode::kWalk, &walking_};
+  PolicyRunner walking_ = policy_;
+  Lockstep loop_{simulator_, config_.controller, Mode::kWalk, walking_};
 };
 
 TEST_F(BlackBoxTest, HoldsTheWindowBeforeTheFaultAndTheLetDownAndReplaysFromItsState) {
@@ -233,8 +233,8 @@ TEST_F(BlackBoxTest, RunWithoutAFaultHasNoFileAndIsVerified) {
 }
 
 TEST_F(BlackBoxTest, RunThatDoesNotReplayIsReported) {
-  ProcessConfig other = config_of("dry-sand", {"controller.walk.kd_nmsprad=0.6"}, &policy_.spec());
-  box_.emplace(dir(), info_, other.controller, &policy_, kWindow_s, true);
+  ProcessConfig other = config_of("dry-sand", {"controller.walk.kd_nmsprad=0.6"}, policy_.spec());
+  box_.emplace(dir(), info_, other.controller, policy_, kWindow_s, true);
   walk_to(24000);
   const BlackBoxResult result = close();
   ASSERT_TRUE(result.difference);
@@ -363,7 +363,7 @@ TEST_F(BlackBoxTest, DamagedChunkCostsItsOwnSpanOnly) {
 
 // With two threads, answers come late, so that at any tick the policy may still be at work.
 TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
-  box_.emplace(dir(), info_, config_.controller, &policy_, 0.3);
+  box_.emplace(dir(), info_, config_.controller, policy_, 0.3);
   LiveOperator op;
   op.want(VelocityCommand{.vx_mps = 1.0});
   CallingSink sink;
@@ -374,13 +374,13 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
     if (op.time_s() > 3.2) op.end();
   };
   sim::Simulator simulator(config_.robot, config_.simulator);
-  Policy policy = policy_;
+  PolicyRunner policy = policy_;
   const std::atomic<int> never{0};
   SystemClock clock;
   run_realtime({.robot = simulator,
                 .controller = config_.controller,
                 .start = Mode::kWalk,
-                .policy = &policy,
+                .policy = policy,
                 .op = op,
                 .sinks = {&*box_, &sink},
                 .interrupts = never},

@@ -28,8 +28,6 @@ constexpr const char* kSoft =
     R"({"say":"terrain","preset":"","set":{"sigma_flat_npm3":2500000,"sigma_cone_npm3":150000}})";
 constexpr const char* kPushLeft = R"({"say":"push","direction":1.5707963267948966})";
 
-Policy shipped() { return load_policy_text(std::string(shipped_policy_text()), "built in"); }
-
 /// A run in lockstep with a page that has the key.
 struct HandTest : testing::Test, TickSink, BetweenTicks {
   HandTest() {
@@ -69,7 +67,7 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
     RunResult result = run_in_lockstep({.robot = simulator,
                                         .controller = config.controller,
                                         .start = live ? Mode::kPassive : Mode::kWalk,
-                                        .policy = &policy,
+                                        .policy = policy,
                                         .op = live ? *live : script,
                                         .sinks = sinks,
                                         .between = this,
@@ -93,8 +91,8 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
     return sum / count;
   }
 
-  Policy policy = shipped();
-  const ProcessConfig config = config_of("wet-sand", {}, &policy.spec());
+  PolicyRunner policy{load_shipped_policy()};
+  const ProcessConfig config = config_of("wet-sand", {}, policy.spec());
   sim::Simulator simulator{config.robot, config.simulator};
   RemoteOperator remote{1200};
   StandAgain stand_again{remote};
@@ -117,7 +115,7 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
   info.start_mode = "walk";
   info.clock = "lockstep";
   recorder = std::make_unique<Recorder>(folder.path("run.mcap"), info, RecordingLimits{}, true,
-                                        &config.controller, &policy);
+                                        &config.controller, policy);
   const RunResult result = walk(4.0, [&](std::uint64_t next) {
     if (next == 2 * kSecond) {
       EXPECT_EQ(say(kSoft), "");
@@ -131,8 +129,7 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
   RecordProperty("before_mm", std::to_string(1e3 * before_m));
   RecordProperty("after_mm", std::to_string(1e3 * after_m));
 
-  Policy again = shipped();
-  Replay replay(config.controller, Mode::kWalk, &again);
+  Replay replay(config.controller, Mode::kWalk, policy);
   std::vector<std::string> events;
   RecordingVisitor visitor;
   visitor.tick = [&](const TickRecord& tick) {
@@ -150,8 +147,7 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
 }
 
 TEST_F(HandTest, ARunThatNobodyTouchesIsTheSameToTheBit) {
-  Policy other = shipped();
-  const RunResult plain = run_once(config, &other, {.walk_s = 1.0, .start_walking = true});
+  const RunResult plain = run_once(config, policy, {.walk_s = 1.0, .start_walking = true});
   EXPECT_EQ(walk(1.0, {}).end.state_hash, plain.end.state_hash);
   EXPECT_TRUE(notes.empty());
 }
