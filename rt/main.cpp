@@ -77,20 +77,6 @@ class ProgressLine final : public TickSink {
   SlowerRate rate_{2};
 };
 
-std::string recording_line(const RecordingResult& r, const std::string& dir) {
-  if (r.ticks == 0 && r.stopped_because.empty()) return "recorded nothing: no tick ran\n";
-  if (r.removed) return fmt::format("NOT RECORDED: {}/run.mcap was removed during the run\n", dir);
-  const std::string lost =
-      r.dropped > 0 ? fmt::format(
-                          "; {} ticks LOST, a replay compares nothing behind the first of "
-                          "them",
-                          r.dropped)
-                    : "";
-  return fmt::format("recorded {} ticks, {:.1f} MB, in {}/run.mcap{}{}\n", r.ticks,
-                     1e-6 * static_cast<double>(r.bytes), dir, lost,
-                     r.stopped_because.empty() ? "" : "; STOPPED: " + r.stopped_because);
-}
-
 // Writes the files of --out; returns the line that names them. Throws InputError.
 std::string write_results(const RunResult& result, const RunInfo& info,
                           const std::string& effective, const std::string& folder) {
@@ -185,16 +171,14 @@ struct LiveView final : BetweenTicks {
 // What takes the ticks of a run.
 struct Sinks {
   std::optional<ProgressLine> progress;
-  std::unique_ptr<Recorder> recorder;
-  std::unique_ptr<BlackBox> black_box;
+  std::optional<RunRecording> recording;
   std::optional<DdsBridge> dds;
   std::optional<LiveView> view;
 
   std::vector<TickSink*> all() {
     std::vector<TickSink*> sinks;
     if (progress) sinks.push_back(&*progress);
-    if (recorder) sinks.push_back(recorder.get());
-    if (black_box) sinks.push_back(black_box.get());
+    if (recording) recording->add_to(sinks);
     if (dds) sinks.push_back(&*dds);
     if (view) sinks.push_back(&view->feed);
     return sinks;
@@ -291,8 +275,7 @@ int run(int argc, char** argv) {
   if (remote && options->view && !options->realtime) stand_again.emplace(*remote);
   Sinks sinks;
   if (config.dds.enabled) sinks.dds.emplace(config, open_desk, !options->realtime);
-  sinks.recorder = make_recorder(*options, config, policy_text, policy);
-  sinks.black_box = make_black_box(*options, config, policy_text, policy);
+  sinks.recording.emplace(*options, config, policy_text, policy);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
   if (robot.hardware) {
@@ -328,9 +311,6 @@ int run(int argc, char** argv) {
                                        : run_in_lockstep(rig, rows);
   if (!remote) script.report(result);
 
-  const RecordingResult recorded = sinks.recorder ? sinks.recorder->result() : RecordingResult();
-  const BlackBoxResult kept = sinks.black_box ? sinks.black_box->result() : BlackBoxResult();
-
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
   const RunInfo info{options->live ? options->command : command.text(), policy.name(),
@@ -339,22 +319,12 @@ int run(int argc, char** argv) {
   std::string written;
   std::exception_ptr not_written;
   try {
-    if (out) {
-      written = write_results(result, info, config.effective, options->out_dir);
-    }
+    if (out) written = write_results(result, info, config.effective, options->out_dir);
+    sinks.recording->require_whole();
   } catch (const InputError&) {
     not_written = std::current_exception();
   }
-  if (recorded.removed && !not_written) {
-    not_written = std::make_exception_ptr(InputError(
-        fmt::format("--record: {}/run.mcap was removed during the run", options->record_dir)));
-  }
-  if (recorded.failed && !not_written) {
-    not_written = std::make_exception_ptr(
-        InputError(fmt::format("--record: the recording is cut: {}", recorded.stopped_because)));
-  }
-  if (sinks.recorder) written += recording_line(recorded, options->record_dir);
-  if (sinks.black_box) written += black_box_lines(kept);
+  written += sinks.recording->report();
   if (robot.hardware) {
     written += hardware_report(*robot.hardware, *config.hardware, config.robot.description);
   }

@@ -62,7 +62,7 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
     before_tick = before;
     const CommandSource command("1,0,0");
     std::vector<TickSink*> sinks = {this};
-    if (recorder) sinks.push_back(recorder.get());
+    if (recorded) sinks.push_back(&*recorded);
     RunScript script(command, {.walk_s = seconds, .start_walking = true}, true);
     RunResult result = run_in_lockstep({.robot = simulator,
                                         .controller = config.controller,
@@ -103,7 +103,8 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
                                    ViewServer::Parts{.feed = feed, .hand = &*hand}};
   std::optional<WebPage> page;
   std::atomic<int> interrupt{false};
-  std::unique_ptr<Recorder> recorder;
+  std::optional<Recorder> recorder;
+  std::optional<ReplayedTicks> recorded;
   std::vector<TickRecord> ticks;
   std::vector<std::string> notes;
   std::function<void(std::uint64_t)> before_tick;
@@ -114,8 +115,9 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
   RecordingInfo info;
   info.start_mode = "walk";
   info.clock = "lockstep";
-  recorder = std::make_unique<Recorder>(folder.path("run.mcap"), info, RecordingLimits{}, true,
-                                        &config.controller, policy);
+  recorder.emplace(folder.path("run.mcap"), info, RecordingLimits{});
+  recorded.emplace(config.controller, Mode::kWalk, policy, WhenFull::kWait,
+                   std::vector<TickKeeper*>{&*recorder});
   const RunResult result = walk(4.0, [&](std::uint64_t next) {
     if (next == 2 * kSecond) {
       EXPECT_EQ(say(kSoft), "");
