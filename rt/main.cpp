@@ -142,12 +142,12 @@ TheRobot make_robot(const Options& options, const ProcessConfig& config) {
 struct LiveView final : BetweenTicks {
   /// `simulator`: null unless in lockstep on simulated ground; so is `stand_again` without
   /// operators.
-  LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
+  LiveView(const RunScene& scene, const ProcessConfig& config, RunClock clock,
            const std::atomic<int>& interrupts, OperatorDesk* desk, sim::Simulator* simulator,
            StandAgain* stand_again)
       : feed(scene) {
-    if (lockstep) pace.emplace(interrupts);
-    if (lockstep && simulator) {
+    if (clock == RunClock::kLockstep) pace.emplace(interrupts);
+    if (pace && simulator) {
       hand.emplace(*simulator, config.simulator.terrain, config.effective, stand_again);
     }
     server.emplace(config.view_port, ViewServer::Parts{.feed = feed,
@@ -157,9 +157,9 @@ struct LiveView final : BetweenTicks {
     to_standard_error(fmt::format("sandrunner: look at {}\n", server->url()));
   }
 
-  bool act(std::uint64_t next, TickSinks sinks) override {
+  RobotNow act(std::uint64_t next, TickSinks sinks) override {
     pace->wait();
-    return hand && hand->act(next, sinks);
+    return hand ? hand->act(next, sinks) : RobotNow::kAsBefore;
   }
 
   ViewFeed feed;
@@ -272,9 +272,10 @@ int run(int argc, char** argv) {
   }
   OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   std::optional<StandAgain> stand_again;
-  if (remote && options->view && !options->realtime) stand_again.emplace(*remote);
+  if (remote && options->view && options->clock == RunClock::kLockstep)
+    stand_again.emplace(*remote);
   Sinks sinks;
-  if (config.dds.enabled) sinks.dds.emplace(config, open_desk, !options->realtime);
+  if (config.dds.enabled) sinks.dds.emplace(config, open_desk, options->clock);
   sinks.recording.emplace(*options, config, policy_text, policy);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
@@ -286,7 +287,7 @@ int run(int argc, char** argv) {
 
   const RunScene scene = scene_of(config, policy.name());
   if (options->view) {
-    sinks.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
+    sinks.view.emplace(scene, config, options->clock, signals.interrupts(), open_desk,
                        robot.simulator.get(), stand_again ? &*stand_again : nullptr);
   }
 
@@ -307,15 +308,16 @@ int run(int argc, char** argv) {
   RunRows rows{.scene = scene};
   if (sinks.view) rows.sinks.push_back(&sinks.view->feed);
   SystemClock clock;
-  RunResult result = options->realtime ? run_in_realtime(rig, rows, config.realtime, clock)
-                                       : run_in_lockstep(rig, rows);
+  RunResult result = options->clock == RunClock::kRealtime
+                         ? run_in_realtime(rig, rows, config.realtime, clock)
+                         : run_in_lockstep(rig, rows);
   if (!remote) script.report(result);
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
   const RunInfo info{options->live ? options->command : command.text(), policy.name(),
-                     robot.hardware ? "real" : options->terrain,
-                     options->realtime ? "realtime" : "lockstep", options->seed};
+                     robot.hardware ? "real" : options->terrain, clock_name(options->clock),
+                     options->seed};
   std::string written;
   std::exception_ptr not_written;
   try {

@@ -16,7 +16,7 @@ void Lockstep::tick(const OperatorCommand& command) noexcept {
   loop_.tick({.number = next_tick_++}, command, record_);
 }
 
-bool Lockstep::tick(OperatorInput& op, int interrupts) noexcept {
+AfterTick Lockstep::tick(OperatorInput& op, int interrupts) noexcept {
   return loop_.tick({.number = next_tick_++}, op, interrupts, record_);
 }
 
@@ -39,13 +39,12 @@ LoopEnd run_lockstep(const Rig& rig) {
   const std::int64_t start_ns = clock_ns(CLOCK_REALTIME);
   for (TickSink* sink : rig.sinks) sink->begin(start_ns);
   const auto begin = std::chrono::steady_clock::now();
-  bool running = true;
-  while (running) {
-    running = loop.tick(rig.op, rig.interrupts.load(std::memory_order_relaxed));
+  AfterTick after = AfterTick::kGoOn;
+  while (after == AfterTick::kGoOn) {
+    after = loop.tick(rig.op, rig.interrupts.load(std::memory_order_relaxed));
     for (TickSink* sink : rig.sinks) sink->add(loop.record());
-    if (running && rig.between && rig.between->act(loop.next_tick(), rig.sinks)) {
-      loop.robot_changed();
-    }
+    if (after == AfterTick::kEnd || !rig.between) continue;
+    if (rig.between->act(loop.next_tick(), rig.sinks) == RobotNow::kChanged) loop.robot_changed();
   }
   rig.robot.shut_down();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;

@@ -26,8 +26,8 @@ class Lockstep {
 
   /// The next tick under the operator's latest command.
   void tick(const OperatorCommand& command) noexcept;
-  /// The same under an operator; false: that was the last tick.
-  bool tick(OperatorInput& op, int interrupts) noexcept;
+  /// The same under an operator.
+  AfterTick tick(OperatorInput& op, int interrupts) noexcept;
 
   /// Somebody has changed the robot since the last tick.
   void robot_changed() noexcept { loop_.robot_changed(); }

@@ -13,12 +13,15 @@
 
 namespace sandrunner {
 
+/// What an act between two ticks did to the robot.
+enum class RobotNow : std::uint8_t { kAsBefore, kChanged };
+
 /// What happens between two ticks of a run in lockstep, in the thread of the ticks.
 class BetweenTicks {
  public:
   virtual ~BetweenTicks() = default;
-  /// Before tick `next`; what it does is noted in `sinks`. True: it has changed the robot.
-  virtual bool act(std::uint64_t next, TickSinks sinks) = 0;
+  /// Before tick `next`; what it does is noted in `sinks`.
+  virtual RobotNow act(std::uint64_t next, TickSinks sinks) = 0;
 };
 
 /// A run, assembled: run_lockstep and run_realtime take it. All parts outlive the run.

@@ -13,16 +13,16 @@ namespace sandrunner {
 /// The process on DDS: telemetry, and, if operators are to command the robot, their inbox.
 class DdsBridge final : public TickSink {
  public:
-  /// `desk`: takes commands that come over DDS; null: none do. `lockstep`: time is simulated; add()
-  /// then waits for the wall clock. Throws InputError.
-  DdsBridge(const ProcessConfig& config, OperatorDesk* desk, bool lockstep = false)
+  /// `desk`: takes commands that come over DDS; null: none do. In lockstep add() waits for the
+  /// wall clock. Throws InputError.
+  DdsBridge(const ProcessConfig& config, OperatorDesk* desk, RunClock clock)
       : participant_(config.dds) {
     if (desk) {
       inbox_ = std::make_unique<CommandInbox>(participant_, config.dds,
                                               hardware_id(config.robot.description), *desk);
     }
     telemetry_ = std::make_unique<Telemetry>(participant_, config.dds, config.robot.description,
-                                             desk, lockstep);
+                                             desk, clock);
     participant_.announce_node("sandrunner");
   }
 

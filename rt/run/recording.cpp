@@ -17,7 +17,7 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
   RecordingInfo info;
   info.build = build_name();
   info.start_mode = options.start_walking ? "walk" : "passive";
-  info.clock = options.realtime ? "realtime" : "lockstep";
+  info.clock = clock_name(options.clock);
   info.config = config.effective;
   info.policy = policy;
   info.robot_map = config.robot.map;
@@ -92,10 +92,12 @@ RunRecording::RunRecording(const Options& options, const ProcessConfig& config,
     prepare_folder(options.record_dir, "--record");
     keepers.push_back(&recorder_.emplace(path_, info, config.recording));
   }
-  if (options.realtime) keepers.push_back(&black_box_.emplace(black_box_folder(options), info));
+  if (options.clock == RunClock::kRealtime)
+    keepers.push_back(&black_box_.emplace(black_box_folder(options), info));
   if (keepers.empty()) return;
   ticks_.emplace(config.controller, start_mode_of(info), policy,
-                 options.realtime ? WhenFull::kDrop : WhenFull::kWait, std::move(keepers));
+                 options.clock == RunClock::kRealtime ? WhenFull::kDrop : WhenFull::kWait,
+                 std::move(keepers));
 }
 
 void RunRecording::add_to(std::vector<TickSink*>& sinks) {

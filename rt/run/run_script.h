@@ -45,7 +45,7 @@ class RunScript final : public OperatorInput {
   void enter(Phase phase) noexcept;
   void end(ModeRequest r) noexcept;
   void fail(const char* reason) noexcept;
-  bool next_phase(Mode mode, std::uint64_t ticks) noexcept;
+  AfterTick next_phase(Mode mode, std::uint64_t ticks) noexcept;
 
   const CommandSource& source_;
   const RunPlan plan_;

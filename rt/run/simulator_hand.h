@@ -29,10 +29,10 @@ class SimulatorHand final : public ViewHand, public BetweenTicks {
   GroundNow ground() const override;
 
   /// Does what waits.
-  bool act(std::uint64_t next, TickSinks sinks) override;
+  RobotNow act(std::uint64_t next, TickSinks sinks) override;
 
  private:
-  bool hold(std::uint64_t next, TickSinks sinks);
+  RobotNow hold(std::uint64_t next, TickSinks sinks);
 
   sim::Simulator& simulator_;
   const std::string settings_;

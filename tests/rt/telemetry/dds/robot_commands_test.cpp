@@ -47,7 +47,8 @@ class RobotCommandsTest : public testing::Test {
         op_(config_.dds.stale_ticks()),
         desk_(op_, config_.dds.stale_s, nullptr),
         inbox_(participant_, config_.dds, "raibo@here", desk_),
-        telemetry_(participant_, config_.dds, config_.robot.description, &desk_),
+        telemetry_(participant_, config_.dds, config_.robot.description, &desk_,
+                   RunClock::kRealtime),
         peer_(config_.dds) {}
 
   /// Walks for this long, in lockstep but not ahead of time; `at` is called after each tick.
@@ -204,7 +205,7 @@ TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
   const ProcessConfig config = config_of(
       "rigid",
       {"robot=" + write_small_robot(folder), "dds.domain=" + std::to_string(test_config().domain)});
-  DdsBridge bridge(config, nullptr);
+  DdsBridge bridge(config, nullptr, RunClock::kRealtime);
   Peer peer(config.dds);
   const auto descriptions =
       peer.reader("rt/robot_description", std_msgs_msg_dds__String__desc, true);

@@ -51,7 +51,7 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
   void note(std::uint64_t tick, const std::string& kind, const std::string& text) override {
     notes.push_back(std::to_string(tick) + " " + kind + ": " + text);
   }
-  bool act(std::uint64_t next, TickSinks sinks) override {
+  RobotNow act(std::uint64_t next, TickSinks sinks) override {
     if (before_tick) before_tick(next);
     return hand->act(next, sinks);
   }
