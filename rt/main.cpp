@@ -8,11 +8,10 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <thread>
+#include <vector>
 
 #include "drivers/check/check.h"
 #include "drivers/robot/bus_plan.h"
@@ -25,9 +24,12 @@
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
 #include "rt/core/floating_point.h"
+#include "rt/core/mode_machine.h"
+#include "rt/core/slower_rate.h"
 #include "rt/operator/operator_desk.h"
 #include "rt/operator/stand_again.h"
 #include "rt/realtime/rt_report.h"
+#include "rt/report/body_motion.h"
 #include "rt/report/summary.h"
 #include "rt/run/command_source.h"
 #include "rt/run/dds_bridge.h"
@@ -36,6 +38,7 @@
 #include "rt/run/recording.h"
 #include "rt/run/run.h"
 #include "rt/run/run_files.h"
+#include "rt/run/run_script.h"
 #include "rt/run/scene.h"
 #include "rt/run/settings_reference.h"
 #include "rt/run/signals.h"
@@ -51,28 +54,29 @@ namespace {
 
 constexpr int kLastWords_ms = 2000;
 
-void show_progress(const RunRow& row) {
-  const std::string where =
-      (row.flags & kRowHasTruth) != 0
-          ? fmt::format("{:6.2f} m/s  x {:7.2f} m ", row.motion[0], row.position_m[0])
-          : "";
-  to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}", row.t_s, mode_name(mode_of(row)), where),
-                    0);
-}
+/// A line on a terminal, twice a second, that is gone at the end.
+class ProgressLine final : public TickSink {
+ public:
+  void add(const TickRecord& tick) override {
+    if (!rate_.due(tick.input.sensors.tick)) return;
+    const RobotTruth& truth = tick.truth;
+    const std::string where =
+        tick.has_truth != 0 ? fmt::format("{:6.2f} m/s  x {:7.2f} m ",
+                                          body_motion(truth.orientation_wxyz, truth.velocity_mps,
+                                                      truth.angular_velocity_radps)
+                                              .vx_mps,
+                                          truth.position_m[0])
+                            : "";
+    to_standard_error(fmt::format("\r{:8.1f} s  {:<9} {}",
+                                  static_cast<double>(tick.input.sensors.tick) * kControlPeriod_s,
+                                  mode_name(tick.output.mode), where),
+                      0);
+  }
+  void end() override { to_standard_error(fmt::format("\r{:60}\r", "")); }
 
-std::string recording_line(const RecordingResult& r, const std::string& dir) {
-  if (r.ticks == 0 && r.stopped_because.empty()) return "recorded nothing: no tick ran\n";
-  if (r.removed) return fmt::format("NOT RECORDED: {}/run.mcap was removed during the run\n", dir);
-  const std::string lost =
-      r.dropped > 0 ? fmt::format(
-                          "; {} ticks LOST, a replay compares nothing behind the first of "
-                          "them",
-                          r.dropped)
-                    : "";
-  return fmt::format("recorded {} ticks, {:.1f} MB, in {}/run.mcap{}{}\n", r.ticks,
-                     1e-6 * static_cast<double>(r.bytes), dir, lost,
-                     r.stopped_because.empty() ? "" : "; STOPPED: " + r.stopped_because);
-}
+ private:
+  SlowerRate rate_{2};
+};
 
 // Writes the files of --out; returns the line that names them. Throws InputError.
 std::string write_results(const RunResult& result, const RunInfo& info,
@@ -136,15 +140,15 @@ TheRobot make_robot(const Options& options, const ProcessConfig& config) {
 }
 
 // A run in a browser.
-struct LiveView {
+struct LiveView final : BetweenTicks {
   /// `simulator`: null unless in lockstep on simulated ground; so is `stand_again` without
   /// operators.
-  LiveView(const RunScene& scene, const ProcessConfig& config, bool lockstep,
+  LiveView(const RunScene& scene, const ProcessConfig& config, RunClock clock,
            const std::atomic<int>& interrupts, OperatorDesk* desk, sim::Simulator* simulator,
            StandAgain* stand_again)
       : feed(scene) {
-    if (lockstep) pace.emplace(interrupts);
-    if (lockstep && simulator) {
+    if (clock == RunClock::kLockstep) pace.emplace(interrupts);
+    if (pace && simulator) {
       hand.emplace(*simulator, config.simulator.terrain, config.effective, stand_again);
     }
     server.emplace(config.view_port, ViewServer::Parts{.feed = feed,
@@ -154,42 +158,31 @@ struct LiveView {
     to_standard_error(fmt::format("sandrunner: look at {}\n", server->url()));
   }
 
+  RobotNow act(std::uint64_t next, TickSinks sinks) override {
+    pace->wait();
+    return hand ? hand->act(next, sinks) : RobotNow::kAsBefore;
+  }
+
   ViewFeed feed;
   std::optional<ViewPace> pace;
   std::optional<SimulatorHand> hand;
   std::optional<ViewServer> server;
 };
 
-// Everything that listens to the ticks of a run, in ordinary threads.
-struct Listeners {
+// What takes the ticks of a run.
+struct Sinks {
+  std::optional<ProgressLine> progress;
+  std::optional<RunRecording> recording;
   std::optional<DdsBridge> dds;
-  std::unique_ptr<Recorder> recorder;
-  std::unique_ptr<BlackBox> black_box;
   std::optional<LiveView> view;
 
-  TickTap tap() {
-    if (!recorder && !black_box && !dds && !view) return {};
-    return [this](const TickRecord& tick) {
-      if (recorder) recorder->add(tick);
-      if (black_box) black_box->add(tick);
-      if (dds) dds->add(tick);
-      if (view) view->feed.set_tick(tick.input.sensors.tick);
-    };
-  }
-  BetweenTicks between() {
-    if (!view || !view->pace) return {};
-    return [this](std::uint64_t next) {
-      view->pace->wait();
-      return view->hand &&
-             view->hand->act(next, [this](std::uint64_t tick, const auto& kind, const auto& text) {
-               if (recorder) recorder->note(tick, kind, text);
-             });
-    };
-  }
-  void begin(std::int64_t start_ns) {
-    if (recorder) recorder->begin(start_ns);
-    if (black_box) black_box->begin(start_ns);
-    if (dds) dds->begin(start_ns);
+  std::vector<TickSink*> all() {
+    std::vector<TickSink*> sinks;
+    if (progress) sinks.push_back(&*progress);
+    if (recording) recording->add_to(sinks);
+    if (dds) sinks.push_back(&*dds);
+    if (view) sinks.push_back(&view->feed);
+    return sinks;
   }
 };
 
@@ -243,25 +236,24 @@ int run(int argc, char** argv) {
   if (options->check.asked) return check(*options);
   const CommandSource command(options->live ? "0,0,0" : options->command);
   std::string policy_text;
-  std::optional<Policy> policy;
+  PolicyRunner policy;
   if (options->policy_path.empty()) {
     policy_text = shipped_policy_text();
-    policy = load_policy_text(policy_text, "raibo.safetensors (built in)");
+    policy = PolicyRunner(load_policy_text(policy_text, "raibo.safetensors (built in)"));
   } else if (options->policy_path != kNoPolicy) {
     policy_text = read_input_file(options->policy_path, "a policy file");
-    policy = load_policy_text(policy_text, options->policy_path);
+    policy = PolicyRunner(load_policy_text(policy_text, options->policy_path));
   }
-  const std::string policy_name = policy ? policy->spec().name : "";
-  const ProcessConfig config = read_config(*options, policy ? &policy->spec() : nullptr);
+  const ProcessConfig config = read_config(*options, policy.spec());
   if (options->dry_run) {
     fmt::print("{}", dry_run(config));
     return kExitOk;
   }
-  if (policy && !policy->spec().has_envelope) {
+  if (policy.spec() && !policy.spec()->has_envelope) {
     to_standard_error(
         fmt::format("sandrunner: policy '{}' does not say which commands it can follow: they are "
                     "held to a narrow envelope (sandrunner-policy envelope)\n",
-                    policy_name));
+                    policy.name()));
   }
   if (config.controller.gate.hanging) {
     to_standard_error(
@@ -277,20 +269,19 @@ int run(int argc, char** argv) {
   std::optional<OperatorDesk> desk;
   const char* const no_walk = config.controller.gate.hanging
                                   ? "the robot hangs (hardware.hanging), it may not walk"
-                              : policy ? nullptr
-                                       : "no policy to walk with";
+                              : policy.is_none() ? "no policy to walk with"
+                                                 : nullptr;
   if (options->live) {
     remote.emplace(config.dds.stale_ticks());
     desk.emplace(*remote, config.dds.stale_s, no_walk);
   }
   OperatorDesk* const open_desk = desk ? &*desk : nullptr;
   std::optional<StandAgain> stand_again;
-  if (remote && options->view && !options->realtime) stand_again.emplace(*remote);
-  Listeners listeners;
-  if (config.dds.enabled) listeners.dds.emplace(config, open_desk, !options->realtime);
-  Policy* const brain = policy ? &*policy : nullptr;
-  listeners.recorder = make_recorder(*options, config, policy_text, brain);
-  listeners.black_box = make_black_box(*options, config, policy_text, brain);
+  if (remote && options->view && options->clock == RunClock::kLockstep)
+    stand_again.emplace(*remote);
+  Sinks sinks;
+  if (config.dds.enabled) sinks.dds.emplace(config, open_desk, options->clock);
+  sinks.recording.emplace(*options, config, policy_text, policy);
   TheRobot robot = make_robot(*options, config);
   const CutInACrash cut_in_a_crash(robot.io());
   if (robot.hardware) {
@@ -299,66 +290,48 @@ int run(int argc, char** argv) {
     }
   }
 
-  const RunScene scene = scene_of(config, policy_name);
+  const RunScene scene = scene_of(config, policy.name());
   if (options->view) {
-    listeners.view.emplace(scene, config, !options->realtime, signals.interrupts(), open_desk,
-                           robot.simulator.get(), stand_again ? &*stand_again : nullptr);
+    sinks.view.emplace(scene, config, options->clock, signals.interrupts(), open_desk,
+                       robot.simulator.get(), stand_again ? &*stand_again : nullptr);
   }
 
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  SlowerRate progress_rate(2);
-  const auto row_tap = [&](const RunRow& row, std::span<const Footprint> footprints) {
-    if (terminal && progress_rate.due(ticks_from_s(row.t_s))) show_progress(row);
-    if (listeners.view) listeners.view->feed.add(row, footprints);
-  };
-  const RunParts parts{
-      .robot = robot.io(),
-      .controller = config.controller,
-      .policy = brain,
-      .command = command,
-      .plan = {.walk_s = options->duration_s, .start_walking = options->start_walking},
-      .live = stand_again ? static_cast<OperatorInput*>(&*stand_again)
-              : remote    ? &*remote
-                          : nullptr,
-      .scene = scene,
-      .row_tap = row_tap,
-      .tap = listeners.tap(),
-      .begin_tap = [&](std::int64_t start_ns) { listeners.begin(start_ns); },
-      .between = listeners.between(),
-      .interrupts = signals.interrupts()};
+  if (isatty(STDERR_FILENO) != 0) sinks.progress.emplace();
+  RunScript script(command,
+                   {.walk_s = options->duration_s, .start_walking = options->start_walking},
+                   no_walk == nullptr);
+  const Rig rig{.robot = robot.io(),
+                .controller = config.controller,
+                .start = options->start_walking ? Mode::kWalk : Mode::kPassive,
+                .policy = policy,
+                .op = stand_again ? static_cast<OperatorInput&>(*stand_again)
+                      : remote    ? static_cast<OperatorInput&>(*remote)
+                                  : script,
+                .sinks = sinks.all(),
+                .between = sinks.view && sinks.view->pace ? &*sinks.view : nullptr,
+                .interrupts = signals.interrupts()};
+  RunRows rows{.scene = scene};
+  if (sinks.view) rows.sinks.push_back(&sinks.view->feed);
   SystemClock clock;
-  const RunResult result =
-      options->realtime ? run_in_realtime(parts, config.realtime, clock) : run_in_lockstep(parts);
-  if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
-
-  const RecordingResult recorded =
-      listeners.recorder ? listeners.recorder->close() : RecordingResult();
-  const BlackBoxResult kept = listeners.black_box ? listeners.black_box->close() : BlackBoxResult();
+  RunResult result = options->clock == RunClock::kRealtime
+                         ? run_in_realtime(rig, rows, config.realtime, clock)
+                         : run_in_lockstep(rig, rows);
+  if (!remote) script.report(result);
 
   // Files first: nobody may be listening on standard output any more. But what became of the robot
   // is told whatever becomes of them.
-  const RunInfo info{options->live ? options->command : command.text(), policy_name,
-                     robot.hardware ? "real" : options->terrain,
-                     options->realtime ? "realtime" : "lockstep", options->seed};
+  const RunInfo info{options->live ? options->command : command.text(), policy.name(),
+                     robot.hardware ? "real" : options->terrain, clock_name(options->clock),
+                     options->seed};
   std::string written;
   std::exception_ptr not_written;
   try {
-    if (out) {
-      written = write_results(result, info, config.effective, options->out_dir);
-    }
+    if (out) written = write_results(result, info, config.effective, options->out_dir);
+    sinks.recording->require_whole();
   } catch (const InputError&) {
     not_written = std::current_exception();
   }
-  if (recorded.removed && !not_written) {
-    not_written = std::make_exception_ptr(InputError(
-        fmt::format("--record: {}/run.mcap was removed during the run", options->record_dir)));
-  }
-  if (recorded.failed && !not_written) {
-    not_written = std::make_exception_ptr(
-        InputError(fmt::format("--record: the recording is cut: {}", recorded.stopped_because)));
-  }
-  if (listeners.recorder) written += recording_line(recorded, options->record_dir);
-  if (listeners.black_box) written += black_box_lines(kept);
+  written += sinks.recording->report();
   if (robot.hardware) {
     written += hardware_report(*robot.hardware, *config.hardware, config.robot.description);
   }
@@ -367,9 +340,8 @@ int run(int argc, char** argv) {
     fmt::print("{}{}", summary_table(result, info), written);
   }
   if (not_written) std::rethrow_exception(not_written);
-  if (listeners.view) {
+  if (sinks.view) {
     std::fflush(stdout);
-    listeners.view->feed.end();
     while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return result.survived ? kExitOk : kExitFailed;

@@ -6,6 +6,17 @@
 
 namespace sandrunner {
 
+/// The two clocks of a run.
+enum class RunClock : std::uint8_t {
+  kLockstep,  ///< one thread, simulated time
+  kRealtime,  ///< the threads of the robot on the system's clock
+};
+
+/// "lockstep", "realtime".
+constexpr const char* clock_name(RunClock clock) noexcept {
+  return clock == RunClock::kLockstep ? "lockstep" : "realtime";
+}
+
 /// Time as a loop sees it. Used by one thread.
 class Clock {
  public:

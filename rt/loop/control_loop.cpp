@@ -38,8 +38,8 @@ void ControlLoop::tick(const SlotGrid::Slot& slot, const OperatorCommand& comman
   record.truth = truth_;
 }
 
-bool ControlLoop::tick(const SlotGrid::Slot& slot, OperatorInput& op, int interrupts,
-                       TickRecord& record) noexcept {
+AfterTick ControlLoop::tick(const SlotGrid::Slot& slot, OperatorInput& op, int interrupts,
+                            TickRecord& record) noexcept {
   tick(slot, op.command(slot.number), record);
   const OperatorVerdict verdict = op.advance({.ticks = 1 + slot.skipped,
                                               .mode = record.output.mode,
@@ -49,7 +49,7 @@ bool ControlLoop::tick(const SlotGrid::Slot& slot, OperatorInput& op, int interr
                                               .thigh_contact = record.truth.thigh_contact != 0,
                                               .interrupts = interrupts});
   record.counts = verdict.counts ? 1 : 0;
-  return verdict.running;
+  return verdict.next;
 }
 
 void ControlLoop::restore(const ControllerState& state) noexcept {

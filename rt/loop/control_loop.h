@@ -28,9 +28,9 @@ class ControlLoop {
             TickRecord& record) noexcept;
 
   /// The same under an operator, who sees what came of it. `interrupts`: how often somebody has
-  /// wanted the process to end. False: that was the last tick.
-  bool tick(const SlotGrid::Slot& slot, OperatorInput& op, int interrupts,
-            TickRecord& record) noexcept;
+  /// wanted the process to end.
+  AfterTick tick(const SlotGrid::Slot& slot, OperatorInput& op, int interrupts,
+                 TickRecord& record) noexcept;
 
   const Controller& controller() const noexcept { return controller_; }
   /// Somebody has changed the robot since the last tick: its truth is another one.

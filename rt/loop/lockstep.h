@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <type_traits>
 
-#include "policy/policy.h"
 #include "rt/core/state_hash.h"
 #include "rt/loop/control_loop.h"
+#include "rt/loop/rig.h"
 
 namespace sandrunner {
 
@@ -23,14 +21,13 @@ static_assert(std::is_trivially_copyable_v<LockstepState>);
 /// the tick that releases it. Bit-identical from run to run, and as fast as the machine goes.
 class Lockstep {
  public:
-  /// `policy` may be null: then Walk holds the nominal pose until its output counts as stale.
-  Lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy)
-      : policy_(policy), loop_(robot, config, start, policy_, clock_) {}
+  /// Without a policy Walk holds the nominal pose until its output counts as stale.
+  Lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, PolicyRunner& policy);
 
   /// The next tick under the operator's latest command.
   void tick(const OperatorCommand& command) noexcept;
-  /// The same under an operator; false: that was the last tick.
-  bool tick(OperatorInput& op, int interrupts) noexcept;
+  /// The same under an operator.
+  AfterTick tick(OperatorInput& op, int interrupts) noexcept;
 
   /// Somebody has changed the robot since the last tick.
   void robot_changed() noexcept { loop_.robot_changed(); }
@@ -46,20 +43,13 @@ class Lockstep {
   void add_to(StateHash& hash) noexcept { hash.add(state()); }
 
  private:
-  InlinePolicy policy_;
+  PolicyRunner& policy_;
+  InlinePolicy link_;
   ManualClock clock_;
   ControlLoop loop_;
   TickRecord record_;
   std::uint64_t next_tick_ = 0;
 };
-
-/// Gets every tick of a run, in an ordinary thread: figures, recorders, telemetry.
-using TickTap = std::function<void(const TickRecord&)>;
-/// Is told the wall clock of slot 0, ns since 1970, before the first tick, in the same thread.
-using StartTap = std::function<void(std::int64_t)>;
-/// Is called between two ticks, with the number of the next one, in the same thread; true: it has
-/// changed the robot.
-using BetweenTicks = std::function<bool(std::uint64_t)>;
 
 /// How a loop ended.
 struct LoopEnd {
@@ -69,9 +59,7 @@ struct LoopEnd {
   GateState gate;
 };
 
-/// Ticks until `op` ends it, which sees the `interrupts`, then the drives are off.
-LoopEnd run_lockstep(RobotIo& robot, const ControllerConfig& config, Mode start, Policy* policy,
-                     OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
-                     const StartTap& begin_tap = {}, const BetweenTicks& between = {});
+/// Ticks until the operator ends it, then the drives are off.
+LoopEnd run_lockstep(const Rig& rig);
 
 }  // namespace sandrunner

@@ -22,9 +22,14 @@ struct TickFacts {
   int interrupts = 0;                ///< how often somebody has wanted the process to end
 };
 
+/// Whether another tick follows.
+enum class AfterTick : std::uint8_t { kGoOn, kEnd };
+
 struct OperatorVerdict {
-  bool running = true;  ///< false: that was the last tick
+  AfterTick next = AfterTick::kGoOn;
   bool counts = false;  ///< the tick belongs to the walk that the figures are taken over
+
+  bool goes_on() const noexcept { return next == AfterTick::kGoOn; }
 };
 
 /// Who asks the controller for things, tick by tick. Called from the control thread: wait-free.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "policy/policy.h"
 #include "rt/core/messages.h"
+#include "rt/loop/policy_runner.h"
 
 namespace sandrunner {
 
@@ -20,22 +20,14 @@ class PolicyLink {
 /// tick on the answer counts (latency_ticks).
 class InlinePolicy final : public PolicyLink {
  public:
-  /// `policy` may be null: it then never answers.
-  explicit InlinePolicy(Policy* policy) : policy_(policy) {}
+  /// `policy` must outlive the link.
+  explicit InlinePolicy(PolicyRunner& policy) : policy_(policy) {}
 
-  const PolicyOutput& newest() noexcept override { return newest_; }
-  void release(const PolicyInput& input) noexcept override;
-
-  const Policy* policy() const noexcept { return policy_; }
-  void restore(const PolicyOutput& newest, const NetworkState& network) noexcept;
+  const PolicyOutput& newest() noexcept override { return policy_.newest(); }
+  void release(const PolicyInput& input) noexcept override { policy_.step(input); }
 
  private:
-  Policy* policy_;
-  PolicyOutput newest_;
+  PolicyRunner& policy_;
 };
-
-/// One step of `policy` on a released input, with its memory cleared at the start of an episode.
-/// `newest` is the previous answer and becomes the new one. Real-time safe.
-void step_policy(Policy& policy, const PolicyInput& input, PolicyOutput& newest) noexcept;
 
 }  // namespace sandrunner

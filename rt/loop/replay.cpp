@@ -7,9 +7,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 #include "rt/base/errors.h"
-#include "rt/loop/policy_link.h"
 #include "rt/loop/tick_fields.h"
 
 namespace sandrunner {
@@ -72,9 +72,9 @@ ReplayState read_replay_state(std::string_view bytes, const std::string& name) {
   return state;
 }
 
-Replay::Replay(const ControllerConfig& config, Mode start, Policy* policy)
-    : controller_(config, start), policy_(policy) {
-  if (policy_) policy_->reset();
+Replay::Replay(const ControllerConfig& config, Mode start, PolicyRunner policy)
+    : controller_(config, start), policy_(std::move(policy)) {
+  policy_.reset();
 }
 
 std::optional<ReplayDifference> Replay::check(const TickRecord& recorded) {
@@ -88,7 +88,7 @@ std::optional<ReplayDifference> Replay::check(const TickRecord& recorded) {
 
   controller_.step(recorded.input, output_);
   ++ticks_;
-  if (output_.release_policy != 0 && policy_) released_.push_back(output_.policy_input);
+  if (output_.release_policy != 0 && !policy_.is_none()) released_.push_back(output_.policy_input);
   TickRecord computed = recorded;
   computed.output = output_;
   computed.counters = controller_.state().gate.counters;
@@ -101,8 +101,8 @@ std::optional<ReplayDifference> Replay::check(const TickRecord& recorded) {
 ReplayState Replay::state() const noexcept {
   ReplayState s;
   s.controller = controller_.state();
-  if (policy_) s.network = policy_->state();
-  s.newest = newest_;
+  s.network = policy_.network();
+  s.newest = policy_.newest();
   s.next_tick = next_tick_;
   s.released = std::min(released_.size(), ReplayState::kMostReleased);
   std::copy(released_.end() - static_cast<std::ptrdiff_t>(s.released), released_.end(),
@@ -112,8 +112,7 @@ ReplayState Replay::state() const noexcept {
 
 void Replay::restore(const ReplayState& state) {
   controller_.restore(state.controller);
-  if (policy_) policy_->set_state(state.network);
-  newest_ = state.newest;
+  policy_.restore(state.newest, state.network);
   next_tick_ = state.next_tick;
   released_.assign(state.inputs.begin(),
                    state.inputs.begin() + static_cast<std::ptrdiff_t>(state.released));
@@ -121,27 +120,28 @@ void Replay::restore(const ReplayState& state) {
 
 std::optional<ReplayDifference> Replay::check_policy(const TickRecord& recorded) {
   const PolicyOutput& answer = recorded.input.policy;
-  if (policy_ && answer.sequence > newest_.sequence) {
+  const std::uint64_t answered = policy_.newest().sequence;
+  if (answer.sequence > answered) {
     // Which of the released inputs it answers stands in it. Answers that were overtaken before the
     // control thread looked have taken the inputs before that one.
     const auto last = std::find_if(released_.begin(), released_.end(), [&](const PolicyInput& in) {
       return in.tick == answer.input_tick;
     });
     const auto before = static_cast<std::uint64_t>(last - released_.begin());
-    const std::uint64_t unseen = answer.sequence - newest_.sequence - 1;
+    const std::uint64_t unseen = answer.sequence - answered - 1;
     if (last == released_.end() || unseen > before) {
       return ReplayDifference{
           recorded.input.sensors.tick,
           fmt::format("policy_input_tick: recorded {}, which was not released", answer.input_tick)};
     }
     for (auto input = last - static_cast<std::ptrdiff_t>(unseen); input <= last; ++input) {
-      step_policy(*policy_, *input, newest_);
+      policy_.step(*input);
       ++policy_steps_;
     }
     released_.erase(released_.begin(), last + 1);
   }
   TickRecord computed = recorded;
-  computed.input.policy = newest_;
+  computed.input.policy = policy_.newest();
   return first_difference(recorded, computed, offsetof(TickRecord, input.policy),
                           sizeof(PolicyOutput));
 }

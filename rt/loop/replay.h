@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "policy/policy.h"
+#include "rt/loop/policy_runner.h"
 #include "rt/loop/tick_record.h"
 
 namespace sandrunner {
@@ -57,8 +57,8 @@ ReplayState read_replay_state(std::string_view bytes, const std::string& name);
 /// did, or from a state.
 class Replay {
  public:
-  /// `policy` may be null, as in the run.
-  Replay(const ControllerConfig& config, Mode start, Policy* policy);
+  /// `policy`: that of the run.
+  Replay(const ControllerConfig& config, Mode start, PolicyRunner policy);
 
   /// One recorded tick, in order: policy output, controller output and gate counters are compared.
   /// Returns the first difference; nothing if all agrees. Behind missing ticks (missing_before())
@@ -80,10 +80,9 @@ class Replay {
   std::optional<ReplayDifference> check_policy(const TickRecord& recorded);
 
   Controller controller_;
-  Policy* policy_;
+  PolicyRunner policy_;
   ControllerOutput output_;
   std::vector<PolicyInput> released_;  // not known to be answered
-  PolicyOutput newest_;
   std::uint64_t next_tick_ = 0, ticks_ = 0, policy_steps_ = 0;
 };
 

@@ -34,7 +34,8 @@ OperatorVerdict RemoteOperator::advance(const TickFacts& facts) noexcept {
   if (facts.interrupts > 0) request(end_.lie());
   if (facts.interrupts > 1) request(end_.damp());
   request(end_.advance(facts.mode, ticks));
-  return {.running = !end_.done(), .counts = facts.mode == Mode::kWalk};
+  return {.next = end_.done() ? AfterTick::kEnd : AfterTick::kGoOn,
+          .counts = facts.mode == Mode::kWalk};
 }
 
 void RemoteOperator::request(ModeRequest r) noexcept {

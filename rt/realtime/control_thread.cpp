@@ -7,21 +7,21 @@ namespace sandrunner {
 
 void ControlThread::run(std::int64_t start_ns) noexcept {
   SlotGrid grid(start_ns, kControlPeriod_ns);
-  bool running = true;
-  while (running) {
+  AfterTick after = AfterTick::kGoOn;
+  while (after == AfterTick::kGoOn) {
     clock_.sleep_until(grid.due_ns());
-    running = tick(grid.take(clock_.now_ns()));
+    after = tick(grid.take(clock_.now_ns()));
   }
   robot_.shut_down();
 }
 
-bool ControlThread::tick(const SlotGrid::Slot& slot) noexcept {
+AfterTick ControlThread::tick(const SlotGrid::Slot& slot) noexcept {
   const std::int64_t begin = clock_.now_ns();
   TickRecord* const claimed = ring_.claim();
   TickRecord& record = claimed ? *claimed : spare_;
   const int interrupts = std::max<int>(interrupts_.load(std::memory_order_relaxed),
                                        end_.load(std::memory_order_relaxed));
-  const bool running = loop_.tick(slot, operator_, interrupts, record);
+  const AfterTick after = loop_.tick(slot, operator_, interrupts, record);
 
   ControlDeadlines& d = deadlines_;
   ++d.ticks;
@@ -35,7 +35,7 @@ bool ControlThread::tick(const SlotGrid::Slot& slot) noexcept {
   d.write.add(record.timing.write_ns);
   if (claimed) ring_.publish();
   d.busy.add(clock_.now_ns() - begin);
-  return running;
+  return after;
 }
 
 }  // namespace sandrunner

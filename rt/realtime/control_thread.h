@@ -49,7 +49,7 @@ class ControlThread {
   const std::atomic<std::uint64_t>& ticks() const noexcept { return ticks_; }
 
  private:
-  bool tick(const SlotGrid::Slot& slot) noexcept;
+  AfterTick tick(const SlotGrid::Slot& slot) noexcept;
 
   RobotIo& robot_;
   ControlLoop& loop_;

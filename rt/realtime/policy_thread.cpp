@@ -35,8 +35,8 @@ bool PolicyThread::answer(std::int64_t slot_ns) noexcept {
   d.missed += sequence - seen_ - 1;
   seen_ = sequence;
   const std::int64_t begin = clock_.now_ns();
-  step_policy(policy_, input, newest_);
-  exchange_.output.write(newest_);
+  policy_.step(input);
+  exchange_.output.write(policy_.newest());
   const std::int64_t end = clock_.now_ns();
   ++d.steps;
   d.step.add(end - begin);

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdint>
 
-#include "policy/policy.h"
 #include "rt/core/log_histogram.h"
 #include "rt/core/triple_buffer.h"
 #include "rt/loop/clock.h"
@@ -35,7 +34,7 @@ struct PolicyDeadlines {
 /// call: 60 us after the release is due, then ever more rarely.
 class PolicyThread {
  public:
-  PolicyThread(Policy& policy, PolicyExchange& exchange, Clock& clock)
+  PolicyThread(PolicyRunner& policy, PolicyExchange& exchange, Clock& clock)
       : policy_(policy), exchange_(exchange), clock_(clock) {}
 
   /// Runs until stop(). `start_ns`: that of the control thread.
@@ -48,12 +47,11 @@ class PolicyThread {
  private:
   bool answer(std::int64_t slot_ns) noexcept;
 
-  Policy& policy_;
+  PolicyRunner& policy_;
   PolicyExchange& exchange_;
   Clock& clock_;
   std::atomic<bool> stop_{false};
   std::uint64_t seen_ = 0;  // sequence of the last input
-  PolicyOutput newest_;
   PolicyDeadlines deadlines_;
 };
 

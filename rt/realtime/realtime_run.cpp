@@ -91,29 +91,25 @@ void end_if_it_hangs(const Watchdog& watchdog, const std::atomic<std::uint64_t>&
   std::_Exit(kExitFailed);
 }
 
-}  // namespace
-
-RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
-                         const RealtimeConfig& realtime, Mode start, Policy* policy,
-                         OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
-                         Clock& clock, const StartTap& begin_tap) {
+RealtimeEnd run_threads(const Rig& rig, const RealtimeConfig& realtime, Clock& clock) {
   RealtimeSetup setup(realtime);
   const auto exchange = std::make_unique<PolicyExchange>();
   const auto ring = std::make_unique<TickRing>();
   std::atomic<bool> stop{false};
-  ControlLoop loop(robot, config, start, *exchange, clock);
-  ControlThread control(robot, loop, op, *ring, clock, interrupts, stop);
-  Watchdog watchdog(robot, control.ticks(), clock);
+  ControlLoop loop(rig.robot, rig.controller, rig.start, *exchange, clock);
+  ControlThread control(rig.robot, loop, rig.op, *ring, clock, rig.interrupts, stop);
+  Watchdog watchdog(rig.robot, control.ticks(), clock);
   std::optional<PolicyThread> policy_thread;
-  if (policy) policy_thread.emplace(*policy, *exchange, clock);
+  rig.policy.reset();
+  if (!rig.policy.is_none()) policy_thread.emplace(rig.policy, *exchange, clock);
 
   RealtimeEnd end;
-  // At most what the ring holds, or a tap slower than the ticks would never return.
+  // At most what the ring holds, or a sink slower than the ticks would never return.
   const auto drain = [&] {
     for (std::size_t n = 0; n < kTickRingSize; ++n) {
       const TickRecord* tick = ring->front();
       if (!tick) return;
-      tap(*tick);
+      for (TickSink* sink : rig.sinks) sink->add(*tick);
       ring->pop();
     }
   };
@@ -124,7 +120,7 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
     if (!missing.empty()) to_standard_error(fmt::format("sandrunner: {}\n", missing));
     const std::int64_t start_ns = clock_ns(CLOCK_REALTIME) + kLeadTime_ns;
     threads.start();
-    if (begin_tap) begin_tap(start_ns);
+    for (TickSink* sink : rig.sinks) sink->begin(start_ns);
     std::uint64_t ticks_seen = 0;
     std::int64_t alive_ns = clock.now_ns();
     while (!threads.done()) {
@@ -138,9 +134,9 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   const ControllerState& state = loop.controller().state();
   end.realtime_factor = 1.0;
   StateHash hash;
-  robot.add_to(hash);
+  rig.robot.add_to(hash);
   hash.add(state);
-  if (policy) hash.add(policy->state());
+  hash.add(rig.policy.network());
   end.state_hash = hash.value();
   end.gate = state.gate;
   const ControlDeadlines& done = control.deadlines();
@@ -151,6 +147,15 @@ RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
   end.report.records_dropped = ring->dropped();
   end.report.watchdog_gap_ns = watchdog.longest_gap_ns();
   end.report.setup = setup.items();
+  return end;
+}
+
+}  // namespace
+
+RealtimeEnd run_realtime(const Rig& rig, const RealtimeConfig& realtime, Clock& clock) {
+  const RealtimeEnd end = run_threads(rig, realtime, clock);
+  // Files are finished when memory and processors are free again.
+  for (TickSink* sink : rig.sinks) sink->end();
   return end;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -27,14 +26,11 @@ struct RealtimeEnd : LoopEnd {
   RealtimeReport report;
 };
 
-/// As run_lockstep, on the clock: control and policy in threads of their own; `tap` gets their
-/// ticks, and `begin_tap` their start, in the caller's thread. A watchdog cuts the drives when the
+/// As run_lockstep, on the clock: control and policy in threads of their own; the sinks are called
+/// in the caller's thread. A watchdog cuts the drives when the
 /// control thread hangs; if it still hangs two seconds later, the process ends. Wanted rights that
 /// are missing are said on standard error before slot 0. `clock` is shared by all threads. Throws
 /// InputError if a required part of the set-up is not to be had.
-RealtimeEnd run_realtime(RobotIo& robot, const ControllerConfig& config,
-                         const RealtimeConfig& realtime, Mode start, Policy* policy,
-                         OperatorInput& op, const std::atomic<int>& interrupts, const TickTap& tap,
-                         Clock& clock, const StartTap& begin_tap = {});
+RealtimeEnd run_realtime(const Rig& rig, const RealtimeConfig& realtime, Clock& clock);
 
 }  // namespace sandrunner

@@ -3,14 +3,14 @@
 
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace sandrunner {
 
-RunObserver::RunObserver(RunScene scene, RowTap tap)
-    : record_{.scene = std::move(scene)}, maker_(record_.scene), tap_(std::move(tap)) {}
+RunObserver::RunObserver(RunScene scene, std::vector<RowSink*> sinks)
+    : record_{.scene = std::move(scene)}, maker_(record_.scene), sinks_(std::move(sinks)) {}
 
 void RunObserver::add(const TickRecord& tick) {
+  counted_ticks_ += tick.counts;
   if (const std::optional<RunRow> row = maker_.add(tick)) keep(*row);
 }
 
@@ -18,11 +18,15 @@ void RunObserver::keep(const RunRow& row) {
   const std::vector<Footprint> footprints = maker_.take_footprints();
   for (const Footprint& footprint : footprints) record_.add(footprint);
   record_.add(row);
-  if (tap_) tap_(row, footprints);
+  for (RowSink* sink : sinks_) sink->add(row, footprints);
+}
+
+void RunObserver::end() {
+  if (const std::optional<RunRow> row = maker_.take_last()) keep(*row);
 }
 
 RunRecord RunObserver::take_record() {
-  if (const std::optional<RunRow> row = maker_.take_last()) keep(*row);
+  end();
   return std::move(record_);
 }
 

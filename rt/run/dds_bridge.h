@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "rt/loop/tick_sink.h"
 #include "rt/run/process_config.h"
 #include "rt/telemetry/dds/command_inbox.h"
 #include "rt/telemetry/dds/telemetry.h"
@@ -10,24 +11,23 @@
 namespace sandrunner {
 
 /// The process on DDS: telemetry, and, if operators are to command the robot, their inbox.
-class DdsBridge {
+class DdsBridge final : public TickSink {
  public:
-  /// `desk`: takes commands that come over DDS; null: none do. `lockstep`: time is simulated; add()
-  /// then waits for the wall clock. Throws InputError.
-  DdsBridge(const ProcessConfig& config, OperatorDesk* desk, bool lockstep = false)
+  /// `desk`: takes commands that come over DDS; null: none do. In lockstep add() waits for the
+  /// wall clock. Throws InputError.
+  DdsBridge(const ProcessConfig& config, OperatorDesk* desk, RunClock clock)
       : participant_(config.dds) {
     if (desk) {
       inbox_ = std::make_unique<CommandInbox>(participant_, config.dds,
                                               hardware_id(config.robot.description), *desk);
     }
     telemetry_ = std::make_unique<Telemetry>(participant_, config.dds, config.robot.description,
-                                             desk, lockstep);
+                                             desk, clock);
     participant_.announce_node("sandrunner");
   }
 
-  void begin(std::int64_t start_time_ns) noexcept { telemetry_->begin(start_time_ns); }
-  /// Every tick, in order, from one ordinary thread.
-  void add(const TickRecord& tick) { telemetry_->add(tick); }
+  void begin(std::int64_t start_ns) override { telemetry_->begin(start_ns); }
+  void add(const TickRecord& tick) override { telemetry_->add(tick); }
 
  private:
   DdsParticipant participant_;

@@ -157,12 +157,12 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
         "--hardware: a robot lies first and has its own time: expected neither --start walk nor "
         "--clock lockstep");
   }
-  o.realtime = clock == "realtime" || hardware;
+  o.clock = clock == "realtime" || hardware ? RunClock::kRealtime : RunClock::kLockstep;
   o.rt_report = report->parsed();
   o.live_page = o.command == "live";
   o.live = o.live_page || o.command == "dds";
   if (o.live_page && !o.view) throw InputError("--command live: expected --view with it");
-  if (o.live && !o.live_page && !o.realtime) {
+  if (o.live && !o.live_page && o.clock == RunClock::kLockstep) {
     throw InputError("--command dds: operators need --clock realtime");
   }
   if (o.live && (o.start_walking || app.count("--duration") > 0)) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "rt/loop/clock.h"
+
 namespace sandrunner {
 
 /// As `--policy`: the robot stands up and no more.
@@ -25,7 +27,7 @@ struct Options {
   bool view = false;         ///< --view
   double duration_s = 20.0;  ///< of Walk
   bool start_walking = false;
-  bool realtime = false;   ///< --clock realtime
+  RunClock clock = RunClock::kLockstep;
   bool rt_report = false;  ///< the subcommand
   /// The subcommand `check`; its file is `hardware_path`.
   struct Check {

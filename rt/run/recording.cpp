@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "rt/base/build.h"
+#include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 
 namespace sandrunner {
@@ -14,7 +17,7 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
   RecordingInfo info;
   info.build = build_name();
   info.start_mode = options.start_walking ? "walk" : "passive";
-  info.clock = options.realtime ? "realtime" : "lockstep";
+  info.clock = clock_name(options.clock);
   info.config = config.effective;
   info.policy = policy;
   info.robot_map = config.robot.map;
@@ -22,25 +25,18 @@ RecordingInfo info_of(const Options& options, const ProcessConfig& config,
   return info;
 }
 
-}  // namespace
-
-std::unique_ptr<Recorder> make_recorder(const Options& options, const ProcessConfig& config,
-                                        std::string_view policy_file, const Policy* policy) {
-  if (options.record_dir.empty()) return nullptr;
-  prepare_folder(options.record_dir, "--record");
-  return std::make_unique<Recorder>(options.record_dir + "/run.mcap",
-                                    info_of(options, config, policy_file), config.recording,
-                                    !options.realtime, &config.controller, policy);
-}
-
-std::unique_ptr<BlackBox> make_black_box(const Options& options, const ProcessConfig& config,
-                                         std::string_view policy_file, const Policy* policy) {
-  if (!options.realtime) return nullptr;
-  const std::string folder = !options.record_dir.empty() ? options.record_dir
-                             : !options.out_dir.empty()  ? options.out_dir
-                                                         : ".";
-  return std::make_unique<BlackBox>(folder, info_of(options, config, policy_file),
-                                    config.controller, policy);
+std::string recording_line(const RecordingResult& r, std::uint64_t dropped,
+                           const std::string& path) {
+  if (r.ticks == 0 && r.stopped_because.empty()) return "recorded nothing: no tick ran\n";
+  if (r.removed) return fmt::format("NOT RECORDED: {} was removed during the run\n", path);
+  const std::string lost =
+      dropped > 0
+          ? fmt::format("; {} ticks LOST, a replay compares nothing behind the first of them",
+                        dropped)
+          : "";
+  return fmt::format("recorded {} ticks, {:.1f} MB, in {}{}{}\n", r.ticks,
+                     1e-6 * static_cast<double>(r.bytes), path, lost,
+                     r.stopped_because.empty() ? "" : "; STOPPED: " + r.stopped_because);
 }
 
 std::string black_box_lines(const BlackBoxResult& r) {
@@ -58,6 +54,15 @@ std::string black_box_lines(const BlackBoxResult& r) {
     lines += fmt::format("black box: {} more faults have no file, a run has {}\n", r.left_out,
                          kBlackBoxFiles);
   }
+  if (!r.stopped_because.empty()) {
+    lines += fmt::format("black box: STOPPED: {}\n", r.stopped_because);
+  }
+  return lines;
+}
+
+// Of the way to the black box; that of the recording is in its own line.
+std::string replay_lines(const ReplayedResult& r) {
+  std::string lines;
   if (r.dropped > 0) {
     lines += fmt::format(
         "black box: {} ticks LOST{}\n", r.dropped,
@@ -67,10 +72,54 @@ std::string black_box_lines(const BlackBoxResult& r) {
     lines += fmt::format("black box: the run DIFFERS from its replay at tick {}: {}\n",
                          r.difference->tick, r.difference->what);
   }
-  if (!r.stopped_because.empty()) {
-    lines += fmt::format("black box: STOPPED: {}\n", r.stopped_because);
-  }
   return lines;
+}
+
+std::string black_box_folder(const Options& options) {
+  return !options.record_dir.empty() ? options.record_dir
+         : !options.out_dir.empty()  ? options.out_dir
+                                     : ".";
+}
+
+}  // namespace
+
+RunRecording::RunRecording(const Options& options, const ProcessConfig& config,
+                           std::string_view policy_file, const PolicyRunner& policy)
+    : path_(options.record_dir + "/run.mcap") {
+  const RecordingInfo info = info_of(options, config, policy_file);
+  std::vector<TickKeeper*> keepers;
+  if (!options.record_dir.empty()) {
+    prepare_folder(options.record_dir, "--record");
+    keepers.push_back(&recorder_.emplace(path_, info, config.recording));
+  }
+  if (options.clock == RunClock::kRealtime)
+    keepers.push_back(&black_box_.emplace(black_box_folder(options), info));
+  if (keepers.empty()) return;
+  ticks_.emplace(config.controller, start_mode_of(info), policy,
+                 options.clock == RunClock::kRealtime ? WhenFull::kDrop : WhenFull::kWait,
+                 std::move(keepers));
+}
+
+void RunRecording::add_to(std::vector<TickSink*>& sinks) {
+  if (ticks_) sinks.push_back(&*ticks_);
+}
+
+std::string RunRecording::report() const {
+  std::string lines;
+  if (recorder_) lines += recording_line(recorder_->result(), ticks_->result().dropped, path_);
+  if (black_box_) lines += black_box_lines(black_box_->result()) + replay_lines(ticks_->result());
+  return lines;
+}
+
+void RunRecording::require_whole() const {
+  if (!recorder_) return;
+  const RecordingResult& recorded = recorder_->result();
+  if (recorded.removed) {
+    throw InputError(fmt::format("--record: {} was removed during the run", path_));
+  }
+  if (recorded.failed) {
+    throw InputError(fmt::format("--record: the recording is cut: {}", recorded.stopped_because));
+  }
 }
 
 }  // namespace sandrunner

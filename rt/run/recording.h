@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "rt/run/options.h"
 #include "rt/run/process_config.h"
@@ -12,17 +13,30 @@
 
 namespace sandrunner {
 
-/// The recorder of `--record`; null without it. `policy_file` is the file of `policy`, whole; empty
-/// and null: there is none. Throws InputError if the file cannot be made.
-std::unique_ptr<Recorder> make_recorder(const Options& options, const ProcessConfig& config,
-                                        std::string_view policy_file, const Policy* policy);
+/// The files of a run's ticks: the recording of `--record`, and the black box of a real-time run (a
+/// run in lockstep can be repeated). The files of the black box go to the folder of `--record`,
+/// else of `--out`, else to the working folder.
+class RunRecording {
+ public:
+  /// `policy_file` is the file of `policy`, whole; empty: there is none. Throws InputError if the
+  /// file of `--record` cannot be made.
+  RunRecording(const Options& options, const ProcessConfig& config, std::string_view policy_file,
+               const PolicyRunner& policy);
 
-/// The black box of a real-time run; null in lockstep, where the run can be had again. Its files go
-/// to the folder of `--record`, else of `--out`, else to the working folder.
-std::unique_ptr<BlackBox> make_black_box(const Options& options, const ProcessConfig& config,
-                                         std::string_view policy_file, const Policy* policy);
+  /// Adds itself, if there is anything to keep.
+  void add_to(std::vector<TickSink*>& sinks);
 
-/// What it did, a line for each file and for all that went wrong; empty: there was no fault.
-std::string black_box_lines(const BlackBoxResult& result);
+  // After the run:
+  /// A line for each file and for all that went wrong.
+  std::string report() const;
+  /// Throws InputError if the recording is not there or was cut by the disk.
+  void require_whole() const;
+
+ private:
+  const std::string path_;  // of --record
+  std::optional<Recorder> recorder_;
+  std::optional<BlackBox> black_box_;
+  std::optional<ReplayedTicks> ticks_;  // the others outlive its thread
+};
 
 }  // namespace sandrunner

@@ -4,57 +4,37 @@
 namespace sandrunner {
 namespace {
 
-// A run but for its loop: `loop(start, op, tap)` runs that and returns how it ended.
+// `loop(rig, result)` runs the rig and enters how it ended.
 template <typename Loop>
-RunResult run(const RunParts& parts, const Loop& loop) {
-  RunScript script(parts.command, parts.plan,
-                   parts.policy != nullptr && !parts.controller.gate.hanging);
-  RunObserver observer(parts.scene, parts.row_tap);
+RunResult run(const Rig& rig, const RunRows& rows, const Loop& loop) {
+  RunObserver observer(rows.scene, rows.sinks);
+  Rig observed = rig;
+  // Rows first: a live view that ends has all of them.
+  observed.sinks.insert(observed.sinks.begin(), &observer);
   RunResult result;
-  std::uint64_t walked_ticks = 0;
-  const TickTap tap = [&](const TickRecord& tick) {
-    result.has_truth = tick.has_truth != 0;
-    walked_ticks += tick.counts;
-    observer.add(tick);
-    if (parts.tap) parts.tap(tick);
-  };
-  OperatorInput& op = parts.live ? *parts.live : script;
-  loop(parts.plan.start_walking ? Mode::kWalk : Mode::kPassive, op, tap, result);
-  if (parts.live) {
-    result.interrupted = parts.interrupts > 0;
-    const Fault fault = result.end.gate.first_fault;
-    result.survived = fault == Fault::kNone;  // no fault since, whoever has reset it
-    if (!result.survived) result.fall_reason = fault_name(fault);
-    result.walked_s = static_cast<double>(walked_ticks) * kControlPeriod_s;
-  } else {
-    result.survived = script.survived();
-    if (!result.survived) {
-      result.fall_reason = script.fall_reason();
-      result.fall_time_s = script.fall_time_s();
-      result.fall_mode = script.fall_mode();
-    }
-    result.interrupted = script.interrupted();
-    result.walked_s = script.walked_s();
-  }
+  loop(observed, result);
+  const Fault fault = result.end.gate.first_fault;
+  result.survived = fault == Fault::kNone;  // no fault since the start, even if it was reset
+  if (!result.survived) result.fall_reason = fault_name(fault);
+  result.interrupted = rig.interrupts > 0;
+  result.walked_s = static_cast<double>(observer.counted_ticks()) * kControlPeriod_s;
   result.record = observer.take_record();
+  result.has_truth = result.record.rows.empty() || result.record.has_truth();
   result.figures = run_figures(result.record);
   return result;
 }
 
 }  // namespace
 
-RunResult run_in_lockstep(const RunParts& parts) {
-  return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
-    result.end = run_lockstep(parts.robot, parts.controller, start, parts.policy, op,
-                              parts.interrupts, tap, parts.begin_tap, parts.between);
-  });
+RunResult run_in_lockstep(const Rig& rig, const RunRows& rows) {
+  return run(rig, rows,
+             [](const Rig& observed, RunResult& result) { result.end = run_lockstep(observed); });
 }
 
-RunResult run_in_realtime(const RunParts& parts, const RealtimeConfig& realtime, Clock& clock) {
-  return run(parts, [&](Mode start, OperatorInput& op, const TickTap& tap, RunResult& result) {
-    const RealtimeEnd end =
-        run_realtime(parts.robot, parts.controller, realtime, start, parts.policy, op,
-                     parts.interrupts, tap, clock, parts.begin_tap);
+RunResult run_in_realtime(const Rig& rig, const RunRows& rows, const RealtimeConfig& realtime,
+                          Clock& clock) {
+  return run(rig, rows, [&](const Rig& observed, RunResult& result) {
+    const RealtimeEnd end = run_realtime(observed, realtime, clock);
     result.end = end;
     result.realtime = end.report;
   });

@@ -1,42 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
-#include <functional>
+#include <vector>
 
-#include "policy/policy.h"
-#include "rt/realtime/clock.h"
+#include "rt/loop/rig.h"
+#include "rt/realtime/realtime_run.h"
 #include "rt/report/run_observer.h"
 #include "rt/report/run_result.h"
-#include "rt/run/command_source.h"
-#include "rt/run/run_script.h"
 
 namespace sandrunner {
 
-/// What a run is made of; all of it outlives the run.
-struct RunParts {
-  RobotIo& robot;
-  const ControllerConfig& controller;
-  Policy* policy = nullptr;  ///< null: the robot only stands up, and is let down
-  const CommandSource& command;
-  RunPlan plan = {};
-  /// Operator in place of the script that `command` and `plan` make; null: that script.
-  OperatorInput* live = nullptr;
+/// Who watches the rows of a run, and what they need to know of its robot and ground.
+struct RunRows {
   RunScene scene = {};
-  RowTap row_tap = {};        ///< gets every row: live view, progress
-  TickTap tap = {};           ///< gets every tick: recorders, telemetry
-  StartTap begin_tap = {};    ///< is told when it starts
-  BetweenTicks between = {};  ///< of a run in lockstep
-  /// How often somebody has wanted it to end: at the first time it ends gently, at the second in
-  /// damping at once.
-  const std::atomic<int>& interrupts;
+  std::vector<RowSink*> sinks = {};
 };
 
-/// Runs the robot in one thread, as fast as it goes: from lying to standing, the walk, standing
-/// again and being let down (or just the walk).
-RunResult run_in_lockstep(const RunParts& parts);
+/// Runs the rig in one thread, as fast as it goes. The result has the rows and figures; it calls
+/// every fault a fall, and knows of no other: RunScript::report knows more.
+RunResult run_in_lockstep(const Rig& rig, const RunRows& rows);
 
-/// The same run in real time. Throws InputError if a required part of the set-up is not to be had.
-RunResult run_in_realtime(const RunParts& parts, const RealtimeConfig& realtime, Clock& clock);
+/// The same run in real time. Throws InputError if a required part of the set-up is missing.
+RunResult run_in_realtime(const Rig& rig, const RunRows& rows, const RealtimeConfig& realtime,
+                          Clock& clock);
 
 }  // namespace sandrunner

@@ -44,20 +44,31 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   if (facts.interrupts > 1) end(end_.damp());
   const Phase before = phase_;
   // What was skipped lies before the end that this tick begins: a stall does not shorten it.
-  verdict.running = next_phase(facts.mode, phase_ == at_start ? facts.ticks : 1);
+  verdict.next = next_phase(facts.mode, phase_ == at_start ? facts.ticks : 1);
   const bool stood_up = before == Phase::kStandUp && phase_ != Phase::kStandUp;
   if (stood_up && facts.base_contact) fail("did_not_stand");
   return verdict;
 }
 
-bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
+void RunScript::report(RunResult& result) const {
+  result.survived = survived();
+  result.fall_reason = survived() ? "" : fall_reason_;
+  if (!survived()) {
+    result.fall_time_s = fall_time_s_;
+    result.fall_mode = fall_mode_;
+  }
+  result.interrupted = interrupted_;
+  result.walked_s = walked_s();
+}
+
+AfterTick RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
   switch (phase_) {
     case Phase::kArm:
       if (mode == Mode::kDamping) {
         request(ModeRequest::kStand);
         enter(Phase::kStandUp);
       }
-      return true;
+      return AfterTick::kGoOn;
     case Phase::kStandUp:
       if (mode != Mode::kStand) standing_ = 0;
       if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {
@@ -68,22 +79,22 @@ bool RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
           end(end_.lie());
         }
       }
-      return true;
+      return AfterTick::kGoOn;
     case Phase::kWalk:
       if (mode == Mode::kWalk && (walked_ += ticks) >= walk_ticks_) {
-        if (plan_.start_walking) return false;
+        if (plan_.start_walking) return AfterTick::kEnd;
         request(ModeRequest::kStand);
         enter(Phase::kStop);
       }
-      return true;
+      return AfterTick::kGoOn;
     case Phase::kStop:
       if (mode == Mode::kStand && (standing_ += ticks) >= 2 * kSettle_ticks) end(end_.lie());
-      return true;
+      return AfterTick::kGoOn;
     case Phase::kEnd:
       end(end_.advance(mode, ticks));
-      return !end_.done();
+      return end_.done() ? AfterTick::kEnd : AfterTick::kGoOn;
   }
-  return false;
+  return AfterTick::kEnd;
 }
 
 void RunScript::request(ModeRequest r) noexcept {

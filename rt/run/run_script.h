@@ -5,6 +5,7 @@
 
 #include "rt/loop/operator_input.h"
 #include "rt/operator/gentle_end.h"
+#include "rt/report/run_result.h"
 #include "rt/run/command_source.h"
 
 namespace sandrunner {
@@ -26,6 +27,9 @@ class RunScript final : public OperatorInput {
   OperatorCommand command(std::uint64_t tick) noexcept override;
   OperatorVerdict advance(const TickFacts& facts) noexcept override;
 
+  /// Enters what became of the run under this script.
+  void report(RunResult& result) const;
+
   bool survived() const noexcept { return fall_reason_ == nullptr; }
   /// "base_contact", "thigh_contact", "did_not_stand" or the name of a fault; null: none.
   const char* fall_reason() const noexcept { return fall_reason_; }
@@ -41,7 +45,7 @@ class RunScript final : public OperatorInput {
   void enter(Phase phase) noexcept;
   void end(ModeRequest r) noexcept;
   void fail(const char* reason) noexcept;
-  bool next_phase(Mode mode, std::uint64_t ticks) noexcept;
+  AfterTick next_phase(Mode mode, std::uint64_t ticks) noexcept;
 
   const CommandSource& source_;
   const RunPlan plan_;

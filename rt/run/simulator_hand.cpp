@@ -73,6 +73,10 @@ sim::TerrainDescription read(const WantedGround& wanted, const std::string& sett
   return sim::read_terrain(tree);
 }
 
+void note(TickSinks sinks, std::uint64_t next, const std::string& kind, const std::string& text) {
+  for (TickSink* sink : sinks) sink->note(next, kind, text);
+}
+
 std::string text_of(const WantedGround& wanted) {
   std::string text = wanted.preset.empty() ? "as the run began" : wanted.preset;
   for (const auto& [key, value] : wanted.set) text += fmt::format(" {}={}", key, value);
@@ -126,35 +130,36 @@ GroundNow SimulatorHand::ground() const {
   return ground_;
 }
 
-bool SimulatorHand::act(std::uint64_t next, const Note& note) {
-  bool changed = false;
+RobotNow SimulatorHand::act(std::uint64_t next, TickSinks sinks) {
+  RobotNow now = RobotNow::kAsBefore;
   {
     const std::lock_guard lock(mutex_);
     if (terrain_) {
       simulator_.set_terrain(*terrain_);
       terrain_.reset();
-      note(next, "terrain", text_of(ground_.wanted));
-      changed = true;
+      note(sinks, next, "terrain", text_of(ground_.wanted));
+      now = RobotNow::kChanged;
     }
     for (const double direction_rad : std::exchange(pushes_rad_, {})) {
       simulator_.push(kPush_mps * std::cos(direction_rad), kPush_mps * std::sin(direction_rad));
-      note(next, "push",
+      note(sinks, next, "push",
            fmt::format("{} m/s towards {:.0f} degrees", kPush_mps,
                        direction_rad * (180.0 / std::numbers::pi)));
-      changed = true;
+      now = RobotNow::kChanged;
     }
     if (std::exchange(set_on_legs_, false)) stand_again_->begin();
   }
-  return hold(next, note) || changed;
+  return hold(next, sinks) == RobotNow::kChanged ? RobotNow::kChanged : now;
 }
 
 // Upright, until it carries itself.
-bool SimulatorHand::hold(std::uint64_t next, const Note& note) {
+RobotNow SimulatorHand::hold(std::uint64_t next, TickSinks sinks) {
   const bool holds = stand_again_ && stand_again_->holds();
-  if (holds != holding_) note(next, "hand", holds ? "sets the robot on its legs" : "lets it go");
+  if (holds != holding_)
+    note(sinks, next, "hand", holds ? "sets the robot on its legs" : "lets it go");
   holding_ = holds;
   if (holds && simulator_.carry_to_stand()) stand_again_->is_upright();
-  return holds;
+  return holds ? RobotNow::kChanged : RobotNow::kAsBefore;
 }
 
 }  // namespace sandrunner

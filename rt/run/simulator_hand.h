@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "rt/loop/rig.h"
 #include "rt/operator/stand_again.h"
 #include "rt/telemetry/view/view_hand.h"
 #include "sim/simulator.h"
@@ -16,11 +16,8 @@ namespace sandrunner {
 
 /// The hand of pages in a simulated run in lockstep. What they ask for waits here for the next
 /// boundary between two ticks.
-class SimulatorHand final : public ViewHand {
+class SimulatorHand final : public ViewHand, public BetweenTicks {
  public:
-  /// Is told what was done before which tick: kind and text, for the recording.
-  using Note = std::function<void(std::uint64_t, const std::string&, const std::string&)>;
-
   /// `settings`: those in effect, TOML. `stand_again`: the run's operator; null: the run follows
   /// its command line. Both it and the simulator must outlive the hand.
   SimulatorHand(sim::Simulator& simulator, const sim::TerrainDescription& terrain,
@@ -31,12 +28,11 @@ class SimulatorHand final : public ViewHand {
   std::string set_ground(const WantedGround& wanted) override;
   GroundNow ground() const override;
 
-  /// Before tick `next`, from the thread of the ticks: does what waits; true: the robot or its
-  /// ground is another one.
-  bool act(std::uint64_t next, const Note& note);
+  /// Does what waits.
+  RobotNow act(std::uint64_t next, TickSinks sinks) override;
 
  private:
-  bool hold(std::uint64_t next, const Note& note);
+  RobotNow hold(std::uint64_t next, TickSinks sinks);
 
   sim::Simulator& simulator_;
   const std::string settings_;

@@ -42,10 +42,10 @@ class Day {
  public:
   explicit Day(const std::string& terrain)
       : policy_(load_shipped_policy()),
-        config_(config_of(terrain, {}, &policy_.spec())),
+        config_(config_of(terrain, {}, policy_.spec())),
         simulator_(config_.robot, config_.simulator),
         robot_(simulator_),
-        loop_(robot_, config_.controller, Mode::kPassive, &policy_),
+        loop_(robot_, config_.controller, Mode::kPassive, policy_),
         odometry_(config_.robot.description) {
     simulator_.reset_lying();
   }
@@ -89,7 +89,7 @@ class Day {
     EXPECT_EQ(loop_.record().output.mode, mode);
   }
 
-  Policy policy_;
+  PolicyRunner policy_;
   const ProcessConfig config_;
   sim::Simulator simulator_;
   BreakableRobot robot_;

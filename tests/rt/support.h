@@ -15,6 +15,7 @@
 #include "rt/base/errors.h"
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
+#include "rt/run/run_script.h"
 #include "rt/run/scene.h"
 #include "sim/simulator.h"
 #include "tests/policy/random_policy.h"
@@ -48,16 +49,33 @@ inline RunRow last_standing(const RunRecord& record) {
   return *(last + 151);
 }
 
+/// Calls functions of a test; those that are unset are left out.
+struct CallingSink final : TickSink, RowSink {
+  std::function<void(std::int64_t start_ns)> at_begin = {};
+  std::function<void(const TickRecord& tick)> at_tick = {};
+  std::function<void(const RunRow& row)> at_row = {};
+
+  void begin(std::int64_t start_ns) override {
+    if (at_begin) at_begin(start_ns);
+  }
+  void add(const TickRecord& tick) override {
+    if (at_tick) at_tick(tick);
+  }
+  void add(const RunRow& row, std::span<const Footprint>) override {
+    if (at_row) at_row(row);
+  }
+};
+
 /// A run of the simulated robot.
 struct SimulatedRun {
   const ProcessConfig& config;
-  Policy* policy = nullptr;
+  PolicyRunner policy = {};
   std::string command = "1,0,0";
   RunPlan plan = {};
   const std::atomic<int>* interrupts = nullptr;
-  RowTap row_tap = {};
-  TickTap tap = {};
-  StartTap begin_tap = {};
+  std::function<void(const RunRow& row)> at_row = {};
+  std::function<void(const TickRecord& tick)> at_tick = {};
+  std::function<void(std::int64_t start_ns)> at_begin = {};
   OperatorInput* live = nullptr;
   bool realtime = false;
   Clock* clock = nullptr;  ///< null: the system's
@@ -68,24 +86,31 @@ inline RunResult simulate(const SimulatedRun& run) {
   if (!run.plan.start_walking) simulator.reset_lying();
   const CommandSource command(run.command);
   const std::atomic<int> nobody{false};
-  const RunParts parts{.robot = simulator,
-                       .controller = run.config.controller,
-                       .policy = run.policy,
-                       .command = command,
-                       .plan = run.plan,
-                       .live = run.live,
-                       .scene = scene_of(run.config, run.policy ? run.policy->spec().name : ""),
-                       .row_tap = run.row_tap,
-                       .tap = run.tap,
-                       .begin_tap = run.begin_tap,
-                       .interrupts = run.interrupts ? *run.interrupts : nobody};
+  CallingSink sink;
+  sink.at_begin = run.at_begin;
+  sink.at_tick = run.at_tick;
+  sink.at_row = run.at_row;
+  PolicyRunner policy = run.policy;
+  RunScript script(command, run.plan, !run.policy.is_none() && !run.config.controller.gate.hanging);
+  const Rig rig{.robot = simulator,
+                .controller = run.config.controller,
+                .start = run.plan.start_walking ? Mode::kWalk : Mode::kPassive,
+                .policy = policy,
+                .op = run.live ? *run.live : script,
+                .sinks = {&sink},
+                .interrupts = run.interrupts ? *run.interrupts : nobody};
+  const RunRows rows{.scene = scene_of(run.config, policy.name()), .sinks = {&sink}};
   SystemClock system;
-  return run.realtime ? run_in_realtime(parts, run.config.realtime, run.clock ? *run.clock : system)
-                      : run_in_lockstep(parts);
+  RunResult result = run.realtime ? run_in_realtime(rig, rows, run.config.realtime,
+                                                    run.clock ? *run.clock : system)
+                                  : run_in_lockstep(rig, rows);
+  if (!run.live) script.report(result);
+  return result;
 }
 
 /// In lockstep under "1,0,0", uninterrupted.
-inline RunResult run_once(const ProcessConfig& config, Policy* policy, const RunPlan& plan) {
+inline RunResult run_once(const ProcessConfig& config, const PolicyRunner& policy,
+                          const RunPlan& plan) {
   return simulate({.config = config, .policy = policy, .plan = plan});
 }
 

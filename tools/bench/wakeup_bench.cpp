@@ -10,8 +10,9 @@
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
+#include "rt/realtime/realtime_run.h"
 #include "rt/run/process_config.h"
-#include "rt/run/run.h"
+#include "rt/run/run_script.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 #include "tools/bench/realtime_bench.h"
@@ -27,15 +28,19 @@ struct Wakeups {
   double p50_us = 0.0, p99_us = 0.0;
 };
 
-Wakeups ours(const ProcessConfig& config, Policy& policy) {
+Wakeups ours(const ProcessConfig& config, PolicyRunner& policy) {
   const std::atomic<int> nobody{0};
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command("1,0,0");
   RunScript script(command, {.walk_s = kSample_s, .start_walking = true}, true);
   SystemClock clock;
-  const RealtimeEnd end = run_realtime(
-      simulator, config.controller, config.realtime, Mode::kWalk, &policy, script, nobody,
-      [](const TickRecord&) {}, clock);
+  const RealtimeEnd end = run_realtime({.robot = simulator,
+                                        .controller = config.controller,
+                                        .start = Mode::kWalk,
+                                        .policy = policy,
+                                        .op = script,
+                                        .interrupts = nobody},
+                                       config.realtime, clock);
   const LogHistogram& late = end.report.control.late;
   return {1e-3 * static_cast<double>(late.quantile_ns(0.5)),
           1e-3 * static_cast<double>(late.quantile_ns(0.99))};
@@ -86,10 +91,10 @@ Wakeups cyclictest(int cpu) {
 }  // namespace
 
 void run_wakeup_bench(int rounds, Report& report) {
-  Policy policy = load_shipped_policy();
+  PolicyRunner policy(load_shipped_policy());
   ConfigTree tree;
   sim::add_terrain_layer(tree, "dry-sand");
-  ProcessConfig config = read_process_config(tree, &policy.spec());
+  ProcessConfig config = read_process_config(tree, policy.spec());
   const int cpu = allowed_cpus().back();
   config.realtime.control_cpu = cpu;
   config.realtime.control_priority = kPriority;

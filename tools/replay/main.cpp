@@ -9,7 +9,6 @@
 #include <exception>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -95,32 +94,31 @@ struct Player {
     tree.add_text(info.config, "the recording's settings");
     const std::string robot_name = tree.text("robot", "");
     for (const std::string& assignment : arguments.assignments) tree.set(assignment);
-    if (!info.policy.empty()) policy.emplace(load_policy_text(info.policy, "the recorded policy"));
+    PolicyRunner policy;
+    if (!info.policy.empty()) {
+      policy = PolicyRunner(load_policy_text(info.policy, "the recorded policy"));
+    }
     const sim::Robot robot = recorded_robot(info, arguments.file);
     const bool another = tree.text("robot", "") != robot_name;  // by --set
-    config =
-        read_process_config(tree, policy ? &policy->spec() : nullptr, another ? nullptr : &robot);
+    config = read_process_config(tree, policy.spec(), another ? nullptr : &robot);
     if (info.first_tick == 0 || !info.state.empty()) {
-      replay.emplace(config.controller, start_mode_of(info), policy ? &*policy : nullptr);
+      replay.emplace(config.controller, start_mode_of(info), policy);
       if (info.first_tick > 0) {
         replay->restore(read_replay_state(
             info.state, fmt::format("{}: attachment '{}'", arguments.file, kStateAttachment)));
       }
     }
     if (arguments.plot_dir.empty() && !arguments.view) return;
-    const RunScene scene = scene_of(config, policy ? policy->spec().name : "");
+    const RunScene scene = scene_of(config, policy.name());
     if (arguments.view) {
       constexpr std::size_t kMostFrames = 10 * 60 * kPolicyHz;
       feed.emplace(scene,
                    ViewFeed::Limits{.frames = kMostFrames, .footprints = 16'384, .tiles = 2048});
     }
-    observer.emplace(scene, [this](const RunRow& row, std::span<const Footprint> footprints) {
-      if (feed) feed->add(row, footprints);
-    });
+    observer.emplace(scene, feed ? std::vector<RowSink*>{&*feed} : std::vector<RowSink*>());
   }
 
   ProcessConfig config;
-  std::optional<Policy> policy;
   std::optional<Replay> replay;         ///< nothing: the recording has no state to start from
   bool in_step = true;                  ///< false: behind lost ticks, until the next state
   std::optional<ViewFeed> feed;         ///< with --view
@@ -134,7 +132,7 @@ std::string seconds(std::uint64_t tick) {
 // Until Ctrl-C.
 void serve(Player& player) {
   SignalWatch signals;
-  player.observer->take_record();  // its last row
+  player.observer->end();
   player.feed->end();
   const ViewServer server(player.config.view_port, {.feed = *player.feed, .recorded = true});
   to_standard_error(fmt::format("sandrunner-replay: look at {}\n", server.url()));
@@ -165,7 +163,7 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     ++(compares ? compared : not_compared);
     ++drawn;
     if (player->observer) player->observer->add(recorded);
-    if (player->feed) player->feed->set_tick(last_tick);
+    if (player->feed) player->feed->add(recorded);
     if (found && !difference) difference = std::move(found);
     // A picture wants the rest too.
     return (!difference && player->replay) || player->observer;

@@ -8,6 +8,7 @@
 
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
+#include "rt/run/run_script.h"
 #include "rt/run/scene.h"
 #include "rt/telemetry/view/view_page.h"
 #include "sim/ground/terrain_description.h"
@@ -27,17 +28,18 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, double 
   ConfigTree tree;
   sim::add_terrain_layer(tree, kGround);
   const ProcessConfig config = read_process_config(tree, &file.spec, &robot);
-  Policy policy(file.spec, Network(file.parameters));
+  PolicyRunner policy(Policy(file.spec, Network(file.parameters)));
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command(fmt::format("{},0,0", speed_mps));
   const std::atomic<int> nobody{false};
+  RunScript script(command, {.walk_s = kWalk_s, .start_walking = true}, true);
   RunResult run = run_in_lockstep({.robot = simulator,
                                    .controller = config.controller,
-                                   .policy = &policy,
-                                   .command = command,
-                                   .plan = {.walk_s = kWalk_s, .start_walking = true},
-                                   .scene = scene_of(config, file.spec.name),
-                                   .interrupts = nobody});
+                                   .start = Mode::kWalk,
+                                   .policy = policy,
+                                   .op = script,
+                                   .interrupts = nobody},
+                                  {.scene = scene_of(config, file.spec.name)});
   const auto& provenance = file.spec.provenance;
   return run_page(
       std::move(run.record), kMostBytes,

@@ -29,7 +29,7 @@ void add_counts(DiagnosticsMessage& message, const CommandCounts& commands,
 }  // namespace
 
 Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-                     const RobotDescription& robot, const OperatorDesk* desk, bool lockstep)
+                     const RobotDescription& robot, const OperatorDesk* desk, RunClock clock)
     : ros_rate_(config.ros_hz),
       desk_(desk),
       ros_(participant, robot),
@@ -38,7 +38,7 @@ Telemetry::Telemetry(const DdsParticipant& participant, const DdsConfig& config,
       odometry_(robot) {
   // Nothing at tick 0: no reader has been found yet.
   for (SlowerRate* rate : {&ros_rate_, &batch_rate_, &diagnostics_rate_}) rate->due(0);
-  if (lockstep) clock_.emplace(participant);
+  if (clock == RunClock::kLockstep) clock_.emplace(participant);
   if (config.ticks) batches_.emplace(participant);
 }
 

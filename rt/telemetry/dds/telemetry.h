@@ -8,6 +8,7 @@
 #include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
 #include "rt/core/slower_rate.h"
+#include "rt/loop/clock.h"
 #include "rt/loop/tick_record.h"
 #include "rt/operator/operator_desk.h"
 #include "rt/telemetry/dds/neighbours.h"
@@ -29,7 +30,7 @@ class Telemetry {
   /// `participant` must outlive this object, and so must `desk`, whose counts are published; it
   /// may be null. Throws InputError.
   Telemetry(const DdsParticipant& participant, const DdsConfig& config,
-            const RobotDescription& robot, const OperatorDesk* desk, bool lockstep = false);
+            const RobotDescription& robot, const OperatorDesk* desk, RunClock clock);
   /// Publishes the last ticks.
   ~Telemetry();
   Telemetry(const Telemetry&) = delete;

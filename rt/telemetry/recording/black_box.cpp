@@ -9,18 +9,16 @@
 #include <future>
 #include <new>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
-#include "rt/base/errors.h"
 #include "rt/base/output_files.h"
-#include "rt/core/floating_point.h"
 
 namespace sandrunner {
 namespace {
 
-constexpr std::size_t kBlockTicks = 400;   // 0.1 s, 1 MB; longer blocks compress no better
-constexpr std::size_t kQueuedBlocks = 20;  // two seconds
-constexpr int kCompressionLevel = 1;       // as in files
+constexpr std::size_t kBlockTicks = 400;  // 0.1 s, 1 MB; longer blocks compress no better
+constexpr int kCompressionLevel = 1;      // as in files
 
 std::vector<std::byte> compressed(std::span<const TickRecord> ticks) {
   std::vector<std::byte> room(ZSTD_compressBound(ticks.size_bytes()));
@@ -40,56 +38,89 @@ TickQueue::Batch uncompressed(std::span<const std::byte> bytes, std::size_t tick
 
 }  // namespace
 
-BlackBox::BlackBox(std::string folder, RecordingInfo info, const ControllerConfig& config,
-                   const Policy* policy, double window_s, bool wait)
+/// A file that is due.
+struct BlackBox::File {
+  File(BlackBoxFile facts_in, RecordingInfo info_in,
+       std::deque<std::shared_ptr<const Block>> blocks_in)
+      : facts(std::move(facts_in)), info(std::move(info_in)), blocks(std::move(blocks_in)) {}
+
+  BlackBoxFile facts;
+  RecordingInfo info;
+  std::deque<std::shared_ptr<const Block>> blocks;  // still to be written; they outlive the window
+  std::optional<WholeFile> whole;
+  std::optional<RecordingWriter> writer;
+  std::uint64_t bytes_at_state = 0;
+  std::future<void> kept;  // a slow disk takes longer for this than the queue is deep
+
+  // Writes the next block, or whatever else comes next; true: the file is done. Throws.
+  bool advance() {
+    if (!writer) {
+      whole.emplace(facts.path);
+      writer.emplace(whole->part_path(), info);
+    } else if (!blocks.empty()) {
+      write(*blocks.front());
+      blocks.pop_front();
+    } else if (!kept.valid()) {
+      writer->close();
+      kept = std::async(std::launch::async, [this] { whole->keep(); });
+    } else if (kept.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      kept.get();
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  void write(const Block& block) {
+    // The first in a chunk: none is needed behind ticks that can be read.
+    if (!block.state.empty() && writer->bytes_written() != bytes_at_state) {
+      writer->write_state(block.first_tick, block.state);
+      bytes_at_state = writer->bytes_written();
+    }
+    writer->write(uncompressed(block.bytes, block.ticks));
+  }
+};
+
+BlackBox::BlackBox(std::string folder, RecordingInfo info, double window_s)
     : folder_(std::move(folder)),
       info_(std::move(info)),
-      kept_ticks_(ticks_from_s(window_s + kBlackBoxAfter_s)),
-      queue_(kBlockTicks, kQueuedBlocks, wait),
-      policy_(policy ? std::optional<Policy>(*policy) : std::nullopt),
-      replay_(config, start_mode_of(info_), policy_ ? &*policy_ : nullptr) {
-  thread_ = std::thread([this] { work(); });
-}
+      kept_ticks_(ticks_from_s(window_s + kBlackBoxAfter_s)) {}
 
-BlackBox::~BlackBox() { close(); }
+BlackBox::~BlackBox() = default;
 
-BlackBoxResult BlackBox::close() {
-  if (thread_.joinable()) {
-    queue_.finish();
-    thread_.join();
-    result_.dropped = queue_.dropped();
-  }
-  return result_;
-}
-
-void BlackBox::work() {
-  flush_denormals_to_zero();
+template <typename Action>
+void BlackBox::unless_out_of_memory(const Action& action) {
+  if (!result_.stopped_because.empty()) return;
   try {
-    while (const std::optional<TickQueue::Batch> batch = queue_.take()) {
-      keep(*batch);
-      write_marked(ticks_from_s(kBlackBoxAfter_s));
-    }
-    write_marked(0);
+    action();
   } catch (const std::bad_alloc&) {  // locked memory is limited, and the run itself needs it more
     result_.stopped_because = "out of memory";
     window_.clear();
-    while (queue_.take()) {
-    }
+    files_.clear();
+    open_ticks_ = {};
   }
 }
 
-void BlackBox::keep(const TickQueue::Batch& batch) {
-  note_faults(batch);
-  newest_tick_ = batch.back().input.sensors.tick;
-  window_.push_back(
-      std::make_shared<const Block>(Block{batch.front().input.sensors.tick, newest_tick_,
-                                          batch.size(), compressed(batch), replay(batch)}));
-  bytes_ += window_.back()->bytes.size();
-  result_.peak_bytes = std::max(result_.peak_bytes, bytes_);
-  while (window_.front()->last_tick + kept_ticks_ < newest_tick_) {
-    bytes_ -= window_.front()->bytes.size();
-    window_.pop_front();
-  }
+void BlackBox::keep(const TickQueue::Batch& ticks, const std::optional<ReplayState>& before) {
+  unless_out_of_memory([&] {
+    if (open_ticks_.empty()) open_state_ = before ? replay_state_bytes(*before) : std::string();
+    open_ticks_.insert(open_ticks_.end(), ticks.begin(), ticks.end());
+    note_faults(ticks);
+    if (open_ticks_.size() >= kBlockTicks) close_block();
+    make_files(ticks_from_s(kBlackBoxAfter_s));
+    write_some();
+  });
+}
+
+void BlackBox::finish() {
+  unless_out_of_memory([&] {
+    close_block();
+    make_files(0);
+    while (!files_.empty()) {
+      if (files_.front()->kept.valid()) files_.front()->kept.wait();
+      write_some();
+    }
+  });
 }
 
 void BlackBox::note_faults(const TickQueue::Batch& batch) {
@@ -103,81 +134,58 @@ void BlackBox::note_faults(const TickQueue::Batch& batch) {
   }
 }
 
-// Returns the state before these ticks.
-std::string BlackBox::replay(const TickQueue::Batch& batch) {
-  if (result_.difference || result_.lost_from) return {};  // no replay gets past them
-  std::string state = replay_state_bytes(replay_.state());
-  for (const TickRecord& tick : batch) {
-    if (missing_before(tick, replay_.next_tick()) > 0) {
-      result_.lost_from = replay_.next_tick();
-      return &tick == &batch.front() ? std::string() : state;
-    }
-    result_.difference = replay_.check(tick);
-    if (result_.difference) break;
+void BlackBox::close_block() {
+  if (open_ticks_.empty()) return;
+  newest_tick_ = open_ticks_.back().input.sensors.tick;
+  window_.push_back(std::make_shared<const Block>(
+      Block{open_ticks_.front().input.sensors.tick, newest_tick_, open_ticks_.size(),
+            compressed(open_ticks_), std::move(open_state_)}));
+  open_ticks_.clear();
+  bytes_ += window_.back()->bytes.size();
+  result_.peak_bytes = std::max(result_.peak_bytes, bytes_);
+  while (window_.front()->last_tick + kept_ticks_ < newest_tick_) {
+    bytes_ -= window_.front()->bytes.size();
+    window_.pop_front();
   }
-  return state;
 }
 
-void BlackBox::write_marked(std::uint64_t ticks_after) {
-  while (!marks_.empty() && newest_tick_ >= marks_.front().tick + ticks_after) {
-    const Mark mark = marks_.front();
-    marks_.pop_front();
-    if (result_.files.size() < kBlackBoxFiles) {
-      write(mark);
-    } else {
+void BlackBox::make_files(std::uint64_t ticks_after) {
+  for (; !marks_.empty() && newest_tick_ >= marks_.front().tick + ticks_after; marks_.pop_front()) {
+    if (files_made_ == kBlackBoxFiles) {
       ++result_.left_out;
+      continue;
     }
+    const Mark& mark = marks_.front();
+    const Block& first = *window_.front();
+    RecordingInfo info = info_;
+    info.first_tick = first.first_tick;
+    if (info.first_tick > 0) info.state = first.state;
+    const double before_s =
+        (static_cast<double>(mark.tick) - static_cast<double>(info.first_tick)) * kControlPeriod_s;
+    files_.push_back(std::make_unique<File>(
+        BlackBoxFile{.fault = mark.fault,
+                     .fault_tick = mark.tick,
+                     .before_s = before_s,
+                     .path = fmt::format("{}/black-box-{}.mcap", folder_, mark.tick),
+                     .has_start = !first.state.empty(),
+                     .problem = {}},
+        std::move(info), window_));
+    ++files_made_;
   }
 }
 
-void BlackBox::write(const Mark& mark) {
-  const Block& first = *window_.front();
-  BlackBoxFile file;
-  file.fault = mark.fault;
-  file.fault_tick = mark.tick;
-  file.path = fmt::format("{}/black-box-{}.mcap", folder_, mark.tick);
-  file.has_start = !first.state.empty();
-  RecordingInfo info = info_;
-  info.first_tick = first.first_tick;
-  if (info.first_tick > 0) info.state = first.state;
-  file.before_s =
-      (static_cast<double>(mark.tick) - static_cast<double>(info.first_tick)) * kControlPeriod_s;
+void BlackBox::write_some() {
+  if (files_.empty()) return;
+  BlackBoxFile& facts = files_.front()->facts;
   try {
-    WholeFile whole(file.path);
-    write_recording(whole.part_path(), info);
-    // A slow disk takes longer for this than the queue is deep.
-    std::future<void> kept = std::async(std::launch::async, [&] { whole.keep(); });
-    while (kept.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
-      keep_queued();
-    }
-    kept.get();
+    if (!files_.front()->advance()) return;
   } catch (const std::bad_alloc&) {
-    file.problem = "out of memory";
-  } catch (const std::runtime_error& error) {  // of the file, or of a thread that was not to be had
-    file.problem = error.what();
+    facts.problem = "out of memory";
+  } catch (const std::runtime_error& error) {  // of the file, or a thread could not be started
+    facts.problem = error.what();
   }
-  result_.files.push_back(std::move(file));
-}
-
-void BlackBox::write_recording(const std::string& path, const RecordingInfo& info) {
-  RecordingWriter writer(path, info);
-  // The run goes on meanwhile, and the disk may be slow: these blocks outlive the window.
-  const std::vector<std::shared_ptr<const Block>> blocks(window_.begin(), window_.end());
-  std::uint64_t bytes_at_state = 0;
-  for (const std::shared_ptr<const Block>& block : blocks) {
-    // The first in a chunk: none is needed behind ticks that can be read.
-    if (!block->state.empty() && writer.bytes_written() != bytes_at_state) {
-      writer.write_state(block->first_tick, block->state);
-      bytes_at_state = writer.bytes_written();
-    }
-    writer.write(uncompressed(block->bytes, block->ticks));
-    keep_queued();
-  }
-  writer.close();
-}
-
-void BlackBox::keep_queued() {
-  while (const std::optional<TickQueue::Batch> batch = queue_.take_at_once()) keep(*batch);
+  result_.files.push_back(std::move(facts));
+  files_.pop_front();
 }
 
 }  // namespace sandrunner

@@ -7,14 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "policy/policy.h"
-#include "rt/core/controller.h"
-#include "rt/loop/replay.h"
 #include "rt/telemetry/recording/recording_writer.h"
-#include "rt/telemetry/recording/tick_queue.h"
+#include "rt/telemetry/recording/replayed_ticks.h"
 
 namespace sandrunner {
 
@@ -36,14 +32,7 @@ struct BlackBoxFile {
 
 struct BlackBoxResult {
   std::vector<BlackBoxFile> files;
-  std::uint64_t left_out = 0;  ///< faults without a file, beyond kBlackBoxFiles
-  std::uint64_t dropped = 0;   ///< ticks that came faster than they could be compressed
-  /// The first tick that was lost before others; empty: none was. What is behind it is not
-  /// verified, and files that begin later have no start.
-  std::optional<std::uint64_t> lost_from;
-  /// The first tick at which the run did not do what follows from its inputs. Files that begin
-  /// later have no start.
-  std::optional<ReplayDifference> difference;
+  std::uint64_t left_out = 0;   ///< faults without a file, beyond kBlackBoxFiles
   std::string stopped_because;  ///< why the black box ended before the run; empty: it did not
   std::size_t peak_bytes = 0;   ///< of the compressed ticks
 };
@@ -52,28 +41,24 @@ struct BlackBoxResult {
 /// (DIR/black-box-<tick of the fault>.mcap) two seconds after a fault or at the end of the run.
 ///
 /// A recording that begins in the middle needs the state of controller and network before its first
-/// tick. That is why a replay runs along: it verifies the ticks and yields the state before each
-/// block of them. A file has these too: damage costs the replay no more than its chunk and the rest
-/// of a block.
+/// tick: each block of ticks has it. A file has these too: damage costs the replay no more than its
+/// chunk and the rest of a block. Files behind lost ticks or a difference have no such state.
 ///
-/// All this happens in an ordinary thread of its own. Measured on a simulated walk: 93 MB of
+/// A file is written block by block, while ticks come. Measured on a simulated walk: 93 MB of
 /// memory, 105 MB with encoder noise; 1.6 % of a core, and 0.7 s of that core per file.
-class BlackBox {
+class BlackBox final : public TickKeeper {
  public:
-  /// `policy` is copied; null if the run has none. `wait`: as for Recorder.
-  BlackBox(std::string folder, RecordingInfo info, const ControllerConfig& config,
-           const Policy* policy, double window_s = kBlackBox_s, bool wait = false);
-  ~BlackBox();
+  BlackBox(std::string folder, RecordingInfo info, double window_s = kBlackBox_s);
+  ~BlackBox() override;
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
-  /// As Recorder::begin.
-  void begin(std::int64_t start_time_ns) noexcept { info_.start_time_ns = start_time_ns; }
-  /// Every tick, in order, from one ordinary thread. If the queue, which holds two seconds, is
-  /// full, the newest ticks are dropped and counted.
-  void add(const TickRecord& tick) { queue_.add(tick); }
-  /// Writes files that are still due. Nothing may be added afterwards.
-  BlackBoxResult close();
+  void begin(std::int64_t start_ns) override { info_.start_time_ns = start_ns; }
+  void keep(const TickQueue::Batch& ticks, const std::optional<ReplayState>& before) override;
+  /// Writes files that are still due.
+  void finish() override;
+  /// After finish().
+  const BlackBoxResult& result() const noexcept { return result_; }
 
  private:
   /// Consecutive ticks, compressed.
@@ -87,29 +72,27 @@ class BlackBox {
     Fault fault = Fault::kNone;
     std::uint64_t tick = 0;
   };
+  struct File;
 
-  void work();
-  void keep(const TickQueue::Batch& batch);
   void note_faults(const TickQueue::Batch& batch);
-  std::string replay(const TickQueue::Batch& batch);
-  void write_marked(std::uint64_t ticks_after);
-  void write(const Mark& mark);
-  void keep_queued();
-  void write_recording(const std::string& path, const RecordingInfo& info);
+  void close_block();
+  void make_files(std::uint64_t ticks_after);
+  void write_some();
+  template <typename Action>
+  void unless_out_of_memory(const Action& action);
 
   const std::string folder_;
-  RecordingInfo info_;  // from the first tick on, only its thread uses it
+  RecordingInfo info_;  // from the first tick on, only the thread that keeps uses it
   const std::uint64_t kept_ticks_;
-  TickQueue queue_;
-  // Only its thread uses what follows.
-  std::optional<Policy> policy_;
-  Replay replay_;  // behind the newest tick, or at the difference or lost ticks
+  TickQueue::Batch open_ticks_;  // of the next block
+  std::string open_state_;       // before them
   std::deque<std::shared_ptr<const Block>> window_;
   std::size_t bytes_ = 0;
-  std::deque<Mark> marks_;  // faults whose files are due
+  std::deque<Mark> marks_;                   // faults whose files are due
+  std::deque<std::unique_ptr<File>> files_;  // not yet written; the first one may be begun
+  std::size_t files_made_ = 0;
   std::uint64_t last_faults_ = 0, newest_tick_ = 0;
   BlackBoxResult result_;
-  std::thread thread_;
 };
 
 }  // namespace sandrunner

@@ -3,74 +3,52 @@
 
 #include <unistd.h>
 
+#include <exception>
 #include <utility>
 
-#include "rt/core/floating_point.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
 
 namespace sandrunner {
-namespace {
 
-constexpr std::size_t kQueuedBatches = 200;  // two seconds
-
-}  // namespace
-
-Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits,
-                   bool wait, const ControllerConfig* config, const Policy* policy)
-    : path_(path),
-      limits_(limits),
-      info_(std::move(info)),
-      queue_(kTicksPerMessage, kQueuedBatches, wait),
-      policy_(policy ? std::optional<Policy>(*policy) : std::nullopt) {
-  if (config) replay_.emplace(*config, start_mode_of(info_), policy_ ? &*policy_ : nullptr);
+Recorder::Recorder(const std::string& path, RecordingInfo info, const RecordingLimits& limits)
+    : path_(path), limits_(limits), info_(std::move(info)) {
   McapWriter::try_path(path_);
-  thread_ = std::thread([this] { work(); });
 }
-
-Recorder::~Recorder() { close(); }
 
 void Recorder::note(std::uint64_t tick, const std::string& kind, const std::string& text) {
   const std::lock_guard lock(notes_mutex_);
   notes_.push_back({tick, kind, text});
 }
 
-RecordingResult Recorder::close() {
-  if (thread_.joinable()) {
-    queue_.finish();
-    thread_.join();
-    result_.dropped = queue_.dropped();
-    if (writer_) result_.bytes = writer_->bytes_written();
-    result_.removed = writer_ && ::access(path_.c_str(), F_OK) != 0;
-  }
-  return result_;
-}
-
-void Recorder::work() {
-  flush_denormals_to_zero();  // as where the ticks came from
-  while (const std::optional<TickQueue::Batch> batch = queue_.take()) {
-    if (stopped_) continue;
-    try {
-      write(*batch);
-    } catch (const std::exception& error) {  // also a lack of memory: the run itself goes on
-      stop(error.what(), true);
-    }
-  }
+void Recorder::keep(const TickQueue::Batch& ticks, const std::optional<ReplayState>& before) {
+  if (stopped_) return;
   try {
-    if (writer_) writer_->close();
-  } catch (const std::exception& error) {
+    write(ticks, before);
+  } catch (const std::exception& error) {  // also a lack of memory: the run itself goes on
     stop(error.what(), true);
   }
 }
 
-void Recorder::write(const TickQueue::Batch& batch) {
+void Recorder::finish() {
+  if (!writer_) return;
+  try {
+    writer_->close();
+  } catch (const std::exception& error) {
+    stop(error.what(), true);
+  }
+  result_.bytes = writer_->bytes_written();
+  result_.removed = ::access(path_.c_str(), F_OK) != 0;
+}
+
+void Recorder::write(const TickQueue::Batch& batch, const std::optional<ReplayState>& before) {
   if (!writer_) writer_.emplace(path_, info_);
-  if (replay_ && writer_->bytes_written() != bytes_at_state_) write_state();
+  if (before && writer_->bytes_written() != bytes_at_state_) {
+    // The first message of ticks in a chunk comes behind it: bytes are written when a chunk ends.
+    writer_->write_state(before->next_tick, replay_state_bytes(*before));
+    bytes_at_state_ = writer_->bytes_written();
+  }
   write_notes();
   writer_->write(batch);
-  // Behind lost ticks it differs too: no state is known there.
-  for (const TickRecord& tick : batch) {
-    if (replay_ && replay_->check(tick)) replay_.reset();
-  }
   result_.ticks += batch.size();
   if (writer_->bytes_written() > limits_.bytes) stop("its size reached the limit", false);
   const std::uint64_t first = batch.front().input.sensors.tick;
@@ -87,13 +65,6 @@ void Recorder::write_notes() {
     notes.swap(notes_);
   }
   for (const Note& note : notes) writer_->write_event(note.tick, note.kind, note.text);
-}
-
-// The first message of ticks in a chunk comes behind it: bytes are written when a chunk ends.
-void Recorder::write_state() {
-  const ReplayState state = replay_->state();
-  writer_->write_state(state.next_tick, replay_state_bytes(state));
-  bytes_at_state_ = writer_->bytes_written();
 }
 
 void Recorder::stop(const std::string& reason, bool failed) {

@@ -5,8 +5,8 @@
 
 namespace sandrunner {
 
-TickQueue::TickQueue(std::size_t batch_ticks, std::size_t batches, bool wait)
-    : batch_ticks_(batch_ticks), batches_(batches), wait_(wait) {
+TickQueue::TickQueue(std::size_t batch_ticks, std::size_t batches, WhenFull when_full)
+    : batch_ticks_(batch_ticks), batches_(batches), when_full_(when_full) {
   batch_.reserve(batch_ticks_);
 }
 
@@ -19,7 +19,8 @@ void TickQueue::hand_over() {
   if (batch_.empty()) return;
   {
     std::unique_lock<std::mutex> lock(mutex_);
-    if (wait_) changed_.wait(lock, [&] { return queue_.size() < batches_; });
+    if (when_full_ == WhenFull::kWait)
+      changed_.wait(lock, [&] { return queue_.size() < batches_; });
     if (queue_.size() < batches_) {
       queue_.push_back(std::move(batch_));
     } else {
@@ -40,11 +41,11 @@ void TickQueue::finish() {
   changed_.notify_all();
 }
 
-std::optional<TickQueue::Batch> TickQueue::take(bool wait) {
+std::optional<TickQueue::Batch> TickQueue::take() {
   std::optional<Batch> batch;
   {
     std::unique_lock<std::mutex> lock(mutex_);
-    if (wait) changed_.wait(lock, [&] { return !queue_.empty() || finished_; });
+    changed_.wait(lock, [&] { return !queue_.empty() || finished_; });
     if (queue_.empty()) return batch;
     batch = std::move(queue_.front());
     queue_.pop_front();

@@ -13,14 +13,17 @@
 
 namespace sandrunner {
 
+/// What a queue does with a batch that finds it full: lets the giver wait, which hurts nobody in
+/// lockstep, or drops the batch and counts its ticks.
+enum class WhenFull { kWait, kDrop };
+
 /// Hands ticks from one ordinary thread to another, in batches.
 class TickQueue {
  public:
   using Batch = std::vector<TickRecord>;
 
-  /// Holds up to `batches` of `batch_ticks` each. When it is full, the giver waits if `wait` is
-  /// set; otherwise the newest batch is dropped and counted.
-  TickQueue(std::size_t batch_ticks, std::size_t batches, bool wait);
+  /// Holds up to `batches` of `batch_ticks` each.
+  TickQueue(std::size_t batch_ticks, std::size_t batches, WhenFull when_full);
 
   // For the giver:
   void add(const TickRecord& tick);
@@ -29,19 +32,16 @@ class TickQueue {
 
   // For the taker:
   /// Waits for the next batch. Nothing: finish() was called, and all batches were taken.
-  std::optional<Batch> take() { return take(true); }
-  /// The next batch if there is one, without waiting.
-  std::optional<Batch> take_at_once() { return take(false); }
+  std::optional<Batch> take();
 
   /// Number of dropped ticks. For the giver's thread; after finish(), for any thread.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:
   void hand_over();
-  std::optional<Batch> take(bool wait);
 
   const std::size_t batch_ticks_, batches_;
-  const bool wait_;
+  const WhenFull when_full_;
   Batch batch_;  // only the giver uses it
   std::uint64_t dropped_ = 0;
   std::mutex mutex_;

@@ -51,9 +51,9 @@ void ViewFeed::add(const RunRow& row, std::span<const Footprint> footprints) {
   frames_.add(row, limits_.frames);
 }
 
-void ViewFeed::set_tick(std::uint64_t tick) {
+void ViewFeed::add(const TickRecord& tick) {
   const std::lock_guard lock(mutex_);
-  now_s_ = static_cast<double>(tick + 1) * kControlPeriod_s;
+  now_s_ = static_cast<double>(tick.input.sensors.tick + 1) * kControlPeriod_s;
 }
 
 void ViewFeed::end() {

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "rt/loop/tick_sink.h"
+#include "rt/report/run_observer.h"
 #include "rt/report/run_record.h"
 #include "rt/telemetry/view/view_tiles.h"
 
@@ -32,7 +34,7 @@ struct ViewRows {
 /// Hands what is seen of a run from the thread of its ticks to the one that serves pages. It holds
 /// a bounded past for pages that come later; each page has a place in it, and one that falls behind
 /// skips to the newest frame: nobody waits for it, and nothing is queued for it.
-class ViewFeed {
+class ViewFeed final : public TickSink, public RowSink {
  public:
   struct Limits {
     std::size_t frames = 60 * 100;
@@ -46,12 +48,11 @@ class ViewFeed {
   explicit ViewFeed(RunScene scene) : ViewFeed(std::move(scene), Limits()) {}
 
   // From one ordinary thread:
-  /// The next row, and the footprints since the one before.
-  void add(const RunRow& row, std::span<const Footprint> footprints);
+  void add(const RunRow& row, std::span<const Footprint> footprints) override;
   /// The run is at this tick.
-  void set_tick(std::uint64_t tick);
+  void add(const TickRecord& tick) override;
   /// There are no more rows.
-  void end();
+  void end() override;
 
   // From any thread:
   /// What a page has so far: the numbers of the rows that it gets next.

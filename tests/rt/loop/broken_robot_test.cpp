@@ -181,7 +181,7 @@ TEST_F(BrokenRobotTest, TorqueDrivesWhoseEncodersFreezeAtRestAreAFaultWhenTheBod
 }
 
 /// Switches the supply off for 3 s in Stand, and on again; the joint comes back by `offset_rad`.
-Outcome after_supply_cut(const ProcessConfig& config, Policy& policy, const Snapshot& stand,
+Outcome after_supply_cut(const ProcessConfig& config, const Policy& policy, const Snapshot& stand,
                          int joint, double offset_rad) {
   DisturbedLoop loop(config, policy, Drives::kGains, stand);
   bool cut = true;
@@ -217,7 +217,7 @@ TEST_F(BrokenRobotTest, AJointThatComesBackAMotorTurnAwayIsNotArmed) {
 }
 
 /// Starts the lying robot with a joint that is off by `offset_rad`, and arms it.
-Fault armed_with(const ProcessConfig& config, Policy& policy, int joint, double offset_rad) {
+Fault armed_with(const ProcessConfig& config, const Policy& policy, int joint, double offset_rad) {
   DisturbedLoop loop(config, policy, Drives::kGains);
   loop.robot.spoil = [&](SensorFrame& f, const SensorFrame&, std::uint64_t) {
     f.joints.position_rad[joint] += offset_rad;

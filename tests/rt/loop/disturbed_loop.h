@@ -85,12 +85,13 @@ class FaultyRobot final : public RobotIo {
 /// The policy on a thread of its own, with a fault or without.
 class FaultyPolicy final : public PolicyLink {
  public:
-  explicit FaultyPolicy(Policy& policy) : policy_(&policy) {}
+  explicit FaultyPolicy(const Policy& policy) : policy_(policy) {}
   const PolicyOutput& newest() noexcept override { return newest_; }
   void release(const PolicyInput& input) noexcept override {
     input_ = input;
     if (!hangs) answer();
   }
+  NetworkState network() const { return policy_.network(); }
   void restore(const PolicyOutput& newest, const NetworkState& network) {
     policy_.restore(newest, network);
     newest_ = newest;
@@ -106,14 +107,14 @@ class FaultyPolicy final : public PolicyLink {
 
  private:
   void answer() {
-    policy_.release(*input_);
+    policy_.step(*input_);
     input_.reset();
     const JointArray<double> before_rad = newest_.target_rad;
     newest_ = policy_.newest();
     if (spoil) spoil(newest_, before_rad);
   }
 
-  InlinePolicy policy_;
+  PolicyRunner policy_;
   PolicyOutput newest_;
   std::optional<PolicyInput> input_;  ///< not answered yet
 };
@@ -130,9 +131,8 @@ struct Snapshot {
 /// The loop of a robot and a policy that can be disturbed, under an operator.
 struct DisturbedLoop {
   /// The robot lies, passive.
-  DisturbedLoop(const ProcessConfig& config, Policy& net, Drives drives)
-      : network(net),
-        simulator(config.robot, config.simulator),
+  DisturbedLoop(const ProcessConfig& config, const Policy& net, Drives drives)
+      : simulator(config.robot, config.simulator),
         robot(simulator, drives),
         policy(net),
         loop(robot, config.controller, Mode::kPassive, policy, clock) {
@@ -140,7 +140,7 @@ struct DisturbedLoop {
     command.velocity.vx_mps = 0.5;
   }
   /// Goes on from a snapshot.
-  DisturbedLoop(const ProcessConfig& config, Policy& net, Drives drives, const Snapshot& at)
+  DisturbedLoop(const ProcessConfig& config, const Policy& net, Drives drives, const Snapshot& at)
       : DisturbedLoop(config, net, drives) {
     tick = at.tick;
     simulator.restore(at.robot);
@@ -151,7 +151,7 @@ struct DisturbedLoop {
   DisturbedLoop(const DisturbedLoop&) = delete;
 
   Snapshot snapshot() {
-    return {tick, simulator.state(), loop.controller().state(), policy.newest(), network.state()};
+    return {tick, simulator.state(), loop.controller().state(), policy.newest(), policy.network()};
   }
 
   void ask(ModeRequest request) {
@@ -168,7 +168,6 @@ struct DisturbedLoop {
     for (std::uint64_t n = ticks_from_s(duration_s); n > 0; --n) step();
   }
 
-  Policy& network;
   sim::Simulator simulator;
   FaultyRobot robot;
   FaultyPolicy policy;

@@ -124,12 +124,13 @@ TEST_P(LoopFaultTest, DampsWithinTwoMillisecondsAndStaysSo) {
   const Case& c = GetParam();
   PolicyFile file = random_policy_file();
   if (c.change_policy) c.change_policy(file);
-  Policy policy(file.spec, Network(file.parameters));
+  PolicyRunner policy;
+  if (c.has_policy) policy = PolicyRunner(Policy(file.spec, Network(file.parameters)));
   const ProcessConfig config = config_of("dry-sand", c.assignments, &file.spec);
   sim::Simulator simulator(config.robot, config.simulator);
   SpoiltRobot robot(simulator);
   robot.spoil = c.spoil;
-  Lockstep loop(robot, config.controller, Mode::kWalk, c.has_policy ? &policy : nullptr);
+  Lockstep loop(robot, config.controller, Mode::kWalk, policy);
   const GateState& gate = loop.controller().state().gate;
 
   const auto tick = [&] {

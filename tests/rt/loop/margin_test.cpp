@@ -87,8 +87,8 @@ class Nearest {
 class MarginTest : public testing::Test {
  protected:
   /// From lying to lying, with a walk under `commands` on the way.
-  void run(const std::string& name, const ProcessConfig& config, Policy& policy, Drives drives,
-           const std::vector<VelocityCommand>& commands) {
+  void run(const std::string& name, const ProcessConfig& config, const Policy& policy,
+           Drives drives, const std::vector<VelocityCommand>& commands) {
     Nearest nearest;
     DisturbedLoop loop(config, policy, drives);
     const auto run_s = [&](double duration_s) {
@@ -126,7 +126,7 @@ class MarginTest : public testing::Test {
 };
 
 TEST_F(MarginTest, GoodRunsStayFarFromEveryComparison) {
-  Policy policy = load_shipped_policy();
+  const Policy policy = load_shipped_policy();
   const std::vector<VelocityCommand> commands = {
       {2.5, 0.0, 0.0}, {0.0, 0.5, 1.0}, {-1.0, 0.0, 0.0}};
   for (const std::string& terrain : presets) {
@@ -147,7 +147,7 @@ TEST_F(MarginTest, GoodRunsStayFarFromEveryComparison) {
 TEST_F(MarginTest, AnotherRobotStandsUpFarFromEveryComparison) {
   const TemporaryFolder folder;
   const std::string robot = "robot=" + write_small_robot(folder);
-  Policy policy = load_shipped_policy();
+  const Policy policy = load_shipped_policy();
   for (const std::string& terrain : presets) {
     for (const std::string ramp : {"0", "2"}) {
       const ProcessConfig config =

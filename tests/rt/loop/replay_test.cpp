@@ -15,12 +15,11 @@ std::vector<TickRecord> recorded_run(const ProcessConfig& config, bool realtime)
   std::vector<TickRecord> ticks;
   unless_stalled([&](std::string& said) {
     ticks.clear();
-    Policy policy = load_shipped_policy();
     said = simulate({.config = config,
-                     .policy = &policy,
+                     .policy = PolicyRunner(load_shipped_policy()),
                      .command = "1,0,0.5",
                      .plan = {.walk_s = 1.0, .start_walking = realtime},
-                     .tap = [&](const TickRecord& tick) { ticks.push_back(tick); },
+                     .at_tick = [&](const TickRecord& tick) { ticks.push_back(tick); },
                      .realtime = realtime})
                .fall_reason;
   });
@@ -31,14 +30,13 @@ ProcessConfig noisy_config(const std::vector<std::string>& more = {}) {
   std::vector<std::string> settings = {"sim.noise.joint_position_rad=0.01",
                                        "sim.noise.angular_velocity_radps=0.05"};
   settings.insert(settings.end(), more.begin(), more.end());
-  const Policy policy = load_shipped_policy();
-  return config_of("dry-sand", settings, &policy.spec());
+  const PolicyRunner policy(load_shipped_policy());
+  return config_of("dry-sand", settings, policy.spec());
 }
 
 std::optional<ReplayDifference> replay(const std::vector<TickRecord>& ticks,
                                        const ProcessConfig& config, Mode start) {
-  Policy policy = load_shipped_policy();
-  Replay replay(config.controller, start, &policy);
+  Replay replay(config.controller, start, PolicyRunner(load_shipped_policy()));
   for (const TickRecord& tick : ticks) {
     if (auto difference = replay.check(tick)) return difference;
   }
@@ -116,10 +114,10 @@ TEST_F(ReplayTest, ContinuesFromTheStateOfAnotherReplay) {
     return tick.output.release_policy != 0;
   });
   for (auto from = released - 1; from < released + 3; ++from) {
-    Policy policy = load_shipped_policy(), other_policy = load_shipped_policy();
-    Replay first(noisy_config().controller, Mode::kPassive, &policy);
+    const PolicyRunner policy(load_shipped_policy());
+    Replay first(noisy_config().controller, Mode::kPassive, policy);
     for (auto tick = ticks().begin(); tick < from; ++tick) ASSERT_FALSE(first.check(*tick));
-    Replay second(noisy_config().controller, Mode::kPassive, &other_policy);
+    Replay second(noisy_config().controller, Mode::kPassive, policy);
     second.restore(read_replay_state(replay_state_bytes(first.state()), "state"));
     for (auto tick = from; tick < ticks().end(); ++tick) {
       const auto difference = second.check(*tick);

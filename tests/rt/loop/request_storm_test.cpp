@@ -89,7 +89,7 @@ class RequestStormTest : public testing::Test {
     return violations;
   }
 
-  Policy policy_ = load_shipped_policy();
+  const Policy policy_ = load_shipped_policy();
   std::array<std::uint64_t, 6> seen_{};
 };
 

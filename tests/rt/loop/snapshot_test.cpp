@@ -9,11 +9,11 @@ namespace sandrunner {
 namespace {
 
 /// Simulator, controller and policy from one configuration.
-struct Rig {
-  Rig(const ProcessConfig& config, Mode start, const Policy& policy_in)
+struct Loop {
+  Loop(const ProcessConfig& config, Mode start, const Policy& policy_in)
       : policy(policy_in),
         simulator(config.robot, config.simulator),
-        loop(simulator, config.controller, start, &policy) {
+        loop(simulator, config.controller, start, policy) {
     if (start != Mode::kWalk) simulator.reset_lying();
   }
 
@@ -39,7 +39,7 @@ struct Rig {
     return hash.value();
   }
 
-  Policy policy;
+  PolicyRunner policy;
   sim::Simulator simulator;
   Lockstep loop;
 };
@@ -47,29 +47,29 @@ struct Rig {
 void expect_same_future(const ProcessConfig& config, Mode start, std::uint64_t snapshot_tick,
                         std::uint64_t end_tick) {
   const Policy policy = random_policy();
-  Rig rig(config, start, policy);
-  rig.run(snapshot_tick);
-  const sim::SimulatorState simulator_state = rig.simulator.state();
-  const LockstepState loop_state = rig.loop.state();
-  const std::uint64_t hash_then = rig.hash();
-  rig.run(end_tick);
+  Loop first(config, start, policy);
+  first.run(snapshot_tick);
+  const sim::SimulatorState simulator_state = first.simulator.state();
+  const LockstepState loop_state = first.loop.state();
+  const std::uint64_t hash_then = first.hash();
+  first.run(end_tick);
 
-  Rig fresh(config, start, policy);
+  Loop fresh(config, start, policy);
   EXPECT_NE(fresh.hash(), hash_then);
   fresh.simulator.restore(simulator_state);
   fresh.loop.restore(loop_state, snapshot_tick);
   EXPECT_EQ(fresh.hash(), hash_then);
   fresh.run(end_tick);
-  EXPECT_EQ(fresh.hash(), rig.hash());
-  EXPECT_EQ(fresh.loop.record().output.mode, rig.loop.record().output.mode);
+  EXPECT_EQ(fresh.hash(), first.hash());
+  EXPECT_EQ(fresh.loop.record().output.mode, first.loop.record().output.mode);
 
   // One that has already done something else, too.
-  Rig used(config, start, policy);
+  Loop used(config, start, policy);
   used.run(333);
   used.simulator.restore(simulator_state);
   used.loop.restore(loop_state, snapshot_tick);
   used.run(end_tick);
-  EXPECT_EQ(used.hash(), rig.hash());
+  EXPECT_EQ(used.hash(), first.hash());
 }
 
 TEST(SnapshotTest, ContinuesInWalkOnEveryKindOfGround) {

@@ -16,7 +16,7 @@ TEST(RemoteOperatorTest, ARobotWhoseOperatorSaysNothingStaysPassive) {
     const OperatorCommand command = op.command(tick);
     EXPECT_EQ(command.request_id, 0u);
     EXPECT_EQ(command.velocity.vx_mps, 0.0);
-    EXPECT_TRUE(op.advance({.mode = Mode::kPassive}).running);
+    EXPECT_TRUE(op.advance({.mode = Mode::kPassive}).goes_on());
   }
 }
 
@@ -68,16 +68,16 @@ TEST(RemoteOperatorTest, TheControllersFirstStepGetsNoRequestAndTheNextOneDoes) 
 TEST(RemoteOperatorTest, AnInterruptLiesDownThenDampsForASecondAndTakesNoMoreRequests) {
   RemoteOperator op(kStale_ticks);
   op.command(0);
-  EXPECT_TRUE(op.advance({.mode = Mode::kStand, .interrupts = 1}).running);
+  EXPECT_TRUE(op.advance({.mode = Mode::kStand, .interrupts = 1}).goes_on());
   op.ask({.velocity = {}, .request = ModeRequest::kWalk, .request_number = 1});
   const OperatorCommand command = op.command(1);
   EXPECT_EQ(command.request, ModeRequest::kLie);
   EXPECT_EQ(command.request_id, 1u);
   for (int n = 0; n < 6000; ++n) {
-    ASSERT_TRUE(op.advance({.mode = Mode::kStand, .interrupts = 1}).running);
+    ASSERT_TRUE(op.advance({.mode = Mode::kStand, .interrupts = 1}).goes_on());
   }
   int ticks = 1;
-  while (op.advance({.mode = Mode::kDamping, .interrupts = 1}).running) ++ticks;
+  while (op.advance({.mode = Mode::kDamping, .interrupts = 1}).goes_on()) ++ticks;
   EXPECT_EQ(ticks, kControlHz);
   EXPECT_EQ(op.command(2).request_id, 1u);
 }
@@ -93,7 +93,7 @@ TEST(RemoteOperatorTest, ASecondInterruptDampsAtOnce) {
 TEST(RemoteOperatorTest, AnInterruptedRobotWithItsDrivesOffEndsAtOnce) {
   RemoteOperator op(kStale_ticks);
   op.command(0);
-  EXPECT_FALSE(op.advance({.mode = Mode::kPassive, .interrupts = 1}).running);
+  EXPECT_FALSE(op.advance({.mode = Mode::kPassive, .interrupts = 1}).goes_on());
 }
 
 }  // namespace

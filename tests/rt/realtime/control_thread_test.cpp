@@ -71,7 +71,7 @@ class NoOperator final : public OperatorInput {
   OperatorVerdict advance(const TickFacts& facts) noexcept override {
     time_ticks += facts.ticks;
     if (facts.mode == Mode::kFault && fault_tick == 0) fault_tick = time_ticks - 1;
-    return {.running = !(facts.interrupts > 0) && time_ticks < end};
+    return {.next = facts.interrupts > 0 || time_ticks >= end ? AfterTick::kEnd : AfterTick::kGoOn};
   }
   std::uint64_t end = 1000, time_ticks = 0, fault_tick = 0;
 };

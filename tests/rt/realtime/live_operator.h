@@ -22,7 +22,8 @@ class LiveOperator final : public OperatorInput {
     ticks_ += facts.ticks;
     mode_.store(facts.mode, std::memory_order_relaxed);
     faults_.store(facts.faults, std::memory_order_relaxed);
-    return {.running = !end_.load(std::memory_order_relaxed) && !(facts.interrupts > 0),
+    return {.next = end_.load(std::memory_order_relaxed) || facts.interrupts > 0 ? AfterTick::kEnd
+                                                                                 : AfterTick::kGoOn,
             .counts = facts.mode == Mode::kWalk};
   }
 

@@ -56,8 +56,8 @@ void expect_clean(const WatchedDeeds& deeds) {
 }
 
 TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   unless_stalled([&](std::string& said) {
     RemoteOperator op(1200);
     // Commands all the time, a change of mode, a fault, the end.
@@ -81,10 +81,10 @@ TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
     };
     WatchingClock clock;
     const RunResult result = simulate({.config = config,
-                                       .policy = &policy,
+                                       .policy = policy,
                                        .plan = {.start_walking = true},
                                        .interrupts = &interrupt,
-                                       .tap = at_each_tick,
+                                       .at_tick = at_each_tick,
                                        .live = &op,
                                        .realtime = true,
                                        .clock = &clock});

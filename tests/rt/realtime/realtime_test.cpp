@@ -28,12 +28,12 @@ RunResult run_unless_stalled(const std::function<RunResult()>& run) {
 }
 
 RunResult run_live(LiveOperator& op, const std::function<void()>& at_each_tick) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   return simulate({.config = config,
-                   .policy = &policy,
+                   .policy = policy,
                    .plan = {.start_walking = true},
-                   .tap = [&](const TickRecord&) { at_each_tick(); },
+                   .at_tick = [&](const TickRecord&) { at_each_tick(); },
                    .live = &op,
                    .realtime = true});
 }
@@ -54,14 +54,14 @@ class Steps {
 };
 
 TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFirst) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   std::int64_t start_ns = 0, least_ns = std::numeric_limits<std::int64_t>::max();
   int ticks_before_start = 0;
   simulate({.config = config,
-            .policy = &policy,
+            .policy = policy,
             .plan = {.walk_s = 0.3, .start_walking = true},
-            .tap =
+            .at_tick =
                 [&](const TickRecord& tick) {
                   ticks_before_start += start_ns == 0;
                   const std::int64_t now_ns = clock_ns(CLOCK_REALTIME);
@@ -71,18 +71,18 @@ TEST(RealtimeTest, TicksAreStampedWithTheTimeOfTheirSlotsNotOfWhoeverTakesThemFi
                       tick.timing.late_ns;
                   least_ns = std::min(least_ns, now_ns - began_ns);
                 },
-            .begin_tap = [&](std::int64_t at_ns) { start_ns = at_ns; },
+            .at_begin = [&](std::int64_t at_ns) { start_ns = at_ns; },
             .realtime = true});
   EXPECT_EQ(ticks_before_start, 0);
   EXPECT_GT(least_ns, -200'000);  // no stamp leads; before, by up to 5 ms
 }
 
 TEST(RealtimeTest, EverySlotRunsOrIsCountedAndEveryReleaseIsAnsweredOrCounted) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   const RunResult result = run_unless_stalled([&] {
     return simulate({.config = config,
-                     .policy = &policy,
+                     .policy = policy,
                      .plan = {.walk_s = 2.0, .start_walking = true},
                      .realtime = true});
   });
@@ -160,14 +160,14 @@ TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
 
 /// A walk in which `interrupts` sees every tick, and says when to interrupt it.
 RunResult walk_until(const std::function<bool(const TickRecord&)>& interrupts) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   std::atomic<int> interrupt{false};
   return simulate({.config = config,
-                   .policy = &policy,
+                   .policy = policy,
                    .plan = {.walk_s = 60.0, .start_walking = true},
                    .interrupts = &interrupt,
-                   .tap = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
+                   .at_tick = [&](const TickRecord& tick) { interrupt = interrupts(tick); },
                    .realtime = true});
 }
 
@@ -192,13 +192,13 @@ TEST(RealtimeTest, InterruptReachesARobotWhoseTicksAreTakenTooSlowly) {
 }
 
 TEST(RealtimeTest, RequiredProcessorThatIsRefusedIsBadInput) {
-  Policy policy = load_shipped_policy();
+  PolicyRunner policy(load_shipped_policy());
   // No machine has this processor.
   const ProcessConfig config = config_of(
-      "dry-sand", {"realtime.affinity=require", "realtime.control_cpu=1023"}, &policy.spec());
+      "dry-sand", {"realtime.affinity=require", "realtime.control_cpu=1023"}, policy.spec());
   const auto start = [&] {
     simulate({.config = config,
-              .policy = &policy,
+              .policy = policy,
               .plan = {.walk_s = 1.0, .start_walking = true},
               .realtime = true});
   };

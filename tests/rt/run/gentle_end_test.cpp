@@ -23,8 +23,8 @@ struct Landing {
 
 /// Of a walk at `command` that is interrupted after 4 s, `interrupts` times at once.
 Landing land(const std::string& terrain, const std::string& command, bool live, int interrupts) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of(terrain, {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of(terrain, {}, policy.spec());
   std::atomic<int> count{0};
   RemoteOperator remote(config.dds.stale_ticks());
   OperatorRequests asked;
@@ -54,11 +54,11 @@ Landing land(const std::string& terrain, const std::string& command, bool live, 
     landing.least_upright = std::min(landing.least_upright, 1.0 - 2.0 * (x * x + y * y));
   };
   const RunResult result = simulate({.config = config,
-                                     .policy = &policy,
+                                     .policy = policy,
                                      .command = command,
                                      .plan = {.walk_s = 60.0, .start_walking = true},
                                      .interrupts = &count,
-                                     .tap = tap,
+                                     .at_tick = tap,
                                      .live = live ? &remote : nullptr});
   EXPECT_TRUE(result.survived) << result.fall_reason;
   EXPECT_TRUE(result.interrupted);

@@ -28,13 +28,13 @@ class RunScriptTest : public testing::Test {
     std::uint64_t ticks = 0;
     do {
       ++ticks;
-    } while (in(script, mode).running && script.command(0).request_id == id && ticks < 100000);
+    } while (in(script, mode).goes_on() && script.command(0).request_id == id && ticks < 100000);
     return ticks;
   }
   static void arm(RunScript& script) {
     EXPECT_EQ(asked(script), ModeRequest::kArm);
-    EXPECT_TRUE(in(script, Mode::kPassive).running);
-    EXPECT_TRUE(in(script, Mode::kDamping).running);
+    EXPECT_TRUE(in(script, Mode::kPassive).goes_on());
+    EXPECT_TRUE(in(script, Mode::kDamping).goes_on());
   }
   static ModeRequest asked(RunScript& script) { return script.command(0).request; }
   /// Brings walk_from_lying() into Walk.
@@ -49,7 +49,7 @@ class RunScriptTest : public testing::Test {
 TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndLiesDown) {
   RunScript script = walk_from_lying();
   EXPECT_EQ(asked(script), ModeRequest::kStand);
-  for (int i = 0; i < 9000; ++i) ASSERT_TRUE(in(script, Mode::kStandUp).running);
+  for (int i = 0; i < 9000; ++i) ASSERT_TRUE(in(script, Mode::kStandUp).goes_on());
   EXPECT_EQ(asked(script), ModeRequest::kStand);
   EXPECT_EQ(ticks_in(script, Mode::kStand), kSettle_ticks);
   EXPECT_EQ(asked(script), ModeRequest::kWalk);
@@ -60,11 +60,11 @@ TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndLiesDown) {
   EXPECT_EQ(ticks_in(script, Mode::kStand), 2 * kSettle_ticks);
   EXPECT_EQ(asked(script), ModeRequest::kLie);
   for (int i = 0; i < 6000; ++i) {
-    ASSERT_TRUE(script.advance({.mode = Mode::kStand, .thigh_contact = true}).running);
+    ASSERT_TRUE(script.advance({.mode = Mode::kStand, .thigh_contact = true}).goes_on());
   }
   const TickFacts down{.mode = Mode::kDamping, .base_contact = true, .thigh_contact = true};
   std::uint64_t ticks = 1;
-  while (script.advance(down).running) ++ticks;
+  while (script.advance(down).goes_on()) ++ticks;
   EXPECT_EQ(ticks, kDamping_ticks);
   EXPECT_TRUE(script.survived());
   EXPECT_FALSE(script.interrupted());
@@ -142,7 +142,7 @@ TEST_F(RunScriptTest, TouchingTheGroundAfterTheFirstStepIsAFall) {
   for (const bool base : {true, false}) {
     RunScript script = walk_from_lying();
     const TickFacts lying{.mode = Mode::kStandUp, .base_contact = base, .thigh_contact = !base};
-    for (int i = 0; i < 100; ++i) EXPECT_TRUE(script.advance(lying).running);
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(script.advance(lying).goes_on());
     EXPECT_TRUE(script.survived());  // it has not walked yet
     stand_up(script);
     in(script, Mode::kWalk, 1000);
@@ -173,7 +173,7 @@ TEST_F(RunScriptTest, BaseOnTheGroundAfterStandingUpDidNotStand) {
     arm(script);
     in(script, Mode::kStand, kSettle_ticks - 1);
     EXPECT_TRUE(script.survived());
-    EXPECT_TRUE(script.advance({.mode = Mode::kStand, .base_contact = true}).running);
+    EXPECT_TRUE(script.advance({.mode = Mode::kStand, .base_contact = true}).goes_on());
     EXPECT_STREQ(script.fall_reason(), "did_not_stand");
     EXPECT_EQ(asked(script), ModeRequest::kDamp);
   }
@@ -209,13 +209,13 @@ TEST_F(RunScriptTest, InterruptLiesDownInAnyPhaseAndIsNoFall) {
     RunScript script = walk_from_lying();
     if (phase > 0) stand_up(script);
     if (phase > 1) ticks_in(script, Mode::kWalk);
-    EXPECT_TRUE(script.advance({.mode = Mode::kStand, .interrupts = 1}).running);
+    EXPECT_TRUE(script.advance({.mode = Mode::kStand, .interrupts = 1}).goes_on());
     EXPECT_EQ(asked(script), ModeRequest::kLie);
     const TickFacts lowered{.mode = Mode::kStand, .thigh_contact = true, .interrupts = 1};
-    for (int i = 0; i < 6000; ++i) ASSERT_TRUE(script.advance(lowered).running);
+    for (int i = 0; i < 6000; ++i) ASSERT_TRUE(script.advance(lowered).goes_on());
     const TickFacts down{.mode = Mode::kDamping, .base_contact = true, .interrupts = 1};
     std::uint64_t ticks = 1;
-    while (script.advance(down).running) ++ticks;
+    while (script.advance(down).goes_on()) ++ticks;
     EXPECT_EQ(ticks, kDamping_ticks);
     EXPECT_EQ(asked(script), ModeRequest::kLie);
     EXPECT_TRUE(script.survived());
@@ -235,7 +235,7 @@ TEST_F(RunScriptTest, AFaultAfterAnInterruptDampsForItsTime) {
   RunScript script = walk_at_once();
   script.advance({.mode = Mode::kWalk, .interrupts = 1});
   std::uint64_t ticks = 1;
-  while (script.advance({.mode = Mode::kFault, .faults = 1, .interrupts = 1}).running) ++ticks;
+  while (script.advance({.mode = Mode::kFault, .faults = 1, .interrupts = 1}).goes_on()) ++ticks;
   EXPECT_EQ(ticks, kDamping_ticks);
 }
 
@@ -253,7 +253,7 @@ TEST_F(RunScriptTest, StallThatFaultsIsStillDampedForItsTime) {
                       .mode = Mode::kFault,
                       .faults = static_cast<std::uint64_t>(Fault::kPolicyStale),
                       .first_fault = Fault::kPolicyStale});
-  EXPECT_TRUE(verdict.running);
+  EXPECT_TRUE(verdict.goes_on());
   EXPECT_STREQ(script.fall_reason(), "policy_stale");
   EXPECT_EQ(ticks_in(script, Mode::kFault), kDamping_ticks - 1);
 }

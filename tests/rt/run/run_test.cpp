@@ -24,7 +24,7 @@ constexpr RunPlan kShortWalk{.walk_s = 0.5, .start_walking = true};
 class EveryPresetTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryPresetTest, RobotStandsUpStaysAndIsLetDown) {
-  const RunResult result = run_once(config_of(GetParam()), nullptr, {});
+  const RunResult result = run_once(config_of(GetParam()), {}, {});
   EXPECT_TRUE(result.survived) << result.fall_reason;
   EXPECT_EQ(result.walked_s, 0.0);
   EXPECT_EQ(result.figures.joint_limit_steps, 0);
@@ -62,39 +62,39 @@ TEST(RunTest, StandsUpWithNoisyAndLateSensors) {
                                           "sim.noise.orientation_rad=0.005",
                                           "sim.noise.angular_velocity_radps=0.05",
                                           "sim.noise.linear_acceleration_mps2=0.2"};
-  const RunResult result = run_once(config_of("rigid", noisy), nullptr, {});
+  const RunResult result = run_once(config_of("rigid", noisy), {}, {});
   EXPECT_TRUE(result.survived) << result.fall_reason;
-  EXPECT_NE(result.end.state_hash, run_once(config_of("rigid"), nullptr, {}).end.state_hash);
-  EXPECT_EQ(result.end.state_hash, run_once(config_of("rigid", noisy), nullptr, {}).end.state_hash);
+  EXPECT_NE(result.end.state_hash, run_once(config_of("rigid"), {}, {}).end.state_hash);
+  EXPECT_EQ(result.end.state_hash, run_once(config_of("rigid", noisy), {}, {}).end.state_hash);
 }
 
 TEST(RunTest, HashIsTheSameTwice) {
   for (const bool start_walking : {true, false}) {
     const RunPlan plan{.walk_s = 0.3, .start_walking = start_walking};
     const ProcessConfig config = config_of("dry-sand");
-    Policy policy = random_policy();
-    const RunResult plain = run_once(config, &policy, plan);
-    EXPECT_EQ(plain.end.state_hash, run_once(config, &policy, plan).end.state_hash);
-    Policy other = random_policy(2);
-    EXPECT_NE(plain.end.state_hash, run_once(config, &other, plan).end.state_hash);
+    PolicyRunner policy(random_policy());
+    const RunResult plain = run_once(config, policy, plan);
+    EXPECT_EQ(plain.end.state_hash, run_once(config, policy, plan).end.state_hash);
+    PolicyRunner other(random_policy(2));
+    EXPECT_NE(plain.end.state_hash, run_once(config, other, plan).end.state_hash);
   }
 }
 
 TEST(RunTest, SeedsGiveDifferentRuns) {
   ProcessConfig config = config_of("rigid");
-  Policy policy = random_policy();
+  PolicyRunner policy(random_policy());
   std::uint64_t last = 0;
   for (config.simulator.seed = 0; config.simulator.seed < 4; ++config.simulator.seed) {
-    const std::uint64_t hash = run_once(config, &policy, kShortWalk).end.state_hash;
+    const std::uint64_t hash = run_once(config, policy, kShortWalk).end.state_hash;
     EXPECT_NE(hash, last);
-    EXPECT_EQ(hash, run_once(config, &policy, kShortWalk).end.state_hash);
+    EXPECT_EQ(hash, run_once(config, policy, kShortWalk).end.state_hash);
     last = hash;
   }
 }
 
 TEST(RunTest, WalkLastsAsLongAsAsked) {
-  Policy policy = random_policy();
-  const RunResult result = run_once(config_of("rigid", {}, &policy.spec()), &policy,
+  PolicyRunner policy(random_policy());
+  const RunResult result = run_once(config_of("rigid", {}, policy.spec()), policy,
                                     {.walk_s = 0.25, .start_walking = true});
   EXPECT_EQ(result.walked_s, 0.25);
   EXPECT_EQ(result.end.time_s, 0.25);
@@ -122,9 +122,9 @@ TEST(RunTest, FallIsReportedWithReasonAndTime) {
     folding.nominal_position_rad[3 * leg + 2] = -2.4;
   }
   for (const PolicySpec& spec : {limp, folding}) {
-    Policy policy(spec, Network(random_policy_file().parameters));
+    PolicyRunner policy(Policy(spec, Network(random_policy_file().parameters)));
     const RunResult result =
-        run_once(config_of("rigid", {}, &spec), &policy, {.walk_s = 5.0, .start_walking = true});
+        run_once(config_of("rigid", {}, &spec), policy, {.walk_s = 5.0, .start_walking = true});
     EXPECT_FALSE(result.survived);
     EXPECT_EQ(result.fall_reason, spec.kp_nmprad > 0.0 ? "base_contact" : "thigh_contact");
     ASSERT_TRUE(result.fall_time_s.has_value());
@@ -161,9 +161,9 @@ TEST(RunTest, FaultIsReportedWithItsName) {
        0.016},
   };
   for (const FaultRun& run : runs) {
-    Policy policy = random_policy();
-    ProcessConfig config = config_of("rigid", run.assignments, &policy.spec());
-    const RunResult result = run_once(config, &policy, {.walk_s = 3.0, .start_walking = true});
+    PolicyRunner policy(random_policy());
+    ProcessConfig config = config_of("rigid", run.assignments, policy.spec());
+    const RunResult result = run_once(config, policy, {.walk_s = 3.0, .start_walking = true});
     EXPECT_FALSE(result.survived) << run.reason;
     EXPECT_EQ(result.fall_reason, run.reason) << " at " << result.fall_time_s.value_or(-1);
     EXPECT_GE(result.fall_time_s.value_or(-1), run.earliest_s) << run.reason;
@@ -180,15 +180,15 @@ TEST(RunTest, InterruptLiesDownAndIsNoFall) {
   for (const auto& [when_s, earliest_s, latest_s] :
        {Case{0.5, 1.0, 1.0}, {2.0, 2.5, 2.5}, {3.0, 2.5, 2.5}, {4.5, 2.7, 6.0}}) {
     std::atomic<int> interrupt{false};
-    Policy policy = random_policy();
+    PolicyRunner policy(random_policy());
     const ProcessConfig config =
-        config_of("rigid", {"controller.walk.kp_nmprad=100"}, &policy.spec());
+        config_of("rigid", {"controller.walk.kp_nmprad=100"}, policy.spec());
     const RunResult result = simulate({.config = config,
-                                       .policy = &policy,
+                                       .policy = policy,
                                        .command = "0,0,0",
                                        .plan = {.walk_s = 100.0},
                                        .interrupts = &interrupt,
-                                       .row_tap = [&, at_s = when_s](const RunRow& row, auto) {
+                                       .at_row = [&, at_s = when_s](const RunRow& row) {
                                          interrupt = interrupt || row.t_s >= at_s;
                                        }});
     EXPECT_TRUE(result.interrupted);
@@ -218,20 +218,22 @@ class RealRobot final : public RobotIo {
 };
 
 TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   const CommandSource command("1,0,0");
   const std::atomic<int> nobody{false};
   RealRobot robot(config);
-  const RunResult result = run_in_lockstep({.robot = robot,
-                                            .controller = config.controller,
-                                            .policy = &policy,
-                                            .command = command,
-                                            .plan = {.walk_s = 1.0, .start_walking = true},
-                                            .scene = scene_of(config, "raibo"),
-                                            .interrupts = nobody});
+  RunScript script(command, {.walk_s = 1.0, .start_walking = true}, true);
+  RunResult result = run_in_lockstep({.robot = robot,
+                                      .controller = config.controller,
+                                      .start = Mode::kWalk,
+                                      .policy = policy,
+                                      .op = script,
+                                      .interrupts = nobody},
+                                     {.scene = scene_of(config, "raibo")});
+  script.report(result);
   const RunResult known = simulate(
-      {.config = config, .policy = &policy, .plan = {.walk_s = 1.0, .start_walking = true}});
+      {.config = config, .policy = policy, .plan = {.walk_s = 1.0, .start_walking = true}});
   EXPECT_TRUE(result.survived);
   // Nor is it known whether it fell.
   EXPECT_NE(summary_json(result, {}).find("\"survived\": null"), std::string::npos);
@@ -269,15 +271,15 @@ class PublishedNetworkTest : public testing::Test {
     ASSERT_EQ(import.code, 0) << import.err;
     PolicyFile file = read_policy_file(path);  // it says nothing of its envelope
     file.spec.envelope = {.forward_mps = 4.0, .acceleration_mps2 = 100.0};
-    policy_.emplace(file.spec, Network(file.parameters));
+    policy_ = PolicyRunner(Policy(file.spec, Network(file.parameters)));
   }
   RunResult run(const std::string& terrain, const std::string& command, const RunPlan& plan,
                 std::uint64_t seed = 0) {
-    ProcessConfig config = config_of(terrain, {}, &policy_->spec());
+    ProcessConfig config = config_of(terrain, {}, policy_.spec());
     config.simulator.seed = seed;
-    return simulate({.config = config, .policy = &*policy_, .command = command, .plan = plan});
+    return simulate({.config = config, .policy = policy_, .command = command, .plan = plan});
   }
-  std::optional<Policy> policy_;
+  PolicyRunner policy_;
 };
 
 // The figures' origin: tests/golden/README.md.

@@ -69,7 +69,7 @@ TEST_F(SecondRobotTest, GivesSimulatorControllerAndGateTheirFigures) {
 TEST_F(SecondRobotTest, StandsUpWithItsOwnPoseAndGains) {
   for (const std::string terrain : {"rigid", "dry-sand"}) {
     const ProcessConfig c = config(terrain);
-    const RunResult result = run_once(c, nullptr, {});
+    const RunResult result = run_once(c, {}, {});
     EXPECT_TRUE(result.survived) << result.fall_reason;
     const RunRow last = last_standing(result.record);
     for (int leg = 0; leg < kNumLegs; ++leg) {
@@ -84,8 +84,8 @@ TEST_F(SecondRobotTest, StandsUpWithItsOwnPoseAndGains) {
 TEST_F(SecondRobotTest, RunsAPolicyForItsJointsAndNoOther) {
   const PolicyFile own = own_policy();
   const ProcessConfig c = config("rigid", &own.spec);
-  Policy policy(own.spec, Network(own.parameters));
-  const RunResult result = run_once(c, &policy, {.walk_s = 0.3, .start_walking = true});
+  PolicyRunner policy(Policy(own.spec, Network(own.parameters)));
+  const RunResult result = run_once(c, policy, {.walk_s = 0.3, .start_walking = true});
   EXPECT_GE(result.record.rows.size(), 2u);
   for (const RunRow& row : result.record.rows) {
     for (int j = 0; j < kNumJoints; ++j) {

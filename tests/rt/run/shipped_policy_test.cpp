@@ -11,9 +11,9 @@ namespace {
 
 RunResult run(const std::string& terrain, const std::string& command, const RunPlan& plan,
               const std::vector<std::string>& assignments = {}) {
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of(terrain, assignments, &policy.spec());
-  return simulate({.config = config, .policy = &policy, .command = command, .plan = plan});
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of(terrain, assignments, policy.spec());
+  return simulate({.config = config, .policy = policy, .command = command, .plan = plan});
 }
 
 TEST(ShippedPolicyTest, KeepsTheCommandedSpeedOnSandAndHardGround) {
@@ -44,14 +44,14 @@ TEST(ShippedPolicyTest, StandsAgainWhereItWentBackwardsOnTheSoftestSand) {
 
 TEST(ShippedPolicyTest, StandsForAMinuteAfterAWalkThatLeftItsFeetInTheSand) {
   // By 30 N m of hip abduction at first, where 28 for long are an overload.
-  Policy policy = load_shipped_policy();
-  const ProcessConfig config = config_of("dry-sand", {}, &policy.spec());
+  PolicyRunner policy(load_shipped_policy());
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   LiveOperator op;
   Mode last = Mode::kPassive;
   const RunResult result = simulate({.config = config,
-                                     .policy = &policy,
+                                     .policy = policy,
                                      .plan = {.start_walking = true},
-                                     .tap =
+                                     .at_tick =
                                          [&](const TickRecord& tick) {
                                            last = tick.output.mode;
                                            const std::uint64_t n = tick.input.sensors.tick;

@@ -17,7 +17,7 @@ class FakeRobot {
  public:
   explicit FakeRobot(const DdsConfig& config)
       : setup_(config),
-        telemetry_(setup_.participant, config, example_robot(), &setup_.desk),
+        telemetry_(setup_.participant, config, example_robot(), &setup_.desk, RunClock::kRealtime),
         thread_([this] { publish(); }) {}
   ~FakeRobot() {
     end_ = true;

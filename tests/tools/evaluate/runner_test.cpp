@@ -7,6 +7,7 @@
 
 #include "rt/core/floating_point.h"
 #include "rt/run/run.h"
+#include "rt/run/run_script.h"
 #include "rt/run/scene.h"
 #include "support.h"
 
@@ -135,7 +136,8 @@ TEST_F(RunnerTest, FactsAreTheRobotsWithTheLowerOfTwoTorqueLimits) {
 // The control process in double and the evaluation in float are two programs around the same steps.
 TEST_F(RunnerTest, AgreesWithTheControlProcess) {
   flush_denormals_to_zero();
-  Policy policy = load_shipped_policy();
+  const Policy policy = load_shipped_policy();
+  PolicyRunner runner(policy);
   for (const char* ground : {"dry-sand", "rigid"}) {
     SCOPED_TRACE(ground);
     ConfigTree tree;
@@ -144,14 +146,15 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     const std::atomic<int> interrupt{false};
     const CommandSource command("1.5,0,0");
     sim::Simulator simulator(config.robot, config.simulator);
-    const RunResult process = run_in_lockstep({.robot = simulator,
-                                               .controller = config.controller,
-                                               .policy = &policy,
-                                               .command = command,
-                                               .plan = {.walk_s = 5.0, .start_walking = true},
-                                               .scene = scene_of(config, policy.spec().name),
-                                               .tap = {},
-                                               .interrupts = interrupt});
+    RunScript script(command, {.walk_s = 5.0, .start_walking = true}, true);
+    RunResult process = run_in_lockstep({.robot = simulator,
+                                         .controller = config.controller,
+                                         .start = Mode::kWalk,
+                                         .policy = runner,
+                                         .op = script,
+                                         .interrupts = interrupt},
+                                        {.scene = scene_of(config, policy.spec().name)});
+    script.report(process);
     ASSERT_TRUE(process.survived);
     const sandrunner::RunFigures& p = process.figures;
     const MotionFigures& motion = p.motion.value();

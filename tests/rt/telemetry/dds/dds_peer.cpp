@@ -80,7 +80,7 @@ int watch(const DdsParticipant& participant, double duration_s) {
 }
 
 int publish(const DdsParticipant& participant, const DdsConfig& config, double duration_s) {
-  Telemetry telemetry(participant, config, example_robot(), nullptr);
+  Telemetry telemetry(participant, config, example_robot(), nullptr, RunClock::kRealtime);
   const double longest_s = publish_for(telemetry, 0, duration_s);
   std::printf("longest_us %.0f\nfailed %llu\n", longest_s * 1e6,
               static_cast<unsigned long long>(telemetry.failed_writes()));

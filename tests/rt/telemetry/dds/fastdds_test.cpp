@@ -13,7 +13,8 @@ namespace {
 
 TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
   LiveSetup setup;
-  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk,
+                      RunClock::kRealtime);
   telemetry.begin(kExampleStart_ns);
   {
     Peer peer(setup.config);
@@ -104,7 +105,8 @@ TEST(FastDdsTest, RmwFastrtpsUnderRos2LocalhostFindsTheRobotThroughItsDefaultInt
   const DdsConfig config = test_config();
   const TakenPorts others(config.domain, 40);  // the robot has an index behind them
   LiveSetup setup(config);
-  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk,
+                      RunClock::kRealtime);
   // By now the robot has announced itself twice, and does so again in 8 s only.
   sleep_s(0.3);
   ChildProcess fast({"bash", "-c",

@@ -42,18 +42,19 @@ class RobotCommandsTest : public testing::Test {
       : policy_(load_shipped_policy()),
         config_(config_of(
             "dry-sand", {"dds.enabled=true", "dds.domain=" + std::to_string(test_config().domain)},
-            &policy_.spec())),
+            policy_.spec())),
         participant_(config_.dds),
         op_(config_.dds.stale_ticks()),
         desk_(op_, config_.dds.stale_s, nullptr),
         inbox_(participant_, config_.dds, "raibo@here", desk_),
-        telemetry_(participant_, config_.dds, config_.robot.description, &desk_),
+        telemetry_(participant_, config_.dds, config_.robot.description, &desk_,
+                   RunClock::kRealtime),
         peer_(config_.dds) {}
 
   /// Walks for this long, in lockstep but not ahead of time; `at` is called after each tick.
   void walk(double duration_s, const std::function<void(double time_s)>& at) {
     sim::Simulator simulator(config_.robot, config_.simulator);
-    Lockstep loop(simulator, config_.controller, Mode::kWalk, &policy_);
+    Lockstep loop(simulator, config_.controller, Mode::kWalk, policy_);
     const auto start = std::chrono::steady_clock::now();
     for (double time_s = 0.0; time_s < duration_s; time_s += kControlPeriod_s) {
       std::this_thread::sleep_until(start + std::chrono::duration<double>(time_s));
@@ -103,7 +104,7 @@ class RobotCommandsTest : public testing::Test {
     EXPECT_LT(std::fabs(speed_mps(silent_s + 2.5, silent_s + 3.0)), 0.05);
   }
 
-  Policy policy_;
+  PolicyRunner policy_;
   const ProcessConfig config_;
   DdsParticipant participant_;
   RemoteOperator op_;
@@ -204,7 +205,7 @@ TEST(DdsBridgeTest, ARobotOfAnotherFileIsPublishedUnderItsOwnNames) {
   const ProcessConfig config = config_of(
       "rigid",
       {"robot=" + write_small_robot(folder), "dds.domain=" + std::to_string(test_config().domain)});
-  DdsBridge bridge(config, nullptr);
+  DdsBridge bridge(config, nullptr, RunClock::kRealtime);
   Peer peer(config.dds);
   const auto descriptions =
       peer.reader("rt/robot_description", std_msgs_msg_dds__String__desc, true);

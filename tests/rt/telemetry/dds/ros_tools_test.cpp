@@ -48,7 +48,8 @@ class Caller {
 /// message as "message".
 std::map<std::string, std::string> diagnostics_of(LiveSetup& setup, Peer& peer) {
   const auto reader = peer.reader("rt/diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc);
-  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk);
+  Telemetry telemetry(setup.participant, setup.config, example_robot(), &setup.desk,
+                      RunClock::kRealtime);
   telemetry.begin(kExampleStart_ns);
   for (std::uint64_t tick = 0; tick <= kControlHz; ++tick) telemetry.add(example_tick(tick));
   std::map<std::string, std::string> values;

@@ -16,7 +16,7 @@ namespace {
 struct Published {
   Published() : config(test_config()), participant(config), peer(config) {}
   void publish(std::uint64_t ticks) {
-    Telemetry telemetry(participant, config, example_robot(), nullptr);
+    Telemetry telemetry(participant, config, example_robot(), nullptr, RunClock::kRealtime);
     telemetry.begin(kExampleStart_ns);
     for (std::uint64_t tick = 0; tick < ticks; ++tick) telemetry.add(example_tick(tick));
     EXPECT_EQ(telemetry.failed_writes(), 0u);
@@ -148,7 +148,8 @@ TEST(TelemetryTest, DiagnosticsComeOnceASecondWithModeFaultsTimesAndTheGatesCoun
   const auto reader =
       setup.peer.reader("rt/diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc);
   {
-    Telemetry telemetry(setup.participant, setup.config, example_robot(), nullptr);
+    Telemetry telemetry(setup.participant, setup.config, example_robot(), nullptr,
+                        RunClock::kRealtime);
     for (std::uint64_t tick = 0; tick <= 12000; ++tick) {
       TickRecord record = example_tick(tick);
       if (tick == 6000) record.skipped = 3;
@@ -195,7 +196,8 @@ TEST(TelemetryTest, InLockstepTheClockHasTheMessagesStampsAndDoesNotRunAheadOfTh
   const auto joints = setup.peer.reader("rt/joint_states", sensor_msgs_msg_dds__JointState__desc);
   const auto start = std::chrono::steady_clock::now();
   {
-    Telemetry telemetry(setup.participant, setup.config, example_robot(), nullptr, true);
+    Telemetry telemetry(setup.participant, setup.config, example_robot(), nullptr,
+                        RunClock::kLockstep);
     telemetry.begin(kExampleStart_ns);
     for (std::uint64_t tick = 0; tick <= 400; ++tick) telemetry.add(example_tick(tick));
   }

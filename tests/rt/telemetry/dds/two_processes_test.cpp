@@ -39,7 +39,7 @@ TEST(TwoProcessesTest, RmwCycloneddsUnderRos2LocalhostFindsTheRobotThroughItsDef
     const DdsConfig config = test_config();
     const TakenPorts others(config.domain, 40);  // more than the default of either
     DdsParticipant participant(config);
-    Telemetry telemetry(participant, config, example_robot(), nullptr);
+    Telemetry telemetry(participant, config, example_robot(), nullptr, RunClock::kRealtime);
     sleep_s(0.3);  // the robot has announced itself twice, and does so again in 8 s only
     ChildProcess peer({"bash", "-c",
                        "source " SANDRUNNER_ROS2_LOCALHOST " && exec " SANDRUNNER_DDS_PEER " " +
@@ -64,7 +64,7 @@ TEST(TwoProcessesTest, Ros2LocalhostFindsItsProfileFromBashAndZshInAnyFolder) {
 TEST(TwoProcessesTest, AStoppedSubscriberHoldsUpNobodyAndALiveOneMissesNothing) {
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
-  Telemetry telemetry(participant, config, example_robot(), nullptr);
+  Telemetry telemetry(participant, config, example_robot(), nullptr, RunClock::kRealtime);
   ChildProcess live(peer_command(config, {"watch", "8"}));
   ChildProcess stopped(peer_command(config, {"watch", "60"}));
   ASSERT_TRUE(live.wait_for("watching"));
@@ -174,7 +174,7 @@ TEST_F(SecurityTest, AViewerMayNotCommandButSeesTheTelemetry) {
 
   const DdsConfig config = our_config();
   DdsParticipant participant(config);
-  Telemetry telemetry(participant, config, example_robot(), nullptr);
+  Telemetry telemetry(participant, config, example_robot(), nullptr, RunClock::kRealtime);
   ChildProcess viewer(peer_command(config, {"watch", "60", folder("ours"), "viewer"}));
   ASSERT_TRUE(viewer.wait_for("watching"));
   std::uint64_t tick = 0;

@@ -13,6 +13,7 @@
 #include "rt/core/floating_point.h"
 #include "rt/loop/lockstep.h"
 #include "rt/realtime/realtime_run.h"
+#include "rt/telemetry/recording/recorder.h"
 #include "sim/simulator.h"
 #include "tests/rt/realtime/live_operator.h"
 #include "tests/rt/support.h"
@@ -40,8 +41,11 @@ class BlackBoxTest : public RecordingProgramTest {
   }
 
   std::string dir() const { return std::filesystem::path(folder_.path("")).parent_path(); }
-  void open(const std::string& folder) {
-    box_.emplace(folder, info_, config_.controller, &policy_, kWindow_s, true);
+  void open(const std::string& folder) { open(folder, config_.controller, kWindow_s); }
+  void open(const std::string& folder, const ControllerConfig& controller, double window_s,
+            WhenFull when_full = WhenFull::kWait) {
+    box_.emplace(folder, info_, window_s);
+    ticks_.emplace(controller, Mode::kWalk, policy_, when_full, std::vector<TickKeeper*>{&*box_});
   }
 
   /// Walks on to tick `end`. In the ticks `faults` the command is not a number, which is a fault.
@@ -52,8 +56,12 @@ class BlackBoxTest : public RecordingProgramTest {
       if (faults.contains(tick))
         command.velocity.wz_radps = std::numeric_limits<double>::quiet_NaN();
       loop_.tick(command);
-      if (tick < lost_.first || tick >= lost_.second) box_->add(loop_.record());
+      if (tick < lost_.first || tick >= lost_.second) ticks_->add(loop_.record());
     }
+  }
+  BlackBoxResult close() {
+    ticks_->end();
+    return box_->result();
   }
   void request(ModeRequest request) {
     command_.request = request;
@@ -87,19 +95,20 @@ class BlackBoxTest : public RecordingProgramTest {
     EXPECT_NE(last.find(part), std::string::npos) << text;
   }
 
-  Policy policy_ = load_shipped_policy();
+  const PolicyRunner policy_{load_shipped_policy()};
   const ProcessConfig config_ = config_of(
       "dry-sand", {"sim.noise.joint_position_rad=0.005", "controller.damping.fault_s=0.5"},
-      &policy_.spec());
+      policy_.spec());
   RecordingInfo info_;
   OperatorCommand command_;
   std::pair<std::uint64_t, std::uint64_t> lost_{};  ///< from, to: the black box does not get these
   std::optional<BlackBox> box_;
+  std::optional<ReplayedTicks> ticks_;
 
  private:
   sim::Simulator simulator_{config_.robot, config_.simulator};
-  Policy walking_ = policy_;
-  Lockstep loop_{simulator_, config_.controller, Mode::kWalk, &walking_};
+  PolicyRunner walking_ = policy_;
+  Lockstep loop_{simulator_, config_.controller, Mode::kWalk, walking_};
 };
 
 TEST_F(BlackBoxTest, HoldsTheWindowBeforeTheFaultAndTheLetDownAndReplaysFromItsState) {
@@ -110,9 +119,9 @@ TEST_F(BlackBoxTest, HoldsTheWindowBeforeTheFaultAndTheLetDownAndReplaysFromItsS
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   EXPECT_TRUE(std::filesystem::exists(path(20000)));
-  const BlackBoxResult result = box_->close();
-  EXPECT_FALSE(result.difference) << result.difference->what;
-  EXPECT_EQ(result.dropped, 0u);
+  const BlackBoxResult result = close();
+  EXPECT_FALSE(ticks_->result().difference) << ticks_->result().difference->what;
+  EXPECT_EQ(ticks_->result().dropped, 0u);
   ASSERT_EQ(result.files.size(), 1u);
   const BlackBoxFile& file = result.files[0];
   EXPECT_EQ(file.path, path(20000));
@@ -136,7 +145,7 @@ TEST_F(BlackBoxTest, HoldsTheWindowBeforeTheFaultAndTheLetDownAndReplaysFromItsS
 TEST_F(BlackBoxTest, FlippedBitOfAnInputIsFoundAndNamed) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  ticks_->end();
   flip(path(20000), folder_.path("flipped.mcap"), 18000, word_named("joint_position_rad[7]"), 1);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
   expect_one_line("DIFFERS at tick 18000 (4.50000 s): released_joint_position_rad[7]");
@@ -145,7 +154,7 @@ TEST_F(BlackBoxTest, FlippedBitOfAnInputIsFoundAndNamed) {
 TEST_F(BlackBoxTest, FlippedBitOfTheStateIsFoundAtTheFirstTickThatItChanges) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  ticks_->end();
   const auto spoil = [](RecordingInfo& info) {
     ReplayState state = read_replay_state(info.state, "state");
     state.controller.target_rad[4] += 1e-9;
@@ -159,7 +168,7 @@ TEST_F(BlackBoxTest, FlippedBitOfTheStateIsFoundAtTheFirstTickThatItChanges) {
 TEST_F(BlackBoxTest, RangePicturesAndOtherSettingsWorkFromTheMiddle) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  ticks_->end();
   const std::string plots = "--plot '" + folder_.path("plots") + "' ";
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --from 4 --to 4.5 " + plots), 0) << output();
   EXPECT_NE(output().find("2001 ticks"), std::string::npos) << output();
@@ -176,7 +185,7 @@ TEST_F(BlackBoxTest, RangePicturesAndOtherSettingsWorkFromTheMiddle) {
 TEST_F(BlackBoxTest, FaultInTheFirstSecondHasTheWholeRun) {
   open(dir());
   walk_to(3990, {1000});
-  EXPECT_EQ(box_->close().files.size(), 1u);
+  EXPECT_EQ(close().files.size(), 1u);
   std::uint64_t last = 0;
   const RecordingContents contents = read(path(1000), last);
   EXPECT_EQ(contents.info.first_tick, 0u);
@@ -192,9 +201,9 @@ TEST_F(BlackBoxTest, EachFaultHasItsFile) {
   walk_to(12400);
   request(ModeRequest::kStand);
   walk_to(30000, {28000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   ASSERT_EQ(result.files.size(), 2u);
-  EXPECT_FALSE(result.difference);
+  EXPECT_FALSE(ticks_->result().difference);
   std::uint64_t last = 0;
   read(path(8000), last);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(8000)), 0) << output();
@@ -210,7 +219,7 @@ TEST_F(BlackBoxTest, RunHasTenFilesAtMost) {
     request(ModeRequest::kResetFault);
   }
   walk_to(29000);
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_EQ(result.files.size(), 10u);
   EXPECT_EQ(result.left_out, 2u);
   EXPECT_EQ(folder_.number_of_files(), 10u);
@@ -219,32 +228,45 @@ TEST_F(BlackBoxTest, RunHasTenFilesAtMost) {
 TEST_F(BlackBoxTest, RunWithoutAFaultHasNoFileAndIsVerified) {
   open(dir());
   walk_to(28000);
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   EXPECT_TRUE(result.files.empty());
-  EXPECT_FALSE(result.difference) << result.difference->what;
+  EXPECT_FALSE(ticks_->result().difference) << ticks_->result().difference->what;
   EXPECT_EQ(folder_.number_of_files(), 0u);
   // The window, what follows a fault, and a block: 4.1 s of 11.7 MB/s, compressed to 28 %.
   EXPECT_GT(result.peak_bytes, 4.0 * 1e6);
   EXPECT_LT(result.peak_bytes, 4.1 * 3.5e6);
 }
 
+TEST_F(BlackBoxTest, ARecordingThatStopsDoesNotStopTheBlackBoxBehindTheSameQueue) {
+  Recorder recorder(folder_.path("run.mcap"), info_, {.bytes = 1});
+  box_.emplace(dir(), info_, kWindow_s);
+  ticks_.emplace(config_.controller, Mode::kWalk, policy_, WhenFull::kWait,
+                 std::vector<TickKeeper*>{&recorder, &*box_});
+  walk_to(24000, {20000});
+  const BlackBoxResult result = close();
+  EXPECT_EQ(recorder.result().stopped_because, "its size reached the limit");
+  EXPECT_EQ(result.files.at(0).problem, "");
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 0) << output();
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("run.mcap")), 0) << output();
+}
+
 TEST_F(BlackBoxTest, RunThatDoesNotReplayIsReported) {
-  ProcessConfig other = config_of("dry-sand", {"controller.walk.kd_nmsprad=0.6"}, &policy_.spec());
-  box_.emplace(dir(), info_, other.controller, &policy_, kWindow_s, true);
+  ProcessConfig other = config_of("dry-sand", {"controller.walk.kd_nmsprad=0.6"}, policy_.spec());
+  open(dir(), other.controller, kWindow_s);
   walk_to(24000);
-  const BlackBoxResult result = box_->close();
-  ASSERT_TRUE(result.difference);
-  EXPECT_EQ(result.difference->tick, 0u);
-  EXPECT_EQ(result.difference->what.substr(0, 21), "command_kd_nmsprad[0]");
+  const BlackBoxResult result = close();
+  ASSERT_TRUE(ticks_->result().difference);
+  EXPECT_EQ(ticks_->result().difference->tick, 0u);
+  EXPECT_EQ(ticks_->result().difference->what.substr(0, 21), "command_kd_nmsprad[0]");
 }
 
 TEST_F(BlackBoxTest, TicksLostBeforeTheWindowLeaveAFileThatCannotBeReplayed) {
   lost_ = {5000, 5040};
   open(dir());
   walk_to(24000, {20000});
-  const BlackBoxResult result = box_->close();
-  EXPECT_FALSE(result.difference) << result.difference->what;
-  EXPECT_EQ(result.lost_from, 5000u);
+  const BlackBoxResult result = close();
+  EXPECT_FALSE(ticks_->result().difference) << ticks_->result().difference->what;
+  EXPECT_EQ(ticks_->result().lost_from, 5000u);
   ASSERT_EQ(result.files.size(), 1u);
   EXPECT_FALSE(result.files[0].has_start);
   std::uint64_t last = 0;
@@ -263,9 +285,9 @@ TEST_F(BlackBoxTest, TicksLostWithinTheWindowAreReportedAsLostAndNotAsADifferenc
   lost_ = {18000, 18040};
   open(dir());
   walk_to(24000, {20000});
-  const BlackBoxResult result = box_->close();
-  EXPECT_FALSE(result.difference) << result.difference->what;
-  EXPECT_EQ(result.lost_from, 18000u);
+  const BlackBoxResult result = close();
+  EXPECT_FALSE(ticks_->result().difference) << ticks_->result().difference->what;
+  EXPECT_EQ(ticks_->result().lost_from, 18000u);
   EXPECT_TRUE(result.files.at(0).has_start);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 2);
   std::uint64_t first = 0;
@@ -287,9 +309,9 @@ TEST_F(BlackBoxTest, BatchesLostOnTheWayLeaveNoStateBehindThem) {
   lost_ = {8000, 12000};  // blocks as they are dropped when the queue is full
   open(dir());
   walk_to(28000, {20000});
-  const BlackBoxResult result = box_->close();
-  EXPECT_FALSE(result.difference) << result.difference->what;
-  EXPECT_EQ(result.lost_from, 8000u);
+  const BlackBoxResult result = close();
+  EXPECT_FALSE(ticks_->result().difference) << ticks_->result().difference->what;
+  EXPECT_EQ(ticks_->result().lost_from, 8000u);
   EXPECT_FALSE(result.files.at(0).has_start);
   EXPECT_EQ(read_ticks(path(20000)).info.first_tick, 12000u);
 }
@@ -297,7 +319,7 @@ TEST_F(BlackBoxTest, BatchesLostOnTheWayLeaveNoStateBehindThem) {
 TEST_F(BlackBoxTest, FirstTickThatTheFileDoesNotBeginWithIsRefused) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  ticks_->end();
   for (const std::uint64_t wrong : {std::uint64_t{0}, std::uint64_t{40}, ~std::uint64_t{0}}) {
     rewrite(path(20000), folder_.path("wrong.mcap"),
             [&](RecordingInfo& info) { info.first_tick = wrong; }, {});
@@ -313,7 +335,7 @@ TEST_F(BlackBoxTest, FileThatCannotBeWrittenIsReportedAndTheBlackBoxGoesOn) {
   walk_to(12000, {2000});
   request(ModeRequest::kResetFault);
   walk_to(24000, {20000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   ASSERT_EQ(result.files.size(), 2u);
   EXPECT_NE(result.files[0].problem.find(path(2000)), std::string::npos) << result.files[0].problem;
   EXPECT_EQ(result.files[0].problem.find('\n'), std::string::npos);
@@ -324,7 +346,7 @@ TEST_F(BlackBoxTest, FileThatCannotBeWrittenIsReportedAndTheBlackBoxGoesOn) {
 TEST_F(BlackBoxTest, FolderThatCannotBeWrittenIsReported) {
   open(folder_.path("absent"));
   walk_to(12000, {2000});
-  const BlackBoxResult result = box_->close();
+  const BlackBoxResult result = close();
   ASSERT_EQ(result.files.size(), 1u);
   EXPECT_NE(result.files[0].problem.find("absent/black-box-2000.mcap"), std::string::npos);
   EXPECT_EQ(result.files[0].problem.find('\n'), std::string::npos);
@@ -333,7 +355,7 @@ TEST_F(BlackBoxTest, FolderThatCannotBeWrittenIsReported) {
 TEST_F(BlackBoxTest, DamagedStateIsBadInput) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  ticks_->end();
   const std::string spoilt = folder_.path("spoilt.mcap");
   const auto refused = [&](const std::function<void(std::string&)>& spoil, const char* why) {
     rewrite(path(20000), spoilt, [&](RecordingInfo& info) { spoil(info.state); }, {});
@@ -352,31 +374,37 @@ TEST_F(BlackBoxTest, DamagedStateIsBadInput) {
 TEST_F(BlackBoxTest, DamagedChunkCostsItsOwnSpanOnly) {
   open(dir());
   walk_to(24000, {20000});
-  box_->close();
+  ticks_->end();
   constexpr std::uint64_t kBlock = 400;  // states are known where blocks begin
   expect_damage_costs_its_own_span(path(20000), read_ticks(path(20000)).ticks, kBlock);
 }
 
 // With two threads, answers come late, so that at any tick the policy may still be at work.
 TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
-  box_.emplace(dir(), info_, config_.controller, &policy_, 0.3);
+  open(dir(), config_.controller, 0.3, WhenFull::kDrop);
   LiveOperator op;
   op.want(VelocityCommand{.vx_mps = 1.0});
-  const auto tap = [&](const TickRecord& tick) {
-    box_->add(tick);
+  CallingSink sink;
+  sink.at_tick = [&](const TickRecord&) {
     if (op.time_s() > 3.0 && op.faults() == 0) {
       op.want(VelocityCommand{.vx_mps = std::numeric_limits<double>::quiet_NaN()});
     }
     if (op.time_s() > 3.2) op.end();
   };
   sim::Simulator simulator(config_.robot, config_.simulator);
-  Policy policy = policy_;
+  PolicyRunner policy = policy_;
   const std::atomic<int> never{0};
   SystemClock clock;
-  run_realtime(simulator, config_.controller, config_.realtime, Mode::kWalk, &policy, op, never,
-               tap, clock);
-  const BlackBoxResult result = box_->close();
-  EXPECT_FALSE(result.difference) << result.difference->what;
+  run_realtime({.robot = simulator,
+                .controller = config_.controller,
+                .start = Mode::kWalk,
+                .policy = policy,
+                .op = op,
+                .sinks = {&*ticks_, &sink},
+                .interrupts = never},
+               config_.realtime, clock);
+  const BlackBoxResult result = close();
+  EXPECT_FALSE(ticks_->result().difference) << ticks_->result().difference->what;
   ASSERT_EQ(result.files.size(), 1u);
   EXPECT_GT(read_ticks(result.files[0].path).info.first_tick, 0u);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, result.files[0].path), 0) << output();

@@ -7,7 +7,7 @@
 #include <bit>
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,21 +41,27 @@ inline RecordingContents read_ticks(const std::string& path,
 inline void rewrite(const std::string& from, const std::string& to,
                     const std::function<void(RecordingInfo&)>& change_info,
                     const std::function<void(TickRecord&)>& change_tick) {
-  std::unique_ptr<Recorder> recorder;
+  std::optional<RecordingWriter> writer;
+  std::vector<TickRecord> ticks;
   RecordingVisitor visitor;
   visitor.begin = [&](const RecordingInfo& found) {
     RecordingInfo info = found;
     if (change_info) change_info(info);
-    recorder = std::make_unique<Recorder>(to, info, RecordingLimits{}, true);
+    writer.emplace(to, info);
   };
   visitor.tick = [&](const TickRecord& found) {
     TickRecord record = found;
     if (change_tick) change_tick(record);
-    recorder->add(record);
+    ticks.push_back(record);
+    if (ticks.size() == kTicksPerMessage) {
+      writer->write(ticks);
+      ticks.clear();
+    }
     return true;
   };
   read_recording(from, visitor);
-  recorder->close();
+  writer->write(ticks);
+  writer->close();
 }
 
 /// The same with bits of one word of one tick flipped.

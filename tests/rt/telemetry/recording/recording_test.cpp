@@ -326,7 +326,7 @@ TEST_F(RecordingTest, RunThatIsRefusedLeavesTheRecordingOfTheRunBefore) {
       << output();
   EXPECT_EQ(read_file(path()), before);
   // Nor does one that ends before its first tick.
-  Recorder(path(), {}, {}, true).close();
+  Recorder(path(), {}, {}).finish();
   EXPECT_EQ(read_file(path()), before);
 }
 

@@ -17,11 +17,10 @@ void add(TickQueue& queue, std::uint64_t from, std::uint64_t to) {
 }
 
 TEST(TickQueueTest, GivesBatchesInOrderAndTheRestAtTheEnd) {
-  TickQueue queue(4, 10, false);
+  TickQueue queue(4, 10, WhenFull::kDrop);
   add(queue, 0, 10);
   EXPECT_EQ(queue.take()->front().input.sensors.tick, 0u);
-  EXPECT_EQ(queue.take_at_once()->front().input.sensors.tick, 4u);
-  EXPECT_FALSE(queue.take_at_once()) << "two ticks are no batch yet";
+  EXPECT_EQ(queue.take()->front().input.sensors.tick, 4u);
   queue.finish();
   EXPECT_EQ(queue.take()->size(), 2u);
   EXPECT_FALSE(queue.take());
@@ -29,7 +28,7 @@ TEST(TickQueueTest, GivesBatchesInOrderAndTheRestAtTheEnd) {
 }
 
 TEST(TickQueueTest, FullQueueDropsTheNewestAndCounts) {
-  TickQueue queue(4, 2, false);
+  TickQueue queue(4, 2, WhenFull::kDrop);
   add(queue, 0, 18);  // two batches, two that are dropped, and a half one
   queue.take();
   add(queue, 18, 20);
@@ -39,7 +38,7 @@ TEST(TickQueueTest, FullQueueDropsTheNewestAndCounts) {
 }
 
 TEST(TickQueueTest, FullQueueThatWaitsDropsNothing) {
-  TickQueue queue(4, 2, true);
+  TickQueue queue(4, 2, WhenFull::kWait);
   std::thread giver([&] {
     add(queue, 0, 4000);
     queue.finish();

@@ -28,10 +28,8 @@ constexpr const char* kSoft =
     R"({"say":"terrain","preset":"","set":{"sigma_flat_npm3":2500000,"sigma_cone_npm3":150000}})";
 constexpr const char* kPushLeft = R"({"say":"push","direction":1.5707963267948966})";
 
-Policy shipped() { return load_policy_text(std::string(shipped_policy_text()), "built in"); }
-
 /// A run in lockstep with a page that has the key.
-struct HandTest : testing::Test {
+struct HandTest : testing::Test, TickSink, BetweenTicks {
   HandTest() {
     const std::string url = server->url();
     page.emplace(std::stoi(url.substr(url.find(':', 6) + 1)));
@@ -49,32 +47,34 @@ struct HandTest : testing::Test {
     return refusal;
   }
 
+  void add(const TickRecord& tick) override { ticks.push_back(tick); }
+  void note(std::uint64_t tick, const std::string& kind, const std::string& text) override {
+    notes.push_back(std::to_string(tick) + " " + kind + ": " + text);
+  }
+  RobotNow act(std::uint64_t next, TickSinks sinks) override {
+    if (before_tick) before_tick(next);
+    return hand->act(next, sinks);
+  }
+
   /// Walks for so long; `before` may say something before a tick.
   RunResult walk(double seconds, const std::function<void(std::uint64_t)>& before,
                  OperatorInput* live = nullptr) {
+    before_tick = before;
     const CommandSource command("1,0,0");
-    return run_in_lockstep(
-        {.robot = simulator,
-         .controller = config.controller,
-         .policy = &policy,
-         .command = command,
-         .plan = {.walk_s = seconds, .start_walking = live == nullptr},
-         .live = live,
-         .scene = {},
-         .tap =
-             [&](const TickRecord& tick) {
-               if (recorder) recorder->add(tick);
-               ticks.push_back(tick);
-             },
-         .between =
-             [&](std::uint64_t next) {
-               if (before) before(next);
-               return hand->act(next, [&](std::uint64_t tick, const auto& kind, const auto& text) {
-                 notes.push_back(std::to_string(tick) + " " + kind + ": " + text);
-                 if (recorder) recorder->note(tick, kind, text);
-               });
-             },
-         .interrupts = interrupt});
+    std::vector<TickSink*> sinks = {this};
+    if (recorded) sinks.push_back(&*recorded);
+    RunScript script(command, {.walk_s = seconds, .start_walking = true}, true);
+    RunResult result = run_in_lockstep({.robot = simulator,
+                                        .controller = config.controller,
+                                        .start = live ? Mode::kPassive : Mode::kWalk,
+                                        .policy = policy,
+                                        .op = live ? *live : script,
+                                        .sinks = sinks,
+                                        .between = this,
+                                        .interrupts = interrupt},
+                                       {});
+    if (!live) script.report(result);
+    return result;
   }
 
   /// Mean depth of the feet that touch the ground, m, from one tick to another.
@@ -91,8 +91,8 @@ struct HandTest : testing::Test {
     return sum / count;
   }
 
-  Policy policy = shipped();
-  const ProcessConfig config = config_of("wet-sand", {}, &policy.spec());
+  PolicyRunner policy{load_shipped_policy()};
+  const ProcessConfig config = config_of("wet-sand", {}, policy.spec());
   sim::Simulator simulator{config.robot, config.simulator};
   RemoteOperator remote{1200};
   StandAgain stand_again{remote};
@@ -103,9 +103,11 @@ struct HandTest : testing::Test {
                                    ViewServer::Parts{.feed = feed, .hand = &*hand}};
   std::optional<WebPage> page;
   std::atomic<int> interrupt{false};
-  std::unique_ptr<Recorder> recorder;
+  std::optional<Recorder> recorder;
+  std::optional<ReplayedTicks> recorded;
   std::vector<TickRecord> ticks;
   std::vector<std::string> notes;
+  std::function<void(std::uint64_t)> before_tick;
 };
 
 TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingReplays) {
@@ -113,8 +115,9 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
   RecordingInfo info;
   info.start_mode = "walk";
   info.clock = "lockstep";
-  recorder = std::make_unique<Recorder>(folder.path("run.mcap"), info, RecordingLimits{}, true,
-                                        &config.controller, &policy);
+  recorder.emplace(folder.path("run.mcap"), info, RecordingLimits{});
+  recorded.emplace(config.controller, Mode::kWalk, policy, WhenFull::kWait,
+                   std::vector<TickKeeper*>{&*recorder});
   const RunResult result = walk(4.0, [&](std::uint64_t next) {
     if (next == 2 * kSecond) {
       EXPECT_EQ(say(kSoft), "");
@@ -128,9 +131,7 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
   RecordProperty("before_mm", std::to_string(1e3 * before_m));
   RecordProperty("after_mm", std::to_string(1e3 * after_m));
 
-  recorder->close();
-  Policy again = shipped();
-  Replay replay(config.controller, Mode::kWalk, &again);
+  Replay replay(config.controller, Mode::kWalk, policy);
   std::vector<std::string> events;
   RecordingVisitor visitor;
   visitor.tick = [&](const TickRecord& tick) {
@@ -148,8 +149,7 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
 }
 
 TEST_F(HandTest, ARunThatNobodyTouchesIsTheSameToTheBit) {
-  Policy other = shipped();
-  const RunResult plain = run_once(config, &other, {.walk_s = 1.0, .start_walking = true});
+  const RunResult plain = run_once(config, policy, {.walk_s = 1.0, .start_walking = true});
   EXPECT_EQ(walk(1.0, {}).end.state_hash, plain.end.state_hash);
   EXPECT_TRUE(notes.empty());
 }

@@ -105,12 +105,12 @@ TEST(ViewPageTest, ARunWithoutATickHasAPageThatSaysSo) {
 
 TEST(ViewPageTest, TheSameRunGivesTheSameBytes) {
   const ProcessConfig config = config_of("dry-sand");
-  Policy policy = random_policy();
+  PolicyRunner policy(random_policy());
   std::array<std::string, 2> pages;
   std::array<std::uint64_t, 2> hashes{};
   for (std::size_t i = 0; i < 2; ++i) {
     const RunResult result = simulate(
-        {.config = config, .policy = &policy, .plan = {.walk_s = 0.5, .start_walking = true}});
+        {.config = config, .policy = policy, .plan = {.walk_s = 0.5, .start_walking = true}});
     pages[i] = run_page(result.record);
     hashes[i] = result.end.state_hash;
   }
