@@ -72,7 +72,7 @@ std::string problem_of(const HardwareConfig& config, const GateConfig& gate,
   if (found.fault != 0) {
     return fmt::format("reports a fault: {}", drive_fault_words(drive, found.fault));
   }
-  const std::string problem = settings_problem(
+  std::string problem = settings_problem(
       std::visit([&](const auto& d) { return drive_questions(d, config.drive_timeout_s); },
                  drive.drive),
       *sockets[drive.bus]);
