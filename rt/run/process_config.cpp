@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "rt/base/errors.h"
+#include "rt/run/robot_drivers.h"
 
 namespace sandrunner {
 namespace {
@@ -157,6 +158,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   at_most(c.walk.stop_yaw_deceleration_radps2, trained.yaw_acceleration_radps2,
           set.yaw_acceleration_radps2);
   if (p.hardware) fit_drives_to(c.gate, *p.hardware);
+  p.driver = read_robot_driver(config, p);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   p.recording.bytes = static_cast<std::uint64_t>(
