@@ -18,7 +18,7 @@ inline float leaky_relu(float x) noexcept {
   return scaled > x ? scaled : x;
 }
 
-/// x limited to [-limit, limit]; NaN stays NaN, so that a broken sensor is seen by the safety gate.
+/// x limited to [-limit, limit]; NaN stays NaN, so that the safety gate detects a broken sensor.
 inline float clip(float x, float limit) noexcept {
   const float above = x < -limit ? -limit : x;
   return above > limit ? limit : above;

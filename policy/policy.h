@@ -11,7 +11,7 @@
 
 namespace sandrunner {
 
-/// Everything besides the network that is needed to run a policy. README.md of this folder says how
+/// Everything except the network that is needed to run a policy. README.md of this folder says how
 /// a file holds it.
 struct PolicySpec {
   std::string name;
@@ -28,7 +28,7 @@ struct PolicySpec {
   double yaw_command_clip_mps2 = 0.0;
   /// What it was trained for; kNarrowEnvelope if its file does not say.
   CommandEnvelope envelope = kNarrowEnvelope;
-  bool has_envelope = false;  ///< the file says
+  bool has_envelope = false;  ///< the file has one
   /// Estimate in physical units = raw * sqrt(variance) + mean: body height (m), velocity (m/s),
   /// foot heights (m).
   std::array<float, kEstimateSize> estimate_mean{};

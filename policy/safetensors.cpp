@@ -139,9 +139,10 @@ TensorFile parse_safetensors(std::string_view bytes, const std::string& path) {
   }
   std::memcpy(&header_bytes, bytes.data(), kLengthBytes);
   if (header_bytes > bytes.size() - kLengthBytes) {
-    fail_file(path,
-              "a header of {} bytes does not fit in a file of {} (truncated, or not safetensors)",
-              header_bytes, bytes.size());
+    fail_file(
+        path,
+        "is not a safetensors file, or is cut short: found a header of {} bytes in a file of {}",
+        header_bytes, bytes.size());
   }
   if (header_bytes > kMaxHeaderBytes) {
     fail_file(path, "a header of {} bytes, expected at most {}", header_bytes, kMaxHeaderBytes);

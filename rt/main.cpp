@@ -35,6 +35,7 @@
 #include "rt/run/run_files.h"
 #include "rt/run/run_robot.h"
 #include "rt/run/scene.h"
+#include "rt/run/settings_reference.h"
 #include "rt/run/signals.h"
 
 namespace sandrunner {
@@ -167,6 +168,10 @@ int run(const Options& options) {
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
+  if (options->settings) {
+    fmt::print("{}", settings_reference());
+    return kExitOk;
+  }
   if (options->rt_report) {
     print_rt_report();
     return kExitOk;

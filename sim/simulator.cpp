@@ -15,6 +15,41 @@ namespace {
 // Streams of random numbers.
 enum Stream : std::uint64_t { kStartStream = 1, kNoiseStream = 2 };
 
+using N = SensorNoise;
+constexpr Setting<N> kNoise[] = {
+    {"joint_position_rad", &N::joint_position_rad, 0.0, 1.0,
+     "Standard deviation of the noise of joint positions."},
+    {"joint_velocity_radps", &N::joint_velocity_radps, 0.0, 10.0,
+     "Standard deviation of the noise of joint speeds."},
+    {"orientation_rad", &N::orientation_rad, 0.0, 0.1,
+     "Standard deviation of the attitude's noise, about each body axis."},
+    {"angular_velocity_radps", &N::angular_velocity_radps, 0.0, 10.0,
+     "Standard deviation of the gyro's noise."},
+    {"linear_acceleration_mps2", &N::linear_acceleration_mps2, 0.0, 100.0,
+     "Standard deviation of the accelerometer's noise."},
+};
+
+using C = SimulatorConfig;
+constexpr Setting<C> kDelays[] = {
+    {"sensor_delay_ticks", &C::sensor_delay_ticks, 0, kMaxDelayTicks - 1,
+     "Age of what the sensors deliver."},
+    {"actuator_delay_ticks", &C::actuator_delay_ticks, 0, kMaxDelayTicks - 1,
+     "Time until a command acts."},
+};
+
+using L = TorqueSpeedLine;
+constexpr Setting<L> kLine[] = {
+    {"stall_torque_nm", &L::stall_torque_nm, 1e-3, 1e4,
+     "Torque of a drive at rest where the torque-speed line begins, at the joint.", kFromRobotFile},
+    {"no_load_speed_radps", &L::no_load_speed_radps, 1e-3, 1e4,
+     "Speed at which a drive has no torque left, at the joint.", kFromRobotFile},
+};
+
+constexpr Setting<StepSettings> kStep[] = {
+    {"solver_tolerance_ns", &StepSettings::tolerance_ns, 1e-12, 1e-2,
+     "Impulse at which the contact solver stops."},
+};
+
 }  // namespace
 
 Simulator::Simulator(const Robot& robot, const SimulatorConfig& config)
@@ -234,25 +269,27 @@ double Simulator::surface_height(double x_m, double y_m) const noexcept {
 SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot) {
   SimulatorConfig c;
   c.terrain = read_terrain(config);
-  const auto number = [&](const char* key, double& value, double min, double max) {
-    value = config.number(key, value, min, max);
-  };
-  number("sim.noise.joint_position_rad", c.noise.joint_position_rad, 0.0, 1.0);
-  number("sim.noise.joint_velocity_radps", c.noise.joint_velocity_radps, 0.0, 10.0);
-  number("sim.noise.orientation_rad", c.noise.orientation_rad, 0.0, 0.1);
-  number("sim.noise.angular_velocity_radps", c.noise.angular_velocity_radps, 0.0, 10.0);
-  number("sim.noise.linear_acceleration_mps2", c.noise.linear_acceleration_mps2, 0.0, 100.0);
-  const auto ticks = [&](const char* key) {
-    return static_cast<int>(config.integer(key, 0, 0, kMaxDelayTicks - 1));
-  };
-  c.sensor_delay_ticks = ticks("sim.sensor_delay_ticks");
-  c.actuator_delay_ticks = ticks("sim.actuator_delay_ticks");
+  read_settings(config, "sim.noise", kNoise, c.noise);
+  read_settings(config, "sim", kDelays, c);
   TorqueSpeedLine line = robot.torque_speed_line;
-  number("sim.stall_torque_nm", line.stall_torque_nm, 1e-3, 1e4);
-  number("sim.no_load_speed_radps", line.no_load_speed_radps, 1e-3, 1e4);
+  read_settings(config, "sim", kLine, line);
   if (config.flag("sim.torque_speed_line", false)) c.torque_speed_line = line;
-  number("sim.solver_tolerance_ns", c.step.tolerance_ns, 1e-12, 1e-2);
+  read_settings(config, "sim", kStep, c.step);
   return c;
+}
+
+std::vector<SettingLine> simulator_settings() {
+  std::vector<SettingLine> lines;
+  list_settings(lines, "sim.noise", kNoise);
+  list_settings(lines, "sim", kDelays);
+  lines.push_back({.key = "sim.torque_speed_line",
+                   .fallback = "false",
+                   .unit = {},
+                   .range = "true, false",
+                   .meaning = "Drives lose torque towards their top speed."});
+  list_settings(lines, "sim", kLine);
+  list_settings(lines, "sim", kStep);
+  return lines;
 }
 
 }  // namespace sandrunner::sim

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
 
 #include "rt/core/robot_io.h"
 #include "rt/core/state_hash.h"
@@ -110,5 +111,7 @@ class Simulator final : public RobotIo {
 /// Reads the table [sim] of `config` and its terrain; figures of the drives are `robot`'s unless
 /// set. Throws InputError.
 SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot);
+/// The keys of the table [sim], for the reference.
+std::vector<SettingLine> simulator_settings();
 
 }  // namespace sandrunner::sim

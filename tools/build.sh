@@ -1,9 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/build.sh [sandrunner|deb]: installs what is missing and builds, in release, into build/release: everything; the
-# program sandrunner alone, which needs half the packages and a fifth of the time; the Debian package of what a robot
-# needs (tools/deploy). Says what it does on stderr; says nothing if nothing is to be done.
+# tools/build.sh [sandrunner|deb]: installs missing packages (sudo apt-get) and builds in release,
+# into build/release.
+#   (without)   everything
+#   sandrunner  the program sandrunner only: half the packages and a fifth of the time
+#   deb         the Debian package for a robot's computer (tools/deploy)
+# Reports on stderr; prints nothing if nothing is to be done.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/release

@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# dds_security.sh DIR: creates what DDS Security needs in a new folder DIR: a certificate authority, the identities
-# robot, operator and viewer with their rights, and the rules of the domain. The robot runs with DIR as
-# dds.security_dir. Give an operator's or viewer's computer only ca.pem, governance.p7s and the three files of its
-# identity, never ca.key.
+# dds_security.sh DIR: creates the files for DDS Security in a new folder DIR: a certificate
+# authority, the identities robot, operator and viewer with their permissions, and the rules of the
+# domain. Run the robot with DIR as dds.security_dir. Give an operator's or viewer's computer only
+# ca.pem, governance.p7s and the three files of its identity, never ca.key.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 fail() {
   echo "dds_security.sh: $1" >&2
   exit 2
 }
-(($# == 1)) || fail "found $# arguments, expected one, the folder to create: tools/dds_security.sh DIR"
+(($# == 1)) || fail "found $# arguments, expected one, the folder to create: dds_security.sh DIR"
 command -v openssl >/dev/null || fail "found no openssl, expected the Debian package openssl"
 dir=$1
 [[ ! -e $dir ]] || fail "found $dir, expected a folder that does not exist yet"

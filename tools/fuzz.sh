@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/fuzz.sh TIME [NAME...]: builds the libFuzzer programs in build/asan-ubsan, and runs each, or those named, for that
-# long (10m, 20s). What they find worth keeping stays in build/fuzz/corpus/NAME for the next time. Ends with
-# 1 at the first finding, which lies in build/fuzz/findings.
+# tools/fuzz.sh TIME [NAME...]: builds the libFuzzer programs in build/asan-ubsan and runs each of
+# them, or only NAME..., for TIME (10m, 20s). The corpus is kept in build/fuzz/corpus/NAME. Exits
+# with 1 at the first finding, which is in build/fuzz/findings.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 if ! [[ ${1:-} =~ ^([1-9][0-9]{0,5})([ms])$ ]]; then

@@ -1,10 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the Debian packages that are missing of those that
-# everything needs (all, deb: the package, too); the program sandrunner alone; everything and what only tests run;
-# everything and the checks of .ci/run. If none is missing it only asks dpkg: no network, no permissions, a fraction of a
-# second.
+# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the missing Debian packages
+# with apt-get, as root or with sudo. If none is missing it only queries dpkg: no network and no
+# permissions are needed.
+#   all, deb    everything, the Debian package included
+#   sandrunner  the program sandrunner only
+#   test        everything, and what only tests run
+#   checks      everything, and the checks of .ci/run
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 packages=(
   # fonts-dejavu-core is what the pictures are lettered with
@@ -13,10 +19,10 @@ packages=(
   liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
   esbuild libjs-three libboost-dev
 )
-# Trainer, benches, tests and the Debian package; the emulated machine of tools/hil. The last line is a DDS peer that is not ours, and what generates its
-# code.
+# Trainer, benches, tests and the Debian package with its man pages; the emulated machine of tools/hil. The last line is a
+# DDS peer that is not ours, and the generator of its code.
 [[ ${1:-all} == sandrunner ]] || packages+=(
-  libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file
+  libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file help2man
   qemu-system-x86 busybox-static cpio xz-utils
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
 )

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# source tools/ros2_localhost.sh (bash, zsh): ROS 2 nodes of this shell look for a robot on this computer, where
-# dds.interface = "lo" has it, and nowhere else. For rmw_fastrtps and rmw_cyclonedds. In Humble, `ros2 node list` lacks the
-# robot, whose identifiers are as in later releases; its topics are there.
+# source tools/ros2_localhost.sh (bash, zsh): ROS 2 nodes of this shell look for a robot on this
+# computer, where dds.interface = "lo" has it, and nowhere else. For rmw_fastrtps and
+# rmw_cyclonedds. In Humble, `ros2 node list` lacks the robot, whose identifiers are as in later
+# releases; its topics are there.
 export ROS_DOMAIN_ID=42
 # The loopback interface has no multicast: each process needs an index of its own, up to 119 as for the robot.
 export CYCLONEDDS_URI='<General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex></Discovery>'

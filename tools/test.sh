@@ -1,8 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/test.sh [arguments]: installs what is missing, builds, and runs all tests. Arguments go to ctest
-# (tools/test.sh -R Config). Ends with the tests that were skipped and why, and with the exit code of ctest.
+# tools/test.sh [OPTION...]: installs missing packages (sudo apt-get), builds, and runs all tests.
+# Options go to ctest (tools/test.sh -R Config). Prints the skipped tests with their reasons at the
+# end; exits with the code of ctest.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 bash "$root/tools/install_packages.sh" test

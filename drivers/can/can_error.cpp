@@ -9,17 +9,17 @@ namespace sandrunner {
 CanError decode_can_error(const CanFrame& frame) noexcept {
   CanError error;
   if (!frame.error) return error;
-  const auto says = [&](std::uint32_t bits) { return (frame.id & bits) != 0; };
-  error.bus_off = says(CAN_ERR_BUSOFF);
-  error.restarted = says(CAN_ERR_RESTARTED);
-  error.send_timeout = says(CAN_ERR_TX_TIMEOUT);
-  error.no_acknowledge = says(CAN_ERR_ACK);
-  error.lost_arbitration = says(CAN_ERR_LOSTARB);
-  error.protocol_violation = says(CAN_ERR_PROT);
-  error.transceiver = says(CAN_ERR_TRX);
-  error.bus_error = says(CAN_ERR_BUSERROR);
+  const auto has = [&](std::uint32_t bits) { return (frame.id & bits) != 0; };
+  error.bus_off = has(CAN_ERR_BUSOFF);
+  error.restarted = has(CAN_ERR_RESTARTED);
+  error.send_timeout = has(CAN_ERR_TX_TIMEOUT);
+  error.no_acknowledge = has(CAN_ERR_ACK);
+  error.lost_arbitration = has(CAN_ERR_LOSTARB);
+  error.protocol_violation = has(CAN_ERR_PROT);
+  error.transceiver = has(CAN_ERR_TRX);
+  error.bus_error = has(CAN_ERR_BUSERROR);
   if (frame.length < CAN_ERR_DLC) return error;  // the details are missing
-  if (says(CAN_ERR_CRTL)) {
+  if (has(CAN_ERR_CRTL)) {
     const std::uint8_t detail = frame.data[1];
     error.receive_overflow = (detail & CAN_ERR_CRTL_RX_OVERFLOW) != 0;
     error.send_overflow = (detail & CAN_ERR_CRTL_TX_OVERFLOW) != 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who is on the buses, whatever the configuration says.
+// The ids that answer on the buses, whatever the configuration lists.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace sandrunner {
 
-/// A drive that answered when it was asked for its state, or told to be off (encode_probe).
+/// A drive that answered a probe (encode_probe): a query of its state, or an off frame.
 struct ScannedDrive {
   int id = 0;
   std::uint32_t reply_id = 0;  ///< identifier of its reply
@@ -19,13 +19,13 @@ struct ScannedDrive {
 
 inline constexpr int kMostScannedId = 32;
 
-/// Speaks to the ids 1 to kMostScannedId of every bus, 0.2 s in all; returns who answered, by bus.
+/// Probes the ids 1 to kMostScannedId of every bus, 0.2 s in all; returns the answers by bus.
 std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
                                             const CanSockets& sockets);
 
-/// The frame with which scan() speaks to `id`.
+/// The probe of scan() for `id`.
 CanFrame scan_frame(const BusConfig& bus, int id);
-/// Whether it is what a drive `id` answers on bus `bus` of the configuration.
+/// Whether the frame is an answer of drive `id` on bus `bus` of the configuration.
 bool is_scan_reply(const HardwareConfig& config, int bus, int id, const CanFrame& frame);
 
 }  // namespace sandrunner

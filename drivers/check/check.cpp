@@ -157,16 +157,16 @@ class Check {
   }
 
   NudgeState nudge_exchange(DriveLook& look, const NudgePoints& points) {
-    NudgePoints told = points;
+    NudgePoints sent = points;
     for (int j = 0; j < kNumJoints && config_.mode == DriveMode::kTorque; ++j) {
       const Drive& d = look.drive(j);
-      if (!told[j]) continue;
-      const JointSetPoint& p = *told[j];  // which the host evaluates
-      told[j] = JointSetPoint{.torque_nm = joint_torque(d.position_rad(), d.velocity_radps(),
+      if (!sent[j]) continue;
+      const JointSetPoint& p = *sent[j];  // which the host evaluates
+      sent[j] = JointSetPoint{.torque_nm = joint_torque(d.position_rad(), d.velocity_radps(),
                                                         p.position_rad, p.velocity_radps,
                                                         p.kp_nmprad, p.kd_nmsprad, p.torque_nm)};
     }
-    look.exchange_powered(told);
+    look.exchange_powered(sent);
     NudgeState state;
     state.time_s = 1e-9 * static_cast<double>(clock_ns(CLOCK_MONOTONIC));
     for (int j = 0; j < kNumJoints; ++j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sandrunner check: looks at a robot's buses, drives and IMU before it carries itself.
+// sandrunner check: examines a robot's buses, drives and IMU before it carries itself.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace sandrunner {
 
-/// What is to be looked at, and with whom.
+/// The inputs of a check.
 struct CheckTask {
   std::string path;  ///< of the hardware file
   HardwareConfig config;
@@ -21,13 +21,13 @@ struct CheckTask {
   bool nudge = false;                ///< each drive pushes its joint, the robot hanging
   /// The pose in which the robot is held, from which the zeros are computed and written to `path`.
   std::optional<JointArray<double>> zero_pose_rad;
-  /// Reads the whole configuration with this text in place of the file: the last judge of zeros.
+  /// Reads the whole configuration with this text in place of the file, to validate new zeros.
   std::function<HardwareConfig(const std::string& text)> read;
 };
 
-/// Does it: prints the report to standard output, and what a person is asked to standard error.
-/// Returns the exit code: 0, or kExitFailed if something is wrong. Throws InputError: zeros
-/// that cannot be, a file that cannot be written, no drive that answers, a nudge of a robot that
+/// Runs the check: prints the report to standard output, and requests to the user to standard
+/// error. Returns the exit code: 0, or kExitFailed if something is wrong. Throws InputError: zeros
+/// that are impossible, a file that cannot be written, no answering drive, a nudge of a robot that
 /// does not hang.
 int run_check(const CheckTask& task);
 

@@ -13,21 +13,21 @@
 
 namespace sandrunner {
 
-/// What the IMU was seen to do.
+/// The observed behaviour of the IMU.
 struct ImuFindings {
   ImuFigures figures;
   std::string state;              ///< to_string(Imu::State)
   std::uint64_t bad_packets = 0;  ///< with a bad checksum, repeated, incomplete
 };
 
-/// All that was found out about a robot.
+/// Everything that the check found.
 struct CheckFindings {
   std::vector<std::vector<ScannedDrive>> scanned;  ///< by bus; empty: not scanned
   JointArray<FoundDrive> drives;
   std::optional<ImuFindings> imu;     ///< none: it could not be set up
-  std::string emergency_stop;         ///< what its switch says
-  std::vector<std::string> moves;     ///< what came of each joint turned by hand, a line each
-  std::vector<std::string> nudges;    ///< what came of each joint pushed by its drive, a line each
+  std::string emergency_stop;         ///< the state of its switch
+  std::vector<std::string> moves;     ///< the result of each joint turned by hand, a line each
+  std::vector<std::string> nudges;    ///< the result of each joint pushed by its drive, a line each
   bool powered = false;               ///< drives were enabled
   std::vector<std::string> problems;  ///< a line each
 };
@@ -37,19 +37,19 @@ struct CheckFindings {
 std::vector<std::string> scan_problems(const HardwareConfig& config, const RobotDescription& robot,
                                        const std::vector<std::vector<ScannedDrive>>& scanned);
 
-/// Lines about what a bus showed beside replies.
+/// Lines about other events on a bus than replies.
 std::vector<std::string> bus_problems(const HardwareConfig& config,
                                       const std::vector<FoundBus>& buses);
 
 /// Lines about the IMU.
 std::vector<std::string> imu_problems(const ImuConfig& config, const ImuFindings& findings);
 
-/// One line a joint: who answers how, where it is.
+/// One line per joint: its drive's answers and its position.
 std::string joint_table(const HardwareConfig& config, const RobotDescription& robot,
                         const GateConfig& gate, const JointArray<FoundDrive>& drives);
 std::string imu_line(const ImuConfig& config, const ImuFindings& findings);
 
-/// The report, for a person.
+/// The report as text.
 std::string check_report(const HardwareConfig& config, const RobotDescription& robot,
                          const GateConfig& gate, const CheckFindings& findings);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A person turns a joint of a robot without power: is it the drive that the configuration says, and
-// does it count in the joint's direction and scale?
+// A person turns a joint of a robot without power. Checks that the configured drive moved, in the
+// joint's direction and scale.
 #pragma once
 
 #include <string>
@@ -14,22 +14,22 @@ namespace sandrunner {
 /// Positions of all joints, again and again.
 using JointTrace = std::vector<JointArray<double>>;
 
-/// What a person sees when joint `joint` turns in its positive direction out of `pose_rad`, from
-/// the robot's links and axes alone: "LF_FOOT goes backward and down", in directions of the base.
-/// It is said of the part that moves most.
+/// The visible motion when joint `joint` turns in its positive direction out of `pose_rad`, from
+/// the robot's links and axes: "LF_FOOT goes backward and down", in directions of the base. It
+/// names the part that moves most.
 std::string positive_motion(const RobotDescription& robot, const JointArray<double>& pose_rad,
                             int joint);
 
-/// What the person is asked to turn a joint by.
+/// The angle by which the person should turn a joint.
 inline constexpr double kAsked_rad = 0.5;
 
 struct HandMove {
   enum class Verdict {
     kGood,
     kNotMoved,    ///< no joint has moved
-    kOtherJoint,  ///< another one has moved most
+    kOtherJoint,  ///< another one moved most
     kWrongSign,
-    kWrongScale,  ///< by more than twice or less than half of what was asked for
+    kWrongScale,  ///< by more than twice or less than half of the requested angle
   };
   Verdict verdict = Verdict::kNotMoved;
   int joint = 0;           ///< that moved most
@@ -39,7 +39,7 @@ struct HandMove {
 /// Judges a trace in which `joint` was turned by about kAsked_rad in its positive direction.
 HandMove judge_move(const JointTrace& trace, int joint);
 
-/// The verdict on joint `joint` for a person, with what to look at.
+/// The verdict on joint `joint` as text, with what to look at.
 std::string move_words(const HandMove& move, int joint, const HardwareConfig& config,
                        const RobotDescription& robot);
 

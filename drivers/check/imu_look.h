@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether an IMU on a robot that stands still says what it should.
+// Checks the readings of an IMU on a robot at rest.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace sandrunner {
 /// Means of the samples of a robot at rest.
 struct ImuFigures {
   int samples = 0;
-  double rate_hz = 0.0;  ///< of all that the device sent, looked at here or not
+  double rate_hz = 0.0;  ///< of all samples that the device sent, used here or not
   Vector3 acceleration_mps2{}, angular_velocity_radps{};
-  double tilt_rad = 0.0;            ///< between what it calls up and the body's z axis
+  double tilt_rad = 0.0;            ///< between the IMU's up direction and the body's z axis
   double attitude_error_rad = 0.0;  ///< between up by acceleration and up by orientation
 };
 
@@ -30,7 +30,7 @@ class ImuLook {
   Vector3 acceleration_{}, angular_velocity_{}, up_{};  // sums; up_ by the orientation, body frame
 };
 
-/// What is wrong with them, a line each, for a robot that is level and still. `rate_hz`: the
+/// The problems, a line each, for a robot that is level and still. `rate_hz`: the
 /// configured one.
 std::vector<std::string> imu_problems(const ImuFigures& figures, double rate_hz);
 

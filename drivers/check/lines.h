@@ -6,10 +6,10 @@
 
 namespace sandrunner {
 
-/// Lines that a person types on standard input, taken without waiting for them.
+/// Lines typed on standard input, read without waiting.
 class Lines {
  public:
-  /// The next line, without its end, if it is there.
+  /// The next line, without its end, if there is one.
   std::optional<std::string> next();
   /// No more will come.
   bool ended() const noexcept { return ended_ && typed_.empty(); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A drive pushes its own joint a little, the robot hanging: is its torque the joint's, in sign and
-// scale? The robot's first powered motion, so that nothing is trusted before it was seen to be
-// right: a drive that pushes the wrong way would drive where it is to damp.
+// A drive pushes its own joint a little, the robot hanging. Checks the sign and scale of its
+// torque. This is the robot's first powered motion, so no drive is trusted before it passed: a
+// drive with the wrong sign would push where it should damp.
 //
 // Example: tests/drivers/check/nudge_test.cpp.
 #pragma once
@@ -19,19 +19,18 @@ namespace sandrunner {
 struct NudgeState {
   double time_s = 0.0;
   JointArray<double> position_rad{}, velocity_radps{}, torque_nm{};
-  JointArray<bool> well{};  ///< it answers and reports no fault
-  bool stop = false;        ///< a person wants an end
+  JointArray<bool> well{};  ///< the drive answers and reports no fault
+  bool stop = false;        ///< the person asks to stop
 };
 
-/// What the drives get in one exchange; a drive without a set-point gets an off frame.
+/// The setpoints of one exchange; a drive without one gets an off frame.
 using NudgePoints = JointArray<std::optional<JointSetPoint>>;
 /// Makes one exchange, every few milliseconds.
 using NudgeExchange = std::function<NudgeState(const NudgePoints&)>;
 
 inline constexpr double kNudge_nm = 2.0;
 /// A push ends at once when any joint is this fast, or the pushed one has moved this far. Then the
-/// pushed joint's own drive brakes it, if it was seen to push the right way; beyond kNudgeFarthest
-/// it is off.
+/// pushed joint's own drive brakes it, if it pushed the right way; beyond kNudgeFarthest it is off.
 inline constexpr double kNudgeFastest_radps = 3.0, kNudgeEnough_rad = 0.1;
 inline constexpr double kNudgeFarthest_rad = 0.3;
 
@@ -42,7 +41,7 @@ struct Nudge {
     kOtherJoint,   ///< another one has moved
     kWrongSign,    ///< it moved against the torque
     kWrongSpeed,   ///< its velocity is not the change of its position
-    kWrongTorque,  ///< it reports another torque than it was asked for
+    kWrongTorque,  ///< it reports another torque than the commanded one
     kNotStill,     ///< joint `other` did not come to rest: nothing was pushed
     kNotWell,      ///< drive `other` reported a fault, or fell silent
     kStopped,      ///< by the person
@@ -62,7 +61,7 @@ struct Nudge {
 Nudge nudge(int joint, double torque_nm, const JointArray<bool>& damped,
             const NudgeExchange& exchange);
 
-/// The verdict on joint `joint` for a person, with what to look at.
+/// The verdict on joint `joint` as text, with what to look at.
 std::string nudge_words(const Nudge& nudge, int joint, const HardwareConfig& config,
                         const RobotDescription& robot);
 

@@ -13,9 +13,9 @@ namespace sandrunner {
 /// A joint that is held still stays within this.
 inline constexpr double kStill_rad = 0.01;
 
-/// The zero_rad of every drive with which a robot that stood in `pose_rad` throughout `trace`
-/// (positions by the zeros of `config`) would have said so. Throws InputError, one line: nothing
-/// was measured, a joint moved meanwhile, or a zero that is more than a turn away.
+/// The zero_rad of every drive for which the positions in `trace` (measured with the zeros of
+/// `config`) equal `pose_rad`. Throws InputError, one line: nothing was measured, a joint moved
+/// meanwhile, or a zero is more than a turn away.
 JointArray<double> zeros_of(const JointTrace& trace, const JointArray<double>& pose_rad,
                             const HardwareConfig& config, const RobotDescription& robot);
 

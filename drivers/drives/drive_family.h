@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the rest of the program needs of a family of motor drives: a type that holds the address and
-// the settings of one drive, and one overload of each function in the concept DriveFamily. Values
-// are at the drive's output, in SI units.
+// The interface of a family of motor drives: a type with the address and the settings of one drive,
+// and one overload of each function in the concept DriveFamily. Values are at the drive's output,
+// in SI units.
 //
 // README.md shows how to add a family. Examples: mit/mit_drive.h, moteus/moteus_drive.h.
 #pragma once
@@ -17,6 +17,7 @@
 
 #include "drivers/can/can_frame.h"
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 
 namespace sandrunner {
 
@@ -31,7 +32,7 @@ struct DriveCommand {
 /// Its numbers as text.
 std::string describe(const DriveCommand& command);
 
-/// What holds for every command to one drive. A family without a field for it leaves it out.
+/// Limits of every command to one drive. A family whose frames lack such a field ignores it.
 struct DriveTerms {
   bool torque_only = false;    ///< commands have no gains
   double max_torque_nm = 0.0;  ///< of the whole law
@@ -40,7 +41,7 @@ struct DriveTerms {
 
 enum class DrivePower : std::uint8_t { kUnknown, kOff, kOn };
 
-/// What a drive reports. NaN: it does not report that.
+/// The state that a drive reports. NaN: not reported.
 struct DriveState {
   double position_rad = 0.0;
   double velocity_radps = 0.0;
@@ -55,7 +56,7 @@ struct DriveState {
 
 enum class ReplyKind : std::uint8_t {
   kOther,  ///< not of this drive
-  kBad,    ///< of this drive, but not as it should be
+  kBad,    ///< of this drive, but invalid
   kState,
 };
 
@@ -66,7 +67,7 @@ struct DriveRanges {
   double kp_nmprad = 0.0, kd_nmsprad = 0.0;
 };
 
-/// The frames that a family speaks.
+/// The kinds of frames of a family.
 struct CanFormats {
   bool classic = false, fd = false;
 };
@@ -84,7 +85,7 @@ struct DriveQuestion {
 template <typename Drive>
 concept DriveFamily = std::is_trivially_copyable_v<Drive> &&
     requires(const Drive& drive, Drive& changed, const CanFrame& received, CanFrame& frame,
-             DriveState& state, ConfigTree& table) {
+             DriveState& state, ConfigTree& table, std::vector<SettingLine>& lines) {
   /// The value of hardware.bus.protocol.
   { Drive::kProtocol } -> std::convertible_to<const char*>;
 
@@ -94,26 +95,28 @@ concept DriveFamily = std::is_trivially_copyable_v<Drive> &&
   set_address(changed, int{}, CanFormat{});
   /// Reads the family's own keys of a table [[hardware.drive]]; the text names the drive in errors.
   read_drive(changed, table, std::string{});
+  /// Lists these keys for the reference, as keys of the table that the text names.
+  list_drive_settings(drive, lines, std::string{});
   { drive_id(drive) } -> std::same_as<int>;
   /// The identifier of its replies, where that is a setting.
   { reply_id(drive) } -> std::same_as<std::optional<std::uint32_t>>;
   { drive_ranges(drive) } -> std::same_as<DriveRanges>;
-  /// Without its supply the drive forgets the time-out that bring-up gave it.
+  /// Whether the drive forgets the time-out of bring-up without its supply.
   { forgets_timeout(drive) } -> std::same_as<bool>;
-  /// The drive's time-out can neither be asked nor set over CAN.
+  /// Whether the drive's time-out can neither be read nor set over CAN.
   { hides_timeout(drive) } -> std::same_as<bool>;
   { drive_questions(drive, double{}) } -> std::same_as<std::vector<DriveQuestion>>;
 
   // --- frames; real-time safe ---
 
-  /// Keeps the drive off. True: clears its fault instead, where that is another frame.
+  /// Switches the drive off. True: clears its fault instead, where that is another frame.
   { encode_off(drive, bool{}, frame) }
   noexcept;
   { encode_enable(drive, DriveTerms{}, frame) }
   noexcept;
   { encode_command(drive, DriveCommand{}, DriveTerms{}, frame) }
   noexcept;
-  /// Asks for the state and enables nothing. Only the address has to be set.
+  /// Queries the state and enables nothing. Only the address has to be set.
   { encode_probe(drive, frame) }
   noexcept;
   { is_probe_reply(drive, received) }
@@ -121,14 +124,14 @@ concept DriveFamily = std::is_trivially_copyable_v<Drive> &&
   /// `state` is left as it is unless the result is kState.
   { decode_state(drive, received, state) }
   noexcept->std::same_as<ReplyKind>;
-  /// Some host sends this frame to the drive.
+  /// Whether this frame is a command of some host to the drive.
   { is_command_to(drive, received) }
   noexcept->std::same_as<bool>;
 
-  // --- for a person ---
+  // --- texts ---
 
   { fault_words(drive, std::uint8_t{}) } -> std::convertible_to<std::string>;
-  /// What a frame of encode_off, encode_enable or encode_command says.
+  /// The meaning of a frame of encode_off, encode_enable or encode_command.
   { describe(drive, received) } -> std::same_as<std::string>;
   /// A reply to `received` of the length that the drive's has.
   { encode_example_reply(drive, received, frame) }

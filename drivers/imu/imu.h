@@ -26,7 +26,7 @@ class Imu {
   /// answer.
   explicit Imu(const ImuConfig& config);
 
-  /// What the stream is like, as far as `poll` saw it.
+  /// The state of the stream, as `poll` found it.
   enum class State {
     kStreaming,  ///< new samples come
     kSilent,     ///< nothing comes
@@ -49,21 +49,21 @@ class Imu {
     std::uint64_t clock_restarts = 0;  ///< device's clock went back or jumped
   };
 
-  /// Reads what is there and takes the newest sample from it. True: there is a new one. `now_ns`:
-  /// CLOCK_MONOTONIC. Never allocates or logs; one system call, which may wait for the kernel's
-  /// worker: see ImuThread.
+  /// Reads the available bytes and takes the newest sample from them. True: there is a new one.
+  /// `now_ns`: CLOCK_MONOTONIC. Never allocates or logs; one system call, which may wait for the
+  /// kernel's worker: see ImuThread.
   bool poll(std::int64_t now_ns) noexcept;
 
   /// Waits until there is something to poll, for at most `timeout_ms`.
   void wait(int timeout_ms) const noexcept { port_.wait_readable(timeout_ms); }
 
-  /// The newest sample; `tick` is 0: who knows the loop's ticks makes it from sample_time_ns().
+  /// The newest sample; `tick` is 0: the caller computes it from sample_time_ns().
   /// With a quaternion rate below the rate, the orientation is up to that many samples older.
   const ImuSample& sample() const noexcept { return sample_; }
   /// When it was taken, on the clock of `now_ns` (device_clock.h).
   std::int64_t sample_time_ns() const noexcept { return sample_time_ns_; }
 
-  /// Streaming as long as the last new sample came at most limit_ns() ago; then, what came since.
+  /// Streaming while the last new sample is at most limit_ns() old; else the kind of data since.
   State state(std::int64_t now_ns) const noexcept;
   std::int64_t limit_ns() const noexcept { return limit_ns_; }
   Counters counters() const noexcept;
@@ -88,7 +88,7 @@ class Imu {
   bool gone_ = false;
 };
 
-/// What to print of a state.
+/// The text of a state.
 const char* to_string(Imu::State state) noexcept;
 
 }  // namespace sandrunner

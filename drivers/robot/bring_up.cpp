@@ -34,10 +34,10 @@ std::optional<double> ask(const DriveQuestion& question, CanSocket& socket) {
 /// What is wrong, empty if nothing is.
 std::string settings_problem(const std::vector<DriveQuestion>& questions, CanSocket& socket) {
   for (const DriveQuestion& q : questions) {
-    const std::optional<double> told = ask(q, socket);
-    if (!told) return fmt::format("does not tell its {} ({})", q.what, q.source);
-    if (std::fabs(*told - q.expected) > 1e-3 * q.expected) {
-      return fmt::format("its {} is {:.6g}, configured is {:.6g}", q.what, *told, q.expected);
+    const std::optional<double> answer = ask(q, socket);
+    if (!answer) return fmt::format("does not report its {} ({})", q.what, q.source);
+    if (std::fabs(*answer - q.expected) > 1e-3 * q.expected) {
+      return fmt::format("its {} is {:.6g}, configured is {:.6g}", q.what, *answer, q.expected);
     }
   }
   return "";
@@ -79,7 +79,7 @@ std::string problem_of(const HardwareConfig& config, const GateConfig& gate,
   if (!problem.empty()) return problem;
   const bool hidden = std::visit([](const auto& d) { return hides_timeout(d); }, drive.drive);
   if (!hidden || config.timeout_unverified) return "";
-  return "cannot tell its time-out over CAN; set it in the drive, then set "
+  return "cannot report its time-out over CAN: set it in the drive with the maker's tool, then set "
          "hardware.timeout_unverified=true";
 }
 

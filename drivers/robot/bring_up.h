@@ -12,10 +12,10 @@ namespace sandrunner {
 
 inline constexpr int kLookExchanges = 50;
 
-/// What is wrong with drives that were looked at kLookExchanges times and more, a line each, which
-/// names joint, bus and id: each is to answer almost always, be where its joint can be, have the
-/// limits that are configured and a time-out, as far as it can tell (a Damiao's is set). Drives on
-/// a bus without a socket are left out.
+/// The problems of drives after at least kLookExchanges exchanges, one line each with joint, bus
+/// and id. A drive must answer almost always, be at a possible position of its joint, and have the
+/// configured limits and a time-out, as far as it can report them (a Damiao's is set). Drives on a
+/// bus without a socket are left out.
 std::vector<std::string> drive_problems(const HardwareConfig& config, const RobotDescription& robot,
                                         const GateConfig& gate, const CanSockets& sockets,
                                         const JointArray<FoundDrive>& found);

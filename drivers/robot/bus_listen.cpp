@@ -22,7 +22,7 @@ std::unique_ptr<CanSocket> open_bus(const BusConfig& bus) {
       .interface = bus.interface, .fd = bus.format != CanFormat::kClassic, .filters = kAll});
 }
 
-void HeardBus::hear(const HardwareConfig& config, int bus, const CanFrame& frame) noexcept {
+void BusTraffic::add(const HardwareConfig& config, int bus, const CanFrame& frame) noexcept {
   if (frame.error) return;
   ++frames;
   for (int j = 0; j < kNumJoints; ++j) {
@@ -33,9 +33,9 @@ void HeardBus::hear(const HardwareConfig& config, int bus, const CanFrame& frame
   }
 }
 
-std::vector<HeardBus> listen(const HardwareConfig& config, const CanSockets& sockets) {
+std::vector<BusTraffic> listen(const HardwareConfig& config, const CanSockets& sockets) {
   std::this_thread::sleep_for(std::chrono::milliseconds(kListen_ms));
-  std::vector<HeardBus> heard(sockets.size());
+  std::vector<BusTraffic> traffic(sockets.size());
   for (std::size_t b = 0; b < sockets.size(); ++b) {
     if (!sockets[b]) continue;
     std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
@@ -44,19 +44,19 @@ std::vector<HeardBus> listen(const HardwareConfig& config, const CanSockets& soc
     for (int round = 0; frames == CanSocket::kMaxFrames && round < 100; ++round) {
       frames = sockets[b]->receive(received).frames;
       for (int i = 0; i < frames; ++i) {
-        heard[b].hear(config, static_cast<int>(b), received[i].frame);
+        traffic[b].add(config, static_cast<int>(b), received[i].frame);
       }
     }
   }
-  return heard;
+  return traffic;
 }
 
 std::vector<std::string> traffic_problems(const HardwareConfig& config,
                                           const RobotDescription& robot,
-                                          const std::vector<HeardBus>& heard) {
+                                          const std::vector<BusTraffic>& traffic) {
   std::vector<std::string> problems;
-  for (std::size_t b = 0; b < heard.size(); ++b) {
-    const HeardBus& bus = heard[b];
+  for (std::size_t b = 0; b < traffic.size(); ++b) {
+    const BusTraffic& bus = traffic[b];
     if (bus.frames == 0) continue;
     std::vector<std::string> joints;
     for (int j = 0; j < kNumJoints; ++j) {

@@ -140,7 +140,7 @@ void CanRobot::take(int bus, const ReceivedFrame& received, std::uint64_t tick, 
   for (int j = 0; j < kNumJoints; ++j) {
     if (config_.drives[j].bus != bus || !drives_[j].is_command(received.frame)) continue;
     is_command = true;
-    drives_[j].hear_command(when);
+    drives_[j].note_foreign_command(when);
   }
   if (!is_command) ++counters.foreign;
 }

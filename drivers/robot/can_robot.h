@@ -19,13 +19,13 @@
 
 namespace sandrunner {
 
-/// What became of a bus since it was opened.
+/// Counters of a bus since it was opened.
 struct BusCounters {
   std::uint64_t sent = 0, received = 0;
-  std::uint64_t not_sent = 0;          ///< frames that it did not take ...
-  CanStatus refusal = CanStatus::kOk;  ///< ... for this reason, the latest
-  std::uint64_t foreign = 0;           ///< frames that are no reply of a drive of ours
-  std::uint64_t overflowed = 0;        ///< frames that the kernel threw away
+  std::uint64_t not_sent = 0;          ///< frames that it rejected ...
+  CanStatus refusal = CanStatus::kOk;  ///< ... and the latest reason
+  std::uint64_t foreign = 0;           ///< frames that are no reply of this robot's drives
+  std::uint64_t overflowed = 0;        ///< frames that the kernel dropped
   std::uint64_t bus_off = 0;           ///< times
   std::uint64_t errors = 0;            ///< other error frames
 };
@@ -39,8 +39,8 @@ void send_unless_cut(const std::atomic<bool>& cut, std::span<const CanFrame> set
   if (cut.load()) send(off);
 }
 
-/// How long ago a frame came that the kernel stamped at `stamp_ns`, by a clock that may be stepped:
-/// at most `longest_ns`, the time since there was none.
+/// The age of a frame that the kernel stamped at `stamp_ns`, by a clock that may be stepped: at
+/// most `longest_ns`, the time since no frame was there.
 constexpr std::int64_t frame_age_ns(std::int64_t stamp_ns, std::int64_t now_ns,
                                     std::int64_t longest_ns) noexcept {
   return std::clamp<std::int64_t>(now_ns - stamp_ns, 0, longest_ns);
@@ -50,14 +50,15 @@ constexpr std::int64_t frame_age_ns(std::int64_t stamp_ns, std::int64_t now_ns,
 ///
 /// Every `ticks_per_exchange` ticks, write() sends each drive its command, and each answers with
 /// its state, which the next read() that finds it takes: an exchange costs the loop no waiting.
-/// Values have the tick in which the kernel received them. While the robot is off, each drive is
-/// told in every exchange to be off, and answers that. Real-time safe once constructed.
+/// Values have the tick in which the kernel received them. While the robot is off, each drive gets
+/// an off frame in every exchange and answers it. Real-time safe once constructed. Example:
+/// can_robot_test.cpp.
 class CanRobot final : public RobotIo {
  public:
-  /// Opens buses and IMU, listens whether another program speaks to the drives, finds every drive,
-  /// and compares what drives can tell of themselves with the configuration; nothing is enabled.
+  /// Opens buses and IMU, listens for other programs, finds every drive, and compares the settings
+  /// that drives can report with the configuration; nothing is enabled.
   /// Some seconds at most. Throws InputError, one line: a drive that does not answer, other limits
-  /// than configured, a time-out that is not there, a posture that cannot be, an overloaded bus.
+  /// than configured, a missing time-out, an impossible posture, an overloaded bus.
   CanRobot(const HardwareConfig& config, const RobotDescription& robot, const GateConfig& gate);
   ~CanRobot() override;
 
@@ -72,7 +73,7 @@ class CanRobot final : public RobotIo {
   const ImuThread& imu() const noexcept { return imu_; }
 
  private:
-  /// Tells all drives to be off until each has answered, for 0.1 s at most.
+  /// Sends off frames to all drives until each has answered, for 0.1 s at most.
   void switch_off() noexcept;
   void receive(std::uint64_t tick) noexcept;
   void take(int bus, const ReceivedFrame& received, std::uint64_t tick, std::int64_t now_ns,
@@ -94,13 +95,13 @@ class CanRobot final : public RobotIo {
   static_assert(std::atomic<bool>::is_always_lock_free);
 };
 
-/// What the drive of joint `j` is told: in kGains the joint's command as it is, in kTorque what
-/// that gives at the newest values of `drive`. No torque for a blind joint, but a drive in kGains
-/// that is silent (`answers` is false) goes on by its own encoder: it may still hear.
+/// The command to the drive of joint `j`: in kGains the joint's command as it is, in kTorque its
+/// torque at the newest values of `drive`. A blind joint gets no torque. A silent drive in kGains
+/// (`answers` is false) continues with its own encoder: it may still receive.
 JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
                         bool answers) noexcept;
 
-/// What the buses, drives and IMU counted, as lines for a person.
+/// The counters of buses, drives and IMU as text.
 std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
                             const RobotDescription& description);
 

@@ -85,7 +85,7 @@ bool Drive::is_command(const CanFrame& frame) const noexcept {
   return std::visit([&](const auto& drive) { return is_command_to(drive, frame); }, config_.drive);
 }
 
-void Drive::hear_command(std::uint64_t tick) noexcept {
+void Drive::note_foreign_command(std::uint64_t tick) noexcept {
   ++foreign_commands_;
   foreign_until_ = tick + kForeign_ticks;
 }
@@ -156,7 +156,7 @@ void Drive::judge_power(bool was_silent) noexcept {
 
 void Drive::judge_supply() noexcept {
   // What a drive does not say (NaN) is neither.
-  set(DriveTrouble::kHot, state_.temperature_degc > temperature_limit_degc_);
+  set(DriveTrouble::kOverTemperature, state_.temperature_degc > temperature_limit_degc_);
   set(DriveTrouble::kVoltage,
       state_.voltage_v < voltage_low_v_ || state_.voltage_v > voltage_high_v_);
 }
@@ -186,7 +186,7 @@ std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault) {
   };
   trouble(DriveTrouble::kNotEnabled, "does not let itself be enabled");
   trouble(DriveTrouble::kSwitchedOff, "switched off by itself");
-  trouble(DriveTrouble::kHot, "too hot");
+  trouble(DriveTrouble::kOverTemperature, "too hot");
   trouble(DriveTrouble::kVoltage, "supply voltage out of range");
   trouble(DriveTrouble::kBusOff, "its bus was off");
   trouble(DriveTrouble::kForgotTimeout,

@@ -8,23 +8,23 @@
 
 namespace sandrunner {
 
-/// What the driver itself finds wrong with a drive; in JointState::drive_fault above the maker's
-/// own code, which has the low 8 bits.
+/// Faults of a drive that the driver itself detects, as bits of JointState::drive_fault above the
+/// low 8 bits, which are the maker's own code.
 enum class DriveTrouble : std::uint64_t {
   kNone = 0,
-  kNotEnabled = 1u << 8,      ///< told to enable, it did not within kEnable_s
-  kSwitchedOff = 1u << 9,     ///< it is off though nobody told it to: reboot, its time-out, its
-                              ///< maker's tool
-  kHot = 1u << 10,            ///< above HardwareConfig::temperature_limit_degc
-  kVoltage = 1u << 11,        ///< its supply is outside the range
-  kBusOff = 1u << 12,         ///< its bus was off since the drives were enabled
+  kNotEnabled = 1u << 8,        ///< not enabled within kEnable_s of the command to enable
+  kSwitchedOff = 1u << 9,       ///< off without a command of this program: reboot, time-out,
+                                ///< or the maker's tool
+  kOverTemperature = 1u << 10,  ///< above HardwareConfig::temperature_limit_degc
+  kVoltage = 1u << 11,          ///< its supply is outside the range
+  kBusOff = 1u << 12,           ///< its bus was off since the drives were enabled
   kForgotTimeout = 1u << 13,  ///< a drive that forgets_timeout() and whose supply was off, or that
                               ///< was silent for so long that it may have been. Until the next
                               ///< start, which tells it one
 };
 inline constexpr double kEnable_s = 0.1;
 
-/// What a drive is told in one exchange, at the joint.
+/// The command of one exchange to a drive, at the joint.
 struct JointSetPoint {
   double position_rad = 0.0;
   double velocity_radps = 0.0;
@@ -33,9 +33,9 @@ struct JointSetPoint {
   double torque_nm = 0.0;
 };
 
-/// The drive of one joint: makes its frames and reads its replies. Never enabled but by a set-point
-/// that follows a time in which the robot was to be off: a drive that comes back by itself (reboot,
-/// bus off and on again) stays off until then. Real-time safe.
+/// The drive of one joint: makes its frames and reads its replies. Only a setpoint after a time in
+/// which the robot was commanded off enables the drive: a drive that comes back by itself (reboot,
+/// bus-off and restart) stays off until then. Real-time safe. Example: drive_test.cpp.
 class Drive {
  public:
   Drive() = default;
@@ -43,27 +43,27 @@ class Drive {
 
   /// The frame that keeps the drive off; it answers with its state.
   void off_frame(CanFrame& frame) noexcept;
-  /// The frame that a drive which is on is sent.
+  /// The frame for a drive that is on.
   void command_frame(const JointSetPoint& set_point, CanFrame& frame) const noexcept;
-  /// The frame of this exchange. `set_point` null: the drive is to be off. False: none may be sent,
-  /// as its bus was off.
+  /// The frame of this exchange. `set_point` null: switch the drive off. False: send nothing, as
+  /// its bus was off.
   bool next_frame(const JointSetPoint* set_point, std::uint64_t tick, CanFrame& frame) noexcept;
 
-  /// Reads `frame`, which came in control tick `tick`, if it is this drive's. False: it is not, or
-  /// is none that a drive could send (then it counts as bad()).
+  /// Reads `frame`, received in control tick `tick`, if it is a reply of this drive. False: it is
+  /// not, or it is invalid (then it counts as bad()).
   bool take(const CanFrame& frame, std::uint64_t tick) noexcept;
 
-  /// Whether some host sends `frame` to this drive. The sockets hear no frame of their own, so it
-  /// is another program's.
+  /// Whether `frame` is a command to this drive. The sockets do not receive their own frames, so it
+  /// comes from another program.
   bool is_command(const CanFrame& frame) const noexcept;
-  /// A frame came that is_command().
-  void hear_command(std::uint64_t tick) noexcept;
-  /// Whether another program spoke to this drive within kForeign_ticks: a command of it was heard,
-  /// or the drive answered twice within kSurplus_ticks what this program did not ask.
+  /// Notes a frame for which is_command() is true.
+  void note_foreign_command(std::uint64_t tick) noexcept;
+  /// Whether another program commanded this drive within kForeign_ticks: one of its commands was
+  /// received, or the drive sent two unrequested replies within kSurplus_ticks.
   bool has_foreign_traffic(std::uint64_t tick) const noexcept { return foreign_until_ > tick; }
   static constexpr std::uint64_t kForeign_ticks = kControlHz, kSurplus_ticks = kControlHz / 100;
 
-  /// Its bus went off: nothing is sent until the robot was told to be off.
+  /// Its bus went off: nothing is sent until the robot was commanded off.
   void lose_bus() noexcept;
 
   // The newest state, at the joint.
@@ -71,7 +71,7 @@ class Drive {
   double velocity_radps() const noexcept { return velocity_radps_; }
   double torque_nm() const noexcept { return torque_nm_; }
   std::uint64_t fault() const noexcept { return state_.fault | trouble_; }
-  /// The latest that was none of 0, which may be over.
+  /// The last non-zero fault; may have cleared.
   std::uint64_t last_fault() const noexcept { return last_fault_; }
   std::uint64_t tick() const noexcept { return tick_; }
   double temperature_degc() const noexcept { return state_.temperature_degc; }  ///< or NaN
@@ -79,7 +79,7 @@ class Drive {
 
   std::uint64_t sent() const noexcept { return sent_; }
   std::uint64_t replies() const noexcept { return replies_; }
-  /// Since it was first told to be off: those that do not say that it is on.
+  /// Replies since the first off frame that do not report it as on.
   std::uint64_t replies_off() const noexcept { return replies_off_; }
   std::uint64_t bad() const noexcept { return bad_; }
   std::uint64_t foreign_commands() const noexcept { return foreign_commands_; }
@@ -117,8 +117,7 @@ class Drive {
   std::uint64_t surplus_ = 0, surplus_tick_ = 0, foreign_commands_ = 0, foreign_until_ = 0;
 };
 
-/// What a joint's drive_fault means, for a person: "rotor over temperature", "switched off
-/// by itself".
+/// The text of a joint's drive_fault: "rotor over temperature", "switched off by itself".
 std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault);
 
 }  // namespace sandrunner

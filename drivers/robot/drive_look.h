@@ -15,7 +15,7 @@ namespace sandrunner {
 /// Of each bus of a configuration.
 using CanSockets = std::vector<std::unique_ptr<CanSocket>>;
 
-/// What a drive answered while it was looked for.
+/// The answers of a drive during the search.
 struct FoundDrive {
   int requests = 0, replies = 0;
   int commands = 0;           ///< of other programs, to this drive
@@ -23,18 +23,18 @@ struct FoundDrive {
   double round_trip_s = 0.0,
          longest_round_trip_s = 0.0;  /// from sending to the kernel's stamp; mean
   std::uint64_t fault = 0;
-  double temperature_degc = 0.0, voltage_v = 0.0;  ///< NaN: it does not say
+  double temperature_degc = 0.0, voltage_v = 0.0;  ///< NaN: not reported
 };
 
-/// What else a bus showed meanwhile.
+/// Other events on a bus meanwhile.
 struct FoundBus {
-  int not_sent = 0;        ///< requests that it did not take
+  int not_sent = 0;        ///< requests that it rejected
   int foreign = 0;         ///< frames that are no reply of a drive of the configuration
   int error_frames = 0;    ///< reports of its controller
-  std::string error = {};  ///< the gravest thing that the last of them said
+  std::string error = {};  ///< the gravest content of the last one
 };
 
-/// Tells every drive again and again to be off, which moves nothing, and takes what they answer.
+/// Sends off frames to every drive repeatedly, which moves nothing, and reads the answers.
 class DriveLook {
  public:
   static constexpr double kExchange_s = 0.005;

@@ -22,7 +22,8 @@ std::string dry_run(const HardwareConfig& config, const RobotDescription& robot,
                     const JointArray<JointSetPoint>& stand) {
   std::string text = plan_table(config, plan_buses(config));
   const bool gains = config.mode == DriveMode::kGains;
-  if (!gains) text += "a joint at its set-point is told no torque; it gets the host's law of it\n";
+  if (!gains)
+    text += "in torque mode the host computes the torque; a joint at its setpoint gets none\n";
   text += "each drive: off, enable, stand\n";
   for (int j = 0; j < kNumJoints; ++j) {
     const DriveConfig& drive = config.drives[j];

@@ -16,28 +16,28 @@
 namespace sandrunner {
 
 struct StopLineConfig {
-  std::string chip;  ///< such as /dev/gpiochip0; empty: there is no such switch
+  std::string chip;  ///< such as /dev/gpiochip0; empty: no switch
   int line = 0;      ///< offset on that chip
 };
 
 /// One line of a GPIO chip as an input.
 class StopLine {
  public:
-  /// Throws InputError: no such chip, no such line, one that another program has.
+  /// Throws InputError: no such chip, no such line, a line in use.
   explicit StopLine(const StopLineConfig& config);
   ~StopLine();
   StopLine(const StopLine&) = delete;
   StopLine& operator=(const StopLine&) = delete;
 
-  /// Whether the line is high; nothing where the chip does not say (it is gone). May wait as long
-  /// as the chip takes, which is more than a control tick behind I2C or USB.
+  /// Whether the line is high; nullopt if the chip does not answer (unplugged). May block as long
+  /// as the chip takes, behind I2C or USB more than a control tick.
   std::optional<bool> high() const noexcept;
 
  private:
   int descriptor_ = -1;
 };
 
-/// Reads such a line all the time, in a thread of its own.
+/// Reads such a line continuously, in its own thread.
 class EmergencyStop {
  public:
   using Read = std::function<std::optional<bool>()>;
@@ -62,7 +62,7 @@ class EmergencyStop {
 
   Read high_;
   std::atomic<std::int64_t>
-      closed_ns_;  ///< when the switch was last seen closed; lowest: it is not
+      closed_ns_;  ///< when the switch was last read as closed; lowest: it is open
   std::atomic<bool> end_{false};
   std::thread thread_;
 };

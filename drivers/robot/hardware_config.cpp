@@ -19,6 +19,111 @@ namespace {
 constexpr int kMostBuses = 12;
 constexpr int kLeastRate_hz = 400;  // three exchanges within the gate's ceiling of an age
 
+constexpr const char* kModes[] = {"gains", "torque"};      // in the order of DriveMode
+constexpr const char* kImuProtocols[] = {"mip", "xsens"};  // in the order of ImuProtocol
+
+using H = HardwareConfig;
+constexpr Setting<H> kExchange[] = {
+    {"mode", words<&H::mode>(kModes),
+     "gains: the drive closes the joint's loop; torque: this program does."},
+    {"rate_hz", &H::rate_hz, kLeastRate_hz, kControlHz,
+     "Exchanges with every drive; a whole part of 4000."},
+};
+// A drive that closes no loop holds its last torque until then.
+constexpr Setting<H> drive_timeout(DriveMode mode) {
+  return {"drive_timeout_s",
+          &H::drive_timeout_s,
+          0.005,
+          mode == DriveMode::kTorque ? 0.05 : 0.1,
+          "Without a command for this long a drive gives no torque.",
+          nullptr,
+          "0.005 to 0.1; torque: to 0.05"};
+}
+constexpr Setting<H> kGuards[] = {
+    {"timeout_unverified", &H::timeout_unverified,
+     "Trust that drives which cannot report their time-out have this one."},
+    {"temperature_limit_degc", &H::temperature_limit_degc, 0.0, 150.0,
+     "A hotter drive is a fault."},
+    {"voltage_low_v", &H::voltage_low_v, 0.0, 1e3, "A lower supply is a fault."},
+    {"voltage_high_v", &H::voltage_high_v, 0.0, 1e3, "A higher supply is a fault."},
+};
+constexpr Setting<H> kFirstWalks[] = {
+    {"torque_scale", &H::torque_scale, 0.0, 1.0, "Factor of every torque limit, for first walks."},
+    {"hanging", &H::hanging,
+     "The robot hangs in a frame: tilt and free fall are not judged, Walk is refused."},
+};
+
+// Keys of a bus and of a drive that are not members of BusConfig and DriveConfig as they stand.
+struct BusKeys {
+  std::string interface, protocol;
+  bool fd = false;
+};
+constexpr Setting<BusKeys> kInterface[] = {
+    {"interface", &BusKeys::interface, "Name of the CAN interface (can0).", kRequired},
+};
+constexpr Setting<BusKeys> kProtocol[] = {
+    {"protocol", &BusKeys::protocol, "Family of the drives on the bus.", kRequired},
+};
+constexpr Setting<BusKeys> kFd[] = {
+    {"fd", &BusKeys::fd, "CAN FD with bit rate switch.", "false; moteus: true"},
+};
+constexpr Setting<BusRates> kNominalRate[] = {
+    {"bitrate_bps", &BusRates::nominal_hz, 1e4, 1e6,
+     "Bit rate of the interface, for the bus load."},
+};
+constexpr Setting<BusRates> kDataRate[] = {
+    {"data_bitrate_bps", &BusRates::data_hz, 1e4, 8e6,
+     "Bit rate of CAN FD's data phase, for the bus load."},
+};
+
+struct DriveKeys {
+  std::string joint, bus;
+  int id = 0;
+};
+constexpr Setting<DriveKeys> kDrive[] = {
+    {"joint", &DriveKeys::joint, "Joint that the drive moves, as the URDF names it.", kRequired},
+    {"bus", &DriveKeys::bus, "Interface of one of hardware.bus.", kRequired},
+    {"id", &DriveKeys::id, 1, 126, "Identifier on the bus; Damiao: to 15.", kRequired},
+};
+constexpr Setting<DriveConfig> kJoint[] = {
+    {"sign", &DriveConfig::sign, -1, 1, "joint = sign x drive / gear + zero_rad.", nullptr,
+     "-1, 1"},
+    {"gear", &DriveConfig::gear, 0.01, 100.0, "Turns of the drive's output for one of the joint."},
+    {"zero_rad", &DriveConfig::zero_rad, -10.0, 10.0,
+     "The joint's position where the drive's is zero; check --zero writes it."},
+};
+
+using I = ImuConfig;
+constexpr Setting<I> kImu[] = {
+    {"protocol", words<&I::protocol>(kImuProtocols), "MicroStrain's MIP, or Xsens' MTData2."},
+    {"device", &I::device, "Serial line; better its name in /dev/serial/by-id.", kRequired},
+    {"baud", &I::baud, 9600, 4e6, "Speed of the serial line."},
+};
+constexpr Setting<I> kImuRate[] = {
+    {"rate_hz", &I::rate_hz, 100, 1000, "Samples of acceleration and angular rate.",
+     "500; xsens: 400"},
+};
+constexpr Setting<I> kQuaternionRate[] = {
+    {"quaternion_rate_hz", &I::quaternion_rate_hz, 100, 1000,
+     "Samples of attitude: rate_hz over a whole number.", "rate_hz, at most 500"},
+};
+struct Mounting {
+  Vector3 rpy_deg{};
+};
+constexpr Setting<Mounting> kMounting[] = {
+    {"mounting_rpy_deg", &Mounting::rpy_deg, -360.0, 360.0,
+     "Roll, pitch, yaw from a sensor that lies flat, x to the front, to how it sits."},
+};
+
+constexpr Setting<StopLineConfig> kStopChip[] = {
+    {"chip", &StopLineConfig::chip,
+     "GPIO chip of the emergency stop's switch (/dev/gpiochip0); empty: no such switch."},
+};
+constexpr Setting<StopLineConfig> kStopLine[] = {
+    {"line", &StopLineConfig::line, 0, 1023, "Line of that chip; high: not pressed.",
+     "required with a chip"},
+};
+
 /// The protocols of all families, with a drive of each.
 template <typename... Family>
 std::map<std::string, AnyDrive> families(const std::variant<Family...>&) {
@@ -39,7 +144,9 @@ AnyDrive read_protocol(ConfigTree& t, const std::string& where) {
 
 BusConfig read_bus(ConfigTree& t, const std::vector<BusConfig>& before) {
   BusConfig bus;
-  bus.interface = t.text("interface", "");
+  BusKeys keys;
+  read_settings(t, "", kInterface, keys);
+  bus.interface = keys.interface;
   if (bus.interface.empty()) {
     throw InputError(
         fmt::format("hardware.bus[{}]: found no interface, expected a name (can0)", before.size()));
@@ -54,16 +161,17 @@ BusConfig read_bus(ConfigTree& t, const std::vector<BusConfig>& before) {
       read_protocol(t, fmt::format("hardware.bus[{}] ({})", before.size(), bus.interface));
   const CanFormats formats =
       std::visit([](const auto& drive) { return can_formats(drive); }, bus.any_drive);
-  const bool fd = t.flag("fd", !formats.classic);
-  if (!(fd ? formats.fd : formats.classic)) {
+  keys.fd = !formats.classic;
+  read_settings(t, "", kFd, keys);
+  if (!(keys.fd ? formats.fd : formats.classic)) {
     throw InputError(fmt::format(
         "hardware.bus[{}] ({}): {} drives speak {} alone, found fd = {}", before.size(),
         bus.interface, std::visit([](const auto& drive) { return drive.kProtocol; }, bus.any_drive),
-        formats.fd ? "CAN FD" : "classic CAN", fd));
+        formats.fd ? "CAN FD" : "classic CAN", keys.fd));
   }
-  bus.format = fd ? CanFormat::kFdWithBitRateSwitch : CanFormat::kClassic;
-  bus.rates.nominal_hz = t.number("bitrate_bps", bus.rates.nominal_hz, 1e4, 1e6);
-  if (fd) bus.rates.data_hz = t.number("data_bitrate_bps", bus.rates.data_hz, 1e4, 8e6);
+  bus.format = keys.fd ? CanFormat::kFdWithBitRateSwitch : CanFormat::kClassic;
+  read_settings(t, "", kNominalRate, bus.rates);
+  if (keys.fd) read_settings(t, "", kDataRate, bus.rates);
   return bus;
 }
 
@@ -76,26 +184,22 @@ int bus_index(const std::vector<BusConfig>& buses, const std::string& name,
       fmt::format("hardware.drive of {}: bus '{}' is none of hardware.bus", joint, name));
 }
 
-DriveConfig read_joint_drive(ConfigTree& t, const std::string& joint,
-                             const HardwareConfig& hardware) {
-  const std::string where = fmt::format("hardware.drive of {}", joint);
+DriveConfig read_joint_drive(ConfigTree& t, const DriveKeys& keys, const HardwareConfig& hardware) {
+  const std::string where = fmt::format("hardware.drive of {}", keys.joint);
   DriveConfig drive;
-  drive.bus = bus_index(hardware.buses, t.text("bus", ""), joint);
+  drive.bus = bus_index(hardware.buses, keys.bus, keys.joint);
   const BusConfig& bus = hardware.buses[drive.bus];
-  const auto id = static_cast<int>(t.integer("id", 0, 1, 126));
-  if (id == 0) throw InputError(where + ": found no id, expected 1 to 126");
+  if (keys.id == 0) throw InputError(where + ": found no id, expected 1 to 126");
   drive.drive = bus.any_drive;
   std::visit(
       [&](auto& d) {
-        set_address(d, id, bus.format);
+        set_address(d, keys.id, bus.format);
         read_drive(d, t, where);
       },
       drive.drive);
   drive.max_torque_nm = drive.ranges().torque_nm;
-  drive.sign = static_cast<int>(t.integer("sign", 1, -1, 1));
+  read_settings(t, "", kJoint, drive);
   if (drive.sign == 0) throw InputError(where + ": sign 0, expected 1 or -1");
-  drive.gear = t.number("gear", 1.0, 0.01, 100.0);
-  drive.zero_rad = t.number("zero_rad", 0.0, -10.0, 10.0);
   return drive;
 }
 
@@ -111,7 +215,7 @@ void require_range(const DriveConfig& d, int j, const std::string& joint, double
     if (needed <= range) return;
     throw InputError(
         fmt::format("hardware.drive of {}: {} up to {:.4g} {} needed, {:.4g} is what "
-                    "the drive can be told",
+                    "a command to the drive can express",
                     joint, what, needed, unit, range));
   };
   const DriveRanges ranges = d.ranges();
@@ -149,7 +253,9 @@ void read_drives(ConfigTree& config, const RobotDescription& robot, const GateCo
                  HardwareConfig& h) {
   std::array<bool, kNumJoints> seen{};
   for (ConfigTree& t : config.tables("hardware.drive")) {
-    const std::string joint = t.text("joint", "");
+    DriveKeys keys;
+    read_settings(t, "", kDrive, keys);
+    const std::string& joint = keys.joint;
     const auto found = std::find(robot.joint_names.begin(), robot.joint_names.end(), joint);
     if (found == robot.joint_names.end()) {
       throw InputError(fmt::format("hardware.drive: joint '{}', expected one of {}", joint,
@@ -158,7 +264,7 @@ void read_drives(ConfigTree& config, const RobotDescription& robot, const GateCo
     const auto j = static_cast<int>(found - robot.joint_names.begin());
     if (seen[j]) throw InputError(fmt::format("hardware.drive: joint {} stands twice", joint));
     seen[j] = true;
-    h.drives[j] = read_joint_drive(t, joint, h);
+    h.drives[j] = read_joint_drive(t, keys, h);
     require_range(h.drives[j], j, joint, h.torque_scale, gate);
   }
   for (int j = 0; j < kNumJoints; ++j) {
@@ -169,38 +275,45 @@ void read_drives(ConfigTree& config, const RobotDescription& robot, const GateCo
 }
 
 ImuConfig read_imu(ConfigTree& config) {
+  const char* const table = "hardware.imu";
   ImuConfig imu;
-  const bool mip = config.choice("hardware.imu.protocol", "mip", {"mip", "xsens"}) == "mip";
-  imu.protocol = mip ? ImuProtocol::kMip : ImuProtocol::kXsens;
-  imu.device = config.text("hardware.imu.device", "");
+  read_settings(config, table, kImu, imu);
   if (imu.device.empty()) {
     throw InputError("hardware.imu.device: found none, expected a serial line (/dev/ttyS0)");
   }
-  imu.baud = static_cast<unsigned>(config.integer("hardware.imu.baud", imu.baud, 9600, 4'000'000));
-  imu.rate_hz =
-      static_cast<int>(config.integer("hardware.imu.rate_hz", mip ? 500 : 400, 100, 1000));
-  imu.quaternion_rate_hz = static_cast<int>(
-      config.integer("hardware.imu.quaternion_rate_hz", std::min(imu.rate_hz, 500), 100, 1000));
-  const std::vector<double> rpy_deg =
-      config.numbers("hardware.imu.mounting_rpy_deg", {0.0, 0.0, 0.0}, 3, -360.0, 360.0);
+  imu.rate_hz = imu.protocol == ImuProtocol::kMip ? 500 : 400;
+  read_settings(config, table, kImuRate, imu);
+  imu.quaternion_rate_hz = std::min(imu.rate_hz, 500);
+  read_settings(config, table, kQuaternionRate, imu);
+  Mounting mounting;
+  read_settings(config, table, kMounting, mounting);
   Vector3 rpy_rad;
-  for (int i = 0; i < 3; ++i) rpy_rad[i] = rpy_deg[i] * std::numbers::pi / 180.0;
+  for (int i = 0; i < 3; ++i) rpy_rad[i] = mounting.rpy_deg[i] * std::numbers::pi / 180.0;
   imu.mounting = ImuMounting::from_rpy(rpy_rad);
   check(imu);
   return imu;
 }
 
 StopLineConfig read_emergency_stop(ConfigTree& config) {
+  const char* const table = "hardware.emergency_stop";
   StopLineConfig stop;
-  stop.chip = config.text("hardware.emergency_stop.chip", "");
+  read_settings(config, table, kStopChip, stop);
   if (stop.chip.empty()) return stop;
   if (!config.has("hardware.emergency_stop.line")) {
     throw InputError(
         fmt::format("hardware.emergency_stop.line: found none, expected the number of a line of {}",
                     stop.chip));
   }
-  stop.line = static_cast<int>(config.integer("hardware.emergency_stop.line", 0, 0, 1023));
+  read_settings(config, table, kStopLine, stop);
   return stop;
+}
+
+/// Joint speed that the replies of every drive can report, with a margin: a threshold above it
+/// would never be passed.
+double reportable_speed_radps(const HardwareConfig& h) noexcept {
+  double most = std::numeric_limits<double>::infinity();
+  for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
+  return most;
 }
 
 }  // namespace
@@ -208,32 +321,20 @@ StopLineConfig read_emergency_stop(ConfigTree& config) {
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate) {
   HardwareConfig h;
-  h.mode = config.choice("hardware.mode", "gains", {"gains", "torque"}) == "gains"
-               ? DriveMode::kGains
-               : DriveMode::kTorque;
-  h.rate_hz =
-      static_cast<int>(config.integer("hardware.rate_hz", h.rate_hz, kLeastRate_hz, kControlHz));
+  read_settings(config, "hardware", kExchange, h);
   if (kControlHz % h.rate_hz != 0) {
     throw InputError(
         fmt::format("hardware.rate_hz: {}, expected a whole part of {} (4000, 2000, "
                     "1000, 800, 500, ...)",
                     h.rate_hz, kControlHz));
   }
-  // A drive that closes no loop holds its last torque until then.
-  const double longest_s = h.mode == DriveMode::kTorque ? 0.05 : 0.1;
-  h.drive_timeout_s =
-      config.number("hardware.drive_timeout_s", h.drive_timeout_s, 0.005, longest_s);
-  h.timeout_unverified = config.flag("hardware.timeout_unverified", false);
-  h.temperature_limit_degc =
-      config.number("hardware.temperature_limit_degc", h.temperature_limit_degc, 0.0, 150.0);
-  h.voltage_low_v = config.number("hardware.voltage_low_v", h.voltage_low_v, 0.0, 1e3);
-  h.voltage_high_v = config.number("hardware.voltage_high_v", h.voltage_high_v, 0.0, 1e3);
+  read_settings(config, "hardware", std::array{drive_timeout(h.mode)}, h);
+  read_settings(config, "hardware", kGuards, h);
   if (h.voltage_low_v > h.voltage_high_v) {
     throw InputError(fmt::format("hardware.voltage_low_v: {} is above hardware.voltage_high_v, {}",
                                  h.voltage_low_v, h.voltage_high_v));
   }
-  h.torque_scale = config.number("hardware.torque_scale", h.torque_scale, 0.0, 1.0);
-  h.hanging = config.flag("hardware.hanging", false);
+  read_settings(config, "hardware", kFirstWalks, h);
   for (ConfigTree& bus : config.tables("hardware.bus")) {
     h.buses.push_back(read_bus(bus, h.buses));
   }
@@ -247,17 +348,35 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
   return h;
 }
 
-namespace {
-
-/// Joint speed that every drive's replies can tell, with some to spare: a threshold above it would
-/// never be passed.
-double told_speed_radps(const HardwareConfig& h) noexcept {
-  double most = std::numeric_limits<double>::infinity();
-  for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
-  return most;
+std::vector<SettingLine> hardware_settings() {
+  std::vector<SettingLine> lines;
+  const std::string hardware = "hardware", bus = "hardware.bus[]", drive = "hardware.drive[]";
+  list_settings(lines, hardware, kExchange);
+  list_settings(lines, hardware, std::array{drive_timeout(DriveMode::kGains)});
+  list_settings(lines, hardware, kGuards);
+  list_settings(lines, hardware, kFirstWalks);
+  list_settings(lines, bus, kInterface);
+  list_settings(lines, bus, kProtocol);
+  const std::map<std::string, AnyDrive> known = families(AnyDrive{});
+  for (const auto& [name, family] : known) {
+    lines.back().range += (lines.back().range.empty() ? "" : ", ") + name;
+  }
+  list_settings(lines, bus, kFd);
+  list_settings(lines, bus, kNominalRate);
+  list_settings(lines, bus, kDataRate);
+  list_settings(lines, drive, kDrive);
+  list_settings(lines, drive, kJoint);
+  for (const auto& [name, family] : known) {
+    std::visit([&](const auto& d) { list_drive_settings(d, lines, drive); }, family);
+  }
+  list_settings(lines, hardware + ".imu", kImu);
+  list_settings(lines, hardware + ".imu", kImuRate);
+  list_settings(lines, hardware + ".imu", kQuaternionRate);
+  list_settings(lines, hardware + ".imu", kMounting);
+  list_settings(lines, hardware + ".emergency_stop", kStopChip);
+  list_settings(lines, hardware + ".emergency_stop", kStopLine);
+  return lines;
 }
-
-}  // namespace
 
 void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
   const auto ticks = static_cast<std::uint64_t>(h.ticks_per_exchange());
@@ -269,7 +388,7 @@ void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
   gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
-  gate.speed_fault_radps = std::min(gate.speed_fault_radps, told_speed_radps(h));
+  gate.speed_fault_radps = std::min(gate.speed_fault_radps, reportable_speed_radps(h));
   gate.hanging = h.hanging;
 }
 
@@ -283,12 +402,12 @@ void fit_drives_to(const GateConfig& gate, HardwareConfig& h) {
                     "miss and an exchange takes (controller.gate.stall_fault_ticks)",
                     h.drive_timeout_s, stall_s));
   }
-  const double told_radps = told_speed_radps(h);
-  if (gate.speed_fault_radps > told_radps) {
+  const double reportable_radps = reportable_speed_radps(h);
+  if (gate.speed_fault_radps > reportable_radps) {
     throw InputError(
         fmt::format("controller.gate.speed_fault_radps: {} rad/s is more than the drives' replies "
-                    "can tell, {:.1f}; it would never be a fault",
-                    gate.speed_fault_radps, told_radps));
+                    "can report, {:.1f}; it would never be a fault",
+                    gate.speed_fault_radps, reportable_radps));
   }
   for (int j = 0; j < kNumJoints; ++j) {
     DriveConfig& drive = h.drives[j];

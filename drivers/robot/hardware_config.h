@@ -11,13 +11,14 @@
 #include "drivers/robot/drive_families.h"
 #include "drivers/robot/emergency_stop.h"
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 #include "rt/core/gate_config.h"
 #include "rt/core/messages.h"
 #include "rt/core/robot_description.h"
 
 namespace sandrunner {
 
-/// Who closes the joint's loop.
+/// Where the joint's loop is closed.
 enum class DriveMode : std::uint8_t {
   kGains,  ///< the drive, by the whole JointCommand
   kTorque  ///< the host: drives get a torque
@@ -37,7 +38,7 @@ struct BusConfig {
 struct DriveConfig {
   int bus = 0;  ///< index into HardwareConfig::buses
   AnyDrive drive;
-  double max_torque_nm = 0.0;  ///< that it can be told, at its output
+  double max_torque_nm = 0.0;  ///< largest torque of a command, at its output
   int sign = 1;
   double gear = 1.0;      ///< turns of the drive's output for one of the joint
   double zero_rad = 0.0;  ///< joint's position where the drive's is zero
@@ -54,8 +55,8 @@ struct DriveConfig {
 struct HardwareConfig {
   DriveMode mode = DriveMode::kGains;
   int rate_hz = 1000;               ///< of the exchange with every drive; divides the control rate
-  double drive_timeout_s = 0.05;    ///< after which a drive without commands lets go
-  bool timeout_unverified = false;  ///< drives that cannot tell theirs are taken at the user's word
+  double drive_timeout_s = 0.05;    ///< a drive without commands for this long gives no torque
+  bool timeout_unverified = false;  ///< the user set it in drives that cannot report it
   double temperature_limit_degc = 80.0;              ///< a hotter drive is a fault
   double voltage_low_v = 0.0, voltage_high_v = 1e3;  ///< a supply outside is a fault
   double torque_scale = 1.0;                         ///< of every torque limit, for first walks
@@ -69,30 +70,32 @@ struct HardwareConfig {
 };
 
 /// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu],
-/// [hardware.emergency_stop]. Drives are
-/// named by the joints of `robot`, each exactly once. Throws InputError: a joint without a drive or
-/// with two, two drives of one identifier, an unknown protocol or model, a rate that does not
-/// divide the control rate, a drive whose range is below what `gate` lets through (torque, speed,
-/// positions, gains).
+/// [hardware.emergency_stop]. Drives are named by the joints of `robot`, each exactly once. Throws
+/// InputError: a joint without a drive or with two, two drives with one identifier, an unknown
+/// protocol or model, a rate that does not divide the control rate, a drive whose range is below
+/// the limits of `gate` (torque, speed, positions, gains).
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
+/// The keys of these tables, for the reference.
+std::vector<SettingLine> hardware_settings();
 
-/// What hardware changes of the gate's thresholds: ages follow the rate of the exchange, the speed
-/// fault is one that can be told, torque limits are scaled by `torque_scale`, and whether the robot
-/// hangs.
+/// Adapts the gate's thresholds to the hardware: ages follow the rate of the exchange, the speed
+/// fault stays below the speed that replies can report, torque limits are scaled by `torque_scale`,
+/// and `hanging` is copied.
 void fit_gate_to(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 
-/// What the gate's own settings, which come after that, ask of the drives. A drive whose commands
-/// have a torque limit is told the joint's and holds it itself, whatever becomes of this computer.
-/// Throws InputError for a time-out that is no longer than the stall that the gate lets pass
-/// (drives would let go without a fault), and for a speed fault above what replies can tell.
+/// Adapts the drives to the gate's own settings, which are read after that. A drive whose commands
+/// have a torque limit gets the joint's and enforces it itself, even if this computer fails. Throws
+/// InputError for a time-out that is not longer than the stall that the gate tolerates (drives
+/// would switch off without a fault), and for a speed fault above the speed that replies can
+/// report.
 void fit_drives_to(const GateConfig& gate, HardwareConfig& hardware);
 
 /// One line for each guard of the robot that the file leaves off: the emergency stop, the range of
 /// the supply.
 std::vector<std::string> unguarded(const HardwareConfig& config);
 
-/// "LF_HAA (can0 id 1)": the drive of a joint, as messages call it.
+/// "LF_HAA (can0 id 1)": the name of a joint's drive in messages.
 std::string drive_name(const HardwareConfig& hardware, const RobotDescription& robot, int joint);
 
 }  // namespace sandrunner

@@ -76,6 +76,13 @@ void collect_names(CLI::App& app, std::vector<std::string>& names) {
   const auto option = std::find_if(unexpected.begin(), unexpected.end(),
                                    [](const std::string& word) { return word.starts_with("-"); });
   const std::string word = option == unexpected.end() ? unexpected.front() : *option;
+  // "--command 1 0 0": the first number is the option's value, the others are left over.
+  double number = 0.0;
+  if (CLI::detail::lexical_cast(word, number)) {
+    throw InputError(fmt::format(
+        "command line: unexpected '{}': several numbers of one option need commas, as in 1,0,0",
+        word));
+  }
   std::vector<std::string> names;
   collect_names(app, names);
   throw InputError(fmt::format("command line: unexpected '{}'{}", word,

@@ -42,8 +42,11 @@ std::string likely_meant(const std::string& unknown, const std::vector<std::stri
   std::size_t best_distance = 3 + unknown.size() / 8;
   for (const std::string& candidate : known) {
     const std::size_t d = distance(unknown, candidate);
-    // A distance as long as the name says nothing: all short names are near each other.
-    if (d < std::min(best_distance, last_part(candidate).size())) {
+    // A change of more than half of a name says nothing: all short names are near each other.
+    const std::size_t letters =
+        candidate.size() - std::min(candidate.find_first_not_of('-'), candidate.size());
+    const std::size_t most = std::min(letters, last_part(candidate).size()) / 2;
+    if (d < best_distance && d <= most) {
       best = candidate;
       best_distance = d;
     }

@@ -82,10 +82,10 @@ struct GateConfig {
   /// tolerated.
   std::uint64_t stall_fault_ticks = 120;
   // Fault: new samples of a joint are the same to the bit ...
-  double frozen_moved_rad = 0.005;   ///< ... while by its own speed it has moved by this: some ten
-                                     ///< counts of an encoder; or ...
-  double frozen_told_rad = 0.2;      ///< ... while its target has moved by this ...
-  std::uint64_t frozen_ticks = 200;  ///< ... for this long
+  double frozen_moved_rad = 0.005;    ///< ... while by its own speed it has moved by this: some ten
+                                      ///< counts of an encoder; or ...
+  double frozen_commanded_rad = 0.2;  ///< ... while its target has moved by this ...
+  std::uint64_t frozen_ticks = 200;   ///< ... for this long
   std::uint64_t policy_frozen_steps = 20;  ///< fault: steps of the policy with the same targets
 };
 
@@ -95,38 +95,56 @@ struct GateThreshold {
   const char* key;  ///< setting controller.gate.<key>; null: no setting has it
   T GateConfig::*value;
   T least, ceiling;
+  const char* meaning;  ///< of that setting, in a sentence
 };
 
 inline constexpr GateThreshold<double> kGateThresholds[] = {
-    {"joint_fault_rad", &GateConfig::joint_fault_rad, 0.0, 0.5},
-    {"target_margin_rad", &GateConfig::target_margin_rad, 0.0, 2.0},
-    {"target_step_rad", &GateConfig::target_step_rad, 0.0, 4.0},
-    {"speed_fault_radps", &GateConfig::speed_fault_radps, 0.0, 100.0},
-    {"encoder_jump_rad", &GateConfig::encoder_jump_rad, 0.0, 0.5},
-    {"torque_fault_ratio", &GateConfig::torque_fault_ratio, 0.0, 2.0},
-    {"torque_fault_s", &GateConfig::torque_fault_s, 0.0, 0.1},
-    {nullptr, &GateConfig::kp_limit_nmprad, 0.0, 1000.0},
-    {nullptr, &GateConfig::kd_limit_nmsprad, 0.0, 50.0},
-    {"power_limit_w", &GateConfig::power_limit_w, 0.0, 1e5},
-    {nullptr, &GateConfig::continuous_torque_nm, 0.0, 1e3},
-    {nullptr, &GateConfig::thermal_time_s, 1e-3, 600.0},
-    {"tilt_limit_deg", &GateConfig::tilt_limit_deg, 0.0, 60.0},
-    {"tilt_fault_s", &GateConfig::tilt_fault_s, 0.0, 2.0},
-    {"tilt_fault_deg", &GateConfig::tilt_fault_deg, 0.0, 80.0},
-    {"free_fall_s", &GateConfig::free_fall_s, 0.0, 1.0},
-    {nullptr, &GateConfig::frozen_moved_rad, 0.0, 0.1},
-    {nullptr, &GateConfig::frozen_told_rad, 0.0, 1.0},
+    {"joint_fault_rad", &GateConfig::joint_fault_rad, 0.0, 0.5,
+     "Fault: a joint is this far past a stop."},
+    {"target_margin_rad", &GateConfig::target_margin_rad, 0.0, 2.0,
+     "Commanded positions are clamped to the stops plus this."},
+    {"target_step_rad", &GateConfig::target_step_rad, 0.0, 4.0,
+     "Commanded positions move by at most this in a tick."},
+    {"speed_fault_radps", &GateConfig::speed_fault_radps, 0.0, 100.0, "Fault: a joint is faster."},
+    {"encoder_jump_rad", &GateConfig::encoder_jump_rad, 0.0, 0.5,
+     "Fault: a position changes in a tick by this more than the speed fault explains."},
+    {"torque_fault_ratio", &GateConfig::torque_fault_ratio, 0.0, 2.0,
+     "Fault: measured torque over this times its limit, for torque_fault_s."},
+    {"torque_fault_s", &GateConfig::torque_fault_s, 0.0, 0.1,
+     "Time of too much torque that is a fault."},
+    {nullptr, &GateConfig::kp_limit_nmprad, 0.0, 1000.0, ""},
+    {nullptr, &GateConfig::kd_limit_nmsprad, 0.0, 50.0, ""},
+    {"power_limit_w", &GateConfig::power_limit_w, 0.0, 1e5,
+     "Torques are lowered until the joints give no more mechanical power together."},
+    {nullptr, &GateConfig::continuous_torque_nm, 0.0, 1e3, ""},
+    {nullptr, &GateConfig::thermal_time_s, 1e-3, 600.0, ""},
+    {"tilt_limit_deg", &GateConfig::tilt_limit_deg, 0.0, 60.0,
+     "Limit: the body's tilt is counted; a fault after tilt_fault_s."},
+    {"tilt_fault_s", &GateConfig::tilt_fault_s, 0.0, 2.0,
+     "Time beyond tilt_limit_deg that is a fault."},
+    {"tilt_fault_deg", &GateConfig::tilt_fault_deg, 0.0, 80.0, "Fault: the body is tilted more."},
+    {"free_fall_s", &GateConfig::free_fall_s, 0.0, 1.0,
+     "Fault: the accelerometer reports a free fall for this long."},
+    {nullptr, &GateConfig::frozen_moved_rad, 0.0, 0.1, ""},
+    {nullptr, &GateConfig::frozen_commanded_rad, 0.0, 1.0, ""},
 };
 
 inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
-    {"joints_limit_ticks", &GateConfig::joints_limit_ticks, 0, 40},
-    {"joints_fault_ticks", &GateConfig::joints_fault_ticks, 0, 40},
-    {"imu_limit_ticks", &GateConfig::imu_limit_ticks, 0, 200},
-    {"imu_fault_ticks", &GateConfig::imu_fault_ticks, 0, 200},
-    {"policy_fault_ticks", &GateConfig::policy_fault_ticks, kTicksPerPolicyStep, 400},
-    {"stall_fault_ticks", &GateConfig::stall_fault_ticks, 0, 400},
-    {"frozen_ticks", &GateConfig::frozen_ticks, 2, 4000},
-    {"policy_frozen_steps", &GateConfig::policy_frozen_steps, 2, 100},
+    {"joints_limit_ticks", &GateConfig::joints_limit_ticks, 0, 40,
+     "Limit: older joint values are counted."},
+    {"joints_fault_ticks", &GateConfig::joints_fault_ticks, 0, 40,
+     "Fault: joint values are older."},
+    {"imu_limit_ticks", &GateConfig::imu_limit_ticks, 0, 200,
+     "Limit: an older IMU sample is counted."},
+    {"imu_fault_ticks", &GateConfig::imu_fault_ticks, 0, 200, "Fault: the IMU's sample is older."},
+    {"policy_fault_ticks", &GateConfig::policy_fault_ticks, kTicksPerPolicyStep, 400,
+     "Fault: the policy output in use was computed from an older input."},
+    {"stall_fault_ticks", &GateConfig::stall_fault_ticks, 0, 400,
+     "Fault: the control loop missed more ticks while the robot carries itself."},
+    {"frozen_ticks", &GateConfig::frozen_ticks, 2, 4000,
+     "Fault: encoder values are the same to the bit for this long while the joint moves."},
+    {"policy_frozen_steps", &GateConfig::policy_frozen_steps, 2, 100,
+     "Fault: this many policy steps with the same targets."},
 };
 
 /// The row of a threshold. Does not compile for one that has none.

@@ -64,14 +64,14 @@ bool frozen_in_motion(const GateConfig& config, const JointState& joints, int j,
 
 /// Whether joint j has stayed where it is for long since its target moved away: to the bit, or to a
 /// count of an encoder that is stuck.
-bool deaf_to_target(const GateConfig& config, const JointState& joints, int j,
+bool ignores_target(const GateConfig& config, const JointState& joints, int j,
                     const JointContext& context, JointMemory& m) noexcept {
   const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
   const double target_rad = context.sent_rad[j];
   if (!context.stiff || m.changed_tick[j] == joints.tick[j]) {
     m.frozen_target_rad[j] = target_rad;
     m.frozen_ticks[j] = 0;
-  } else if (std::fabs(target_rad - m.frozen_target_rad[j]) > config.frozen_told_rad) {
+  } else if (std::fabs(target_rad - m.frozen_target_rad[j]) > config.frozen_commanded_rad) {
     m.frozen_ticks[j] += ticks;
   }
   if (!context.stiff || std::fabs(joints.position_rad[j] - m.still_rad[j]) > kStill_rad) {
@@ -165,8 +165,8 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
           config.speed_fault_radps * seconds(joints.tick[j] - m.sample_tick[j]);
       find(way_rad > reach_rad, Fault::kEncoderJump);
       const bool frozen = all_frozen || frozen_in_motion(config, joints, j, context, m);
-      const bool deaf = deaf_to_target(config, joints, j, context, m);
-      find(frozen || deaf, Fault::kEncoderFrozen);
+      const bool ignores = ignores_target(config, joints, j, context, m);
+      find(frozen || ignores, Fault::kEncoderFrozen);
       if (!driven && mode != Mode::kFault) m.drift_rad[j] = 0.0;
       const bool disagrees = find(speed_disagrees(joints, j, m), Fault::kSpeedMismatch);
       if (mode == Mode::kFault && (frozen || disagrees)) verdict.blind |= joint;

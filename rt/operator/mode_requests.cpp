@@ -41,6 +41,9 @@ RequestDecision decide(std::string_view name, Mode mode, const char* no_walk) no
                                              : "the robot carries itself, lie comes first");
     case ModeRequest::kWalk:
       if (no_walk) return unless(no_walk);
+      if (mode == Mode::kStandUp) {
+        return unless("the robot is still standing up, try again when it stands");
+      }
       return unless(mode == Mode::kStand || mode == Mode::kWalk
                         ? nullptr
                         : "the robot does not stand, stand comes first");

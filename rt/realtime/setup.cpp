@@ -24,34 +24,52 @@ namespace sandrunner {
 namespace {
 
 constexpr std::size_t kStack_bytes = 256 * 1024;  // far more than a tick uses
+constexpr int kHighestPriority = 99;
+
+constexpr const char* kNeeds[] = {"require", "warn", "off"};  // in the order of Need
+
+using C = RealtimeConfig;
+constexpr Setting<C> kRealtime[] = {
+    {"lock_memory", words<&C::lock_memory>(kNeeds), "Keep all pages of the process in memory."},
+    {"priority", words<&C::priority>(kNeeds), "Run the real-time threads under SCHED_FIFO."},
+    {"affinity", words<&C::affinity>(kNeeds),
+     "Give each real-time thread a processor; no other thread of the process uses the control "
+     "thread's."},
+    {"dma_latency", words<&C::dma_latency>(kNeeds), "Keep the processors out of deep idle states."},
+    {"control_priority", &C::control_priority, 2, 98, "SCHED_FIFO priority of the control thread."},
+    {"policy_priority", &C::policy_priority, 1, 97,
+     "SCHED_FIFO priority of the policy thread; below the control thread's."},
+    {"control_cpu", &C::control_cpu, -1, CPU_SETSIZE - 1,
+     "Processor of the control thread; -1: the last one that is free."},
+    {"policy_cpu", &C::policy_cpu, -1, CPU_SETSIZE - 1,
+     "Processor of the policy thread; -1: the last one that is free."},
+};
+
+/// The command that lets this very program lock memory and set priorities.
+std::string grant_capabilities() {
+  std::error_code unknown;
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe", unknown).string();
+  return fmt::format("sudo setcap cap_sys_nice,cap_ipc_lock=ep {}",
+                     unknown ? "sandrunner" : program);
+}
 
 }  // namespace
 
 RealtimeConfig read_realtime_config(ConfigTree& config) {
   RealtimeConfig c;
-  const auto need = [&](const char* key, Need fallback) {
-    static const std::vector<std::string> kNames = {"require", "warn", "off"};
-    const std::string name = config.choice(std::string("realtime.") + key,
-                                           kNames[static_cast<std::size_t>(fallback)], kNames);
-    return name == "require" ? Need::kRequire : name == "warn" ? Need::kWarn : Need::kOff;
-  };
-  const auto integer = [&](const char* key, int fallback, int min, int max) {
-    return static_cast<int>(config.integer(std::string("realtime.") + key, fallback, min, max));
-  };
-  c.lock_memory = need("lock_memory", c.lock_memory);
-  c.priority = need("priority", c.priority);
-  c.affinity = need("affinity", c.affinity);
-  c.dma_latency = need("dma_latency", c.dma_latency);
-  c.control_priority = integer("control_priority", c.control_priority, 2, 98);
-  c.policy_priority = integer("policy_priority", c.policy_priority, 1, 97);
-  c.control_cpu = integer("control_cpu", c.control_cpu, -1, CPU_SETSIZE - 1);
-  c.policy_cpu = integer("policy_cpu", c.policy_cpu, -1, CPU_SETSIZE - 1);
+  read_settings(config, "realtime", kRealtime, c);
   if (c.policy_priority >= c.control_priority) {
     throw InputError(
         fmt::format("realtime.policy_priority: {}, expected below realtime.control_priority ({})",
                     c.policy_priority, c.control_priority));
   }
   return c;
+}
+
+std::vector<SettingLine> realtime_settings() {
+  std::vector<SettingLine> lines;
+  list_settings(lines, "realtime", kRealtime);
+  return lines;
 }
 
 std::vector<int> allowed_cpus() {
@@ -64,20 +82,6 @@ std::vector<int> allowed_cpus() {
   }
   return cpus;
 }
-
-namespace {
-
-constexpr int kHighestPriority = 99;
-
-/// The command that lets this very program lock memory and set priorities.
-std::string grant_capabilities() {
-  std::error_code unknown;
-  const std::string program = std::filesystem::read_symlink("/proc/self/exe", unknown).string();
-  return fmt::format("sudo setcap cap_sys_nice,cap_ipc_lock=ep {}",
-                     unknown ? "sandrunner" : program);
-}
-
-}  // namespace
 
 RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
   // The last processor that the other thread does not have; with one only, that one.

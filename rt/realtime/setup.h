@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 
 namespace sandrunner {
 
@@ -32,6 +33,8 @@ struct RealtimeConfig {
 
 /// Reads the table [realtime]. Throws InputError.
 RealtimeConfig read_realtime_config(ConfigTree& config);
+/// The keys of the table [realtime], for the reference.
+std::vector<SettingLine> realtime_settings();
 
 /// One line of the report.
 struct SetupItem {

@@ -112,12 +112,18 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
         joints_in(r.end.gate.fault_joints, r.record.scene.robot);
     if (!joints.empty()) end += fmt::format(" ({})", fmt::join(joints, ", "));
     if (r.fall_mode) end += fmt::format(" in {},", mode_name(*r.fall_mode));
-    if (r.fall_time_s) end += fmt::format(" after {:.2f} s of Walk", *r.fall_time_s);
+    if (r.fall_time_s) {
+      end += *r.fall_time_s > 0.0 ? fmt::format(" after {:.2f} s of Walk", *r.fall_time_s)
+                                  : " before it walked";
+    }
   }
   t += end + "\n";
   if (r.walked_s > 0.0) {
     t += fmt::format("over the second half of {:.1f} s in Walk, command {}:\n", r.walked_s,
                      info.command);
+    if (r.end.gate.counters.command_clamped > 0) {
+      t += "  the command left the policy's envelope and was clamped to it\n";
+    }
     if (f.motion) {
       const MotionFigures& m = *f.motion;
       row("velocity x, commanded", of("m/s  ", m.mean_velocity_mps[0], f.mean_command_mps[0]));
@@ -144,7 +150,7 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
     row("a joint past its stop", fmt::format("{:6} control steps", f.joint_limit_steps));
     row("a joint too fast", fmt::format("{:6} control steps", f.speed_limit_steps));
   }
-  if (r.walked_s > 0.0) t += "over the whole run:\n";
+  if (r.walked_s > 0.0) t += "over the whole run, lying and standing up included:\n";
   std::string counted;
   for (const GateCounterName& counter : kGateCounters) {
     const std::uint64_t ticks = r.end.gate.counters.*counter.ticks;

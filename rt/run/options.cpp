@@ -9,6 +9,7 @@
 
 #include "rt/base/command_line.h"
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 #include "sim/ground/terrain_description.h"
 
 namespace sandrunner {
@@ -30,24 +31,23 @@ std::uint64_t seed_of(const std::string& text) {
 CLI::App* add_check(CLI::App& app, Options& o) {
   CLI::App* const check = app.add_subcommand(
       "check",
-      "looks at the buses, drives and IMU of a real robot and reports; powers nothing without "
-      "--nudge (drivers/robot/README.md)");
+      "examine the buses, drives and IMU of a real robot; powers nothing without --nudge "
+      "(drivers/robot/README.md)");
   check->fallthrough();
-  check->add_option("FILE", o.hardware_path, "TOML with the drives and the IMU, as of --hardware")
+  check->add_option("FILE", o.hardware_path, "hardware file, as for --hardware")
       ->required()
       ->type_name("");
   CLI::Option* const plan =
-      check->add_flag("--plan", o.check.plan, "the load of the buses alone; opens nothing");
-  check->add_flag("--move", o.check.move, "asks somebody to turn each joint by hand")
-      ->excludes(plan);
+      check->add_flag("--plan", o.check.plan, "print the load of the buses only; opens nothing");
+  check->add_flag("--move", o.check.move, "ask you to turn each joint by hand")->excludes(plan);
   check
-      ->add_flag("--nudge", o.check.nudge,
-                 "each drive pushes its joint a little, the robot hanging (hardware.hanging=true)")
+      ->add_flag(
+          "--nudge", o.check.nudge,
+          "let each drive push its joint a little, the robot hanging (hardware.hanging=true)")
       ->excludes(plan);
   check
       ->add_option("--zero", o.check.zero,
-                   "takes the pose in which the robot is held for this one, and writes the zeros "
-                   "of the drives into FILE")
+                   "you hold the robot in this pose; writes the zeros of the drives into FILE")
       ->check(CLI::IsMember({"lying", "nominal"}))
       ->type_name("lying|nominal")
       ->excludes(plan);
@@ -61,20 +61,21 @@ struct Words {
 
 void add_robot_options(CLI::App& app, Options& o) {
   app.add_option("--policy", o.policy_path,
-                 "policy file (default: the one that ships); none: the robot only stands up")
+                 "policy file (default: that of Raibo); none: the robot only stands up")
       ->type_name("FILE")
       ->capture_default_str();
   app.add_option("--robot", o.robot_path,
-                 "map of a robot (sim/robot/README.md; default: the one that ships)")
+                 "robot file (sim/robot/README.md; default: that of Raibo)")
       ->type_name("FILE")
       ->capture_default_str();
-  app.add_option("--hardware", o.hardware_path,
-                 "TOML with the drives and the IMU of a real robot (drivers/robot/README.md)")
+  app.add_option(
+         "--hardware", o.hardware_path,
+         "hardware file with the drives and the IMU of a real robot (drivers/robot/README.md)")
       ->type_name("FILE")
       ->always_capture_default(false);
-  app.add_flag("--arm", o.arm, "with --hardware: the run itself may move the robot");
+  app.add_flag("--arm", o.arm, "with --hardware: the run may move the robot by itself");
   app.add_flag("--dry-run", o.dry_run,
-               "with --hardware: prints the frames that would be sent, and opens nothing");
+               "with --hardware: print the frames for the drives; opens nothing");
 }
 
 void add_run_options(CLI::App& app, Options& o, Words& t) {
@@ -82,11 +83,11 @@ void add_run_options(CLI::App& app, Options& o, Words& t) {
          "--terrain", o.terrain,
          fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
       ->type_name("PRESET|FILE");
-  app.add_option(
-         "--command", o.command,
-         "velocity vx,vy,wz (m/s, m/s, rad/s), held to the policy's envelope, or a CSV file with "
-         "header t_s,vx,vy,wz, linear between rows; dds: operators command over DDS "
-         "(sandrunner-ctl, ROS 2), until Ctrl-C; live: in the page of --view")
+  app.add_option("--command", o.command,
+                 "velocity vx,vy,wz (m/s, m/s, rad/s), clamped to the policy's envelope, or a CSV "
+                 "file with "
+                 "header t_s,vx,vy,wz, linear between rows; dds: operators command over DDS "
+                 "(sandrunner-ctl, ROS 2), until Ctrl-C; live: the page of --view commands")
       ->type_name("VX,VY,WZ|FILE|dds|live");
   app.add_option("--dds-security", o.dds_security_dir,
                  "folder made by tools/dds_security.sh: DDS with authentication and encryption")
@@ -94,16 +95,17 @@ void add_run_options(CLI::App& app, Options& o, Words& t) {
   app.add_option("--duration", o.duration_s, "time in Walk, s")->type_name("S");
   app.add_option(
          "--start", t.start,
-         "stand: lies, stands up, walks, stands again, is let down; walk: walks at once from the "
+         "stand: lies, stands up, walks, stands again, lies down; walk: walks at once from the "
          "nominal pose")
       ->check(CLI::IsMember({"stand", "walk"}))
       ->type_name("stand|walk");
-  app.add_option("--clock", t.clock,
-                 "lockstep: one thread, simulated time, as fast as the machine goes; realtime: the "
-                 "threads of the robot on the system's clock")
+  app.add_option(
+         "--clock", t.clock,
+         "lockstep: one thread, simulated time, as fast as possible; realtime: the threads of "
+         "the robot on the system's clock")
       ->check(CLI::IsMember({"lockstep", "realtime"}))
       ->type_name("lockstep|realtime");
-  app.add_option("--seed", t.seed, "0: exactly the nominal start; above 0: a disturbed one")
+  app.add_option("--seed", t.seed, "0: the nominal start; above 0: a disturbed one")
       ->type_name("N");
 }
 
@@ -116,22 +118,25 @@ void add_file_options(CLI::App& app, Options& o) {
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false)
       ->always_capture_default(false);
+  app.add_flag("--settings", o.settings,
+               "prints every setting with its default, unit, range and meaning");
   app.add_option("--out", o.out_dir,
                  "folder for summary.json, config.toml, run.csv, run.html, run.png, strip.png")
       ->type_name("DIR");
   app.add_option(
          "--record", o.record_dir,
-         "folder for run.mcap: every tick, to look at and replay; and for black-box-TICK.mcap "
-         "of a realtime run with a fault (else that of --out, or the working folder)")
+         "folder for run.mcap: every tick, to view and replay; and for black-box-TICK.mcap of a "
+         "realtime run with a fault (default: the folder of --out, or the current folder)")
       ->type_name("DIR");
   app.add_flag("--view", o.view,
-               "shows the run in a browser of this computer, at the address that is printed, and "
-               "stays until Ctrl-C; lockstep then goes at the pace of the clock");
+               "show the run in a browser of this computer, at the printed address, until Ctrl-C; "
+               "lockstep then runs in real time");
 }
 
 // Throws InputError for options that do not go together.
 void require_consistent(const CLI::App& app, const Options& o, const Words& t) {
   const bool hardware = !o.hardware_path.empty();
+  if (hardware) require_regular_file(o.hardware_path, "a hardware file (drivers/robot/README.md)");
   if (hardware && (o.start_walking || (app.count("--clock") > 0 && t.clock == "lockstep"))) {
     throw InputError(
         "--hardware: a robot lies first and has its own time: expected neither --start walk nor "
@@ -156,9 +161,10 @@ void require_consistent(const CLI::App& app, const Options& o, const Words& t) {
   }
   if (o.dry_run && !hardware) throw InputError("--dry-run: expected --hardware with it");
   if (hardware && !o.live && !o.arm && !o.dry_run) {
-    throw InputError(
-        "--hardware: this command would move the robot by itself: expected --arm, or --command dds "
-        "(operators decide)");
+    throw InputError(fmt::format(
+        "--hardware: this command would move the robot. First look: sandrunner check {0}, and "
+        "--hardware {0} --dry-run. Then add --arm, or --command dds to let operators decide",
+        o.hardware_path));
   }
   if (o.arm && !hardware) throw InputError("--arm: expected --hardware with it");
 }
@@ -168,8 +174,8 @@ void require_consistent(const CLI::App& app, const Options& o, const Words& t) {
 std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   CLI::App app{
-      "Runs a legged robot on sand: the control process, with the granular simulator in place of "
-      "the robot unless --hardware names one.",
+      "Controls a legged robot. Without --hardware, the robot is simulated on sand or another "
+      "ground.",
       "sandrunner"};
   app.option_defaults()->always_capture_default();
   Words t;
@@ -177,7 +183,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   add_run_options(app, o, t);
   add_file_options(app, o);
   const CLI::App* report = app.add_subcommand(
-      "rt-report", "says what this machine allows a real-time process, with a 10 s sample");
+      "rt-report", "report what this machine allows a real-time process, with a 10 s sample");
   CLI::App* const check = add_check(app, o);
   app.footer(
       "Examples:\n"

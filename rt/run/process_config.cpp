@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "rt/base/errors.h"
 #include "rt/run/robot_drivers.h"
@@ -11,82 +12,230 @@
 namespace sandrunner {
 namespace {
 
-/// `recorded`: what was run once may be read that no run is to have any more.
-void read_controller(ConfigTree& config, const sim::Robot& robot, ControllerConfig& c,
-                     bool recorded) {
-  const auto least = [&](double value) { return recorded ? 0.0 : value; };
-  const auto number = [&](const char* key, double& value, double min, double max) {
-    value = config.number(std::string("controller.") + key, value, min, max);
+struct RobotKey {
+  std::string robot = "raibo";
+};
+constexpr Setting<RobotKey> kRobot[] = {
+    {"robot", &RobotKey::robot, "raibo, or the file of another robot (--robot)."},
+};
+constexpr Setting<ProcessConfig> kView[] = {
+    {"drive", &ProcessConfig::view_drive,
+     "Pages of --view that have the key may command; --command live sets it."},
+    {"port", &ProcessConfig::view_port, 0, 65535, "Port of --view; 0: one that is free."},
+};
+constexpr Setting<RecordingLimits> kRecording[] = {
+    {"limit_bytes", &RecordingLimits::bytes, 1, 0x1p50, "Largest recording."},
+    {"limit_s", &RecordingLimits::time_s, 0.1, 1e9, "Longest recording."},
+};
+constexpr Setting<ProcessConfig> kSummary[] = {
+    {"motor_constant", &ProcessConfig::motor_constant, 1e-3, 1e3,
+     "k_m of the cost of transport, N m/sqrt(W) at the joint.", kFromRobotFile},
+};
+
+constexpr const char* kFromPolicy = "from the policy file";
+
+/// Ends of ranges that the robot's file gives: no drive gets more than that allows, whoever asks.
+struct Ranges {
+  double kp_nmprad, kd_nmsprad, speed_fault_radps, power_w;
+  bool recorded = false;  ///< what was run once may be read that no run is to have any more
+
+  double least(double value) const noexcept { return recorded ? 0.0 : value; }
+};
+
+constexpr const char* kKpRange = "0 to gains.kp_limit_nmprad of the robot file";
+constexpr const char* kKdRange = "0 to gains.kd_limit_nmsprad of the robot file";
+
+using W = WalkConfig;
+auto walk_settings(const Ranges& r) {
+  return std::to_array<Setting<W>>({
+      {"kp_nmprad", &W::kp_nmprad, 0.0, r.kp_nmprad, "Position gain of a joint in Walk.",
+       kFromPolicy, kKpRange},
+      {"kd_nmsprad", &W::kd_nmsprad, 0.0, r.kd_nmsprad, "Velocity gain of a joint in Walk.",
+       kFromPolicy, kKdRange},
+      {"stop_deceleration_mps2", &W::stop_deceleration_mps2, 0.1, 10.0,
+       "Largest deceleration of a stop, of vx and of vy.", "1, at most the policy's"},
+      {"stop_yaw_deceleration_radps2", &W::stop_yaw_deceleration_radps2, 0.1, 10.0,
+       "Largest deceleration of a stop, of the yaw rate.", "1, at most the policy's"},
+      {"stop_speed_radps", &W::stop_speed_radps, 0.0, 1e3,
+       "At rest no joint and no body axis turns faster."},
+      {"stop_calm_s", &W::stop_calm_s, r.least(0.1), 60.0,
+       "A robot has stopped after this long at rest."},
+      {"stop_time_s", &W::stop_time_s, r.least(0.5), 60.0,
+       "Longest wait for the rest of a stop; then Stand takes over."},
+  });
+}
+
+constexpr Setting<W> kPolicy[] = {
+    {"latency_ticks", &W::latency_ticks, 1, kTicksPerPolicyStep - 1,
+     "A policy output acts this long after its input was sampled."},
+};
+
+using S = StandConfig;
+auto stand_settings(const Ranges& r) {
+  return std::to_array<Setting<S>>({
+      {"kp_nmprad", &S::kp_nmprad, 0.0, r.kp_nmprad, "Position gain of StandUp and Stand.",
+       kFromRobotFile, kKpRange},
+      {"kd_nmsprad", &S::kd_nmsprad, 0.0, r.kd_nmsprad, "Velocity gain of StandUp and Stand.",
+       kFromRobotFile, kKdRange},
+      {"gain_ramp_s", &S::gain_ramp_s, 0.0, 2.0,
+       "StandUp's stiffness rises from nothing for this long."},
+      {"fold_s", &S::fold_s, 0.0, 60.0, "Time to fold the legs."},
+      {"extend_s", &S::extend_s, 0.0, 60.0, "Time to extend the legs to the standing posture."},
+      // In half of that it topples on sand.
+      {"blend_s", &S::blend_s, r.least(1.0), 60.0, "Time from a posture in Walk to Stand."},
+      {"max_speed_radps", &S::max_speed_radps, 0.1, 20.0,
+       "Largest speed of a joint's target; where it is too low for the times, they grow."},
+      {"reached_rad", &S::reached_rad, 0.01, 1.0,
+       "Fault: a joint is farther than this from its target when Stand should be reached."},
+      {"reach_s", &S::reach_s, 0.0, 10.0,
+       "Time that Stand has to be reached, before that is a fault."},
+  });
+}
+
+using D = DampingConfig;
+auto damping_settings(const Ranges& r) {
+  return std::to_array<Setting<D>>({
+      // With none a robot that is let down falls.
+      {"kd_nmsprad", &D::kd_nmsprad, r.least(kLeastDamping * r.kd_nmsprad), r.kd_nmsprad,
+       "Velocity gain of Damping and after a fault.", kFromRobotFile,
+       "0.1 to 1 times gains.kd_limit_nmsprad of the robot file"},
+      // With less it is dropped.
+      {"fault_s", &D::fault_s, r.least(0.5), 60.0, "Damping after a fault, before drives go off."},
+  });
+}
+
+using E = CommandEnvelope;
+constexpr Setting<E> kEnvelope[] = {
+    {"forward_mps", &E::forward_mps, 0.0, 100.0, "Largest forward command.", kFromPolicy},
+    {"backward_mps", &E::backward_mps, 0.0, 100.0, "Largest backward command.", kFromPolicy},
+    {"lateral_mps", &E::lateral_mps, 0.0, 100.0, "Largest sideways command.", kFromPolicy},
+    {"yaw_radps", &E::yaw_radps, 0.0, 100.0, "Largest commanded yaw rate.", kFromPolicy},
+    {"acceleration_mps2", &E::acceleration_mps2, 0.0, 100.0,
+     "Largest change of a commanded velocity.", kFromPolicy},
+    {"yaw_acceleration_radps2", &E::yaw_acceleration_radps2, 0.0, 100.0,
+     "Largest change of the commanded yaw rate.", kFromPolicy},
+};
+
+using C = ShapingConfig;
+constexpr Setting<C> kShaping[] = {
+    {"centripetal_limit_mps2", &C::centripetal_limit_mps2, 0.0, 100.0,
+     "Largest commanded speed times yaw rate.", kFromPolicy},
+    {"operator_hold_ticks", &C::operator_hold_ticks, 0, 1e6,
+     "Without a sign of life of the operator for this long the command is zero; 0: never.",
+     "0; with operators dds.stale_s"},
+    {"operator_stand_s", &C::operator_stand_s, 0.0, 3600.0,
+     "A robot whose operator is lost for this long stops and stands."},
+    {"operator_down_s", &C::operator_down_s, 0.0, 3600.0,
+     "A robot whose operator is lost for this long is let down."},
+};
+
+/// One limit for all joints, in place of the higher ones among their own.
+struct LoweredLimits {
+  double speed_limit_radps = 0.0, torque_limit_nm = 0.0;
+};
+constexpr Setting<LoweredLimits> kLowered[] = {
+    {"speed_limit_radps", &LoweredLimits::speed_limit_radps, 0.0, 1e4,
+     "Lowers each joint's speed limit to this; 0: the robot's own."},
+    {"torque_limit_nm", &LoweredLimits::torque_limit_nm, 0.0, 1e4,
+     "Lowers each joint's torque limit to this; 0: the robot's own."},
+};
+
+/// The thresholds of the gate. Those of the robot's file may be lowered, too.
+std::vector<Setting<GateConfig>> gate_settings(const Ranges& r) {
+  std::vector<Setting<GateConfig>> rows;
+  const auto add = [&](const auto& t) {
+    if (t.key == nullptr) return;
+    rows.emplace_back(t.key, t.value, static_cast<double>(t.least), static_cast<double>(t.ceiling),
+                      t.meaning);
   };
-  const auto ticks = [&](const char* key, std::uint64_t& value, std::int64_t min,
-                         std::uint64_t max = 1'000'000) {
-    value = static_cast<std::uint64_t>(config.integer(std::string("controller.") + key,
-                                                      static_cast<std::int64_t>(value), min,
-                                                      static_cast<std::int64_t>(max)));
-  };
-  GateConfig& g = c.gate;
-  // Before all gains: no drive gets more than its robot's file allows, whoever asks.
-  const auto gains = [&](const char* mode, double& kp, double& kd) {
-    number(fmt::format("{}.kp_nmprad", mode).c_str(), kp, 0.0, g.kp_limit_nmprad);
-    number(fmt::format("{}.kd_nmsprad", mode).c_str(), kd, 0.0, g.kd_limit_nmsprad);
-  };
-  gains("walk", c.walk.kp_nmprad, c.walk.kd_nmsprad);
-  number("walk.stop_deceleration_mps2", c.walk.stop_deceleration_mps2, 0.1, 10.0);
-  number("walk.stop_yaw_deceleration_radps2", c.walk.stop_yaw_deceleration_radps2, 0.1, 10.0);
-  number("walk.stop_speed_radps", c.walk.stop_speed_radps, 0.0, 1e3);
-  number("walk.stop_calm_s", c.walk.stop_calm_s, least(0.1), 60.0);
-  number("walk.stop_time_s", c.walk.stop_time_s, least(0.5), 60.0);
-  c.walk.latency_ticks = static_cast<std::uint64_t>(
-      config.integer("policy.latency_ticks", static_cast<std::int64_t>(c.walk.latency_ticks), 1,
-                     kTicksPerPolicyStep - 1));
-  gains("stand", c.stand.kp_nmprad, c.stand.kd_nmsprad);
-  number("stand.gain_ramp_s", c.stand.gain_ramp_s, 0.0, 2.0);
-  number("stand.fold_s", c.stand.fold_s, 0.0, 60.0);
-  number("stand.extend_s", c.stand.extend_s, 0.0, 60.0);
-  number("stand.blend_s", c.stand.blend_s, least(1.0), 60.0);  // in half of that it topples on sand
-  number("stand.max_speed_radps", c.stand.max_speed_radps, 0.1, 20.0);
-  number("stand.reached_rad", c.stand.reached_rad, 0.01, 1.0);
-  number("stand.reach_s", c.stand.reach_s, 0.0, 10.0);
-  // With none a robot that is let down falls.
-  number("damping.kd_nmsprad", c.damping.kd_nmsprad, least(kLeastDamping * g.kd_limit_nmsprad),
-         g.kd_limit_nmsprad);
-  number("damping.fault_s", c.damping.fault_s, least(0.5), 60.0);  // with less it is dropped
-  CommandEnvelope& e = c.shaping.envelope;
-  number("shaping.forward_mps", e.forward_mps, 0.0, 100.0);
-  number("shaping.backward_mps", e.backward_mps, 0.0, 100.0);
-  number("shaping.lateral_mps", e.lateral_mps, 0.0, 100.0);
-  number("shaping.yaw_radps", e.yaw_radps, 0.0, 100.0);
-  number("shaping.acceleration_mps2", e.acceleration_mps2, 0.0, 100.0);
-  number("shaping.yaw_acceleration_radps2", e.yaw_acceleration_radps2, 0.0, 100.0);
-  number("shaping.centripetal_limit_mps2", c.shaping.centripetal_limit_mps2, 0.0, 100.0);
-  ticks("shaping.operator_hold_ticks", c.shaping.operator_hold_ticks, 0);
-  number("shaping.operator_stand_s", c.shaping.operator_stand_s, 0.0, 3600.0);
-  number("shaping.operator_down_s", c.shaping.operator_down_s, 0.0, 3600.0);
-  // 0: those of the robot's joints; else one for all of them, and never above the joint's own.
-  const auto lowered = [&](const char* key, JointArray<double>& limits) {
-    double limit = 0.0;
-    number(key, limit, 0.0, 1e4);
+  for (const auto& threshold : kGateThresholds) {
+    add(threshold);
+    const auto from_robot = [&](double GateConfig::*member, double most, const char* range) {
+      if (threshold.value != member) return;
+      rows.back().max = most;
+      rows.back().fallback = kFromRobotFile;
+      rows.back().range = range;
+    };
+    from_robot(&GateConfig::speed_fault_radps, r.speed_fault_radps,
+               "0 to limits.speed_fault_radps of the robot file");
+    from_robot(&GateConfig::power_limit_w, r.power_w, "0 to limits.power_w of the robot file");
+  }
+  for (const auto& threshold : kGateTickThresholds) add(threshold);
+  return rows;
+}
+
+Ranges ranges_of(const sim::Robot& robot, bool recorded) {
+  // A recording's thresholds are held to what is compiled in alone.
+  const double speed_fault_radps = gate_threshold(&GateConfig::speed_fault_radps).ceiling;
+  const double power_w = gate_threshold(&GateConfig::power_limit_w).ceiling;
+  return {.kp_nmprad = robot.kp_limit_nmprad,
+          .kd_nmsprad = robot.kd_limit_nmsprad,
+          .speed_fault_radps = recorded ? speed_fault_radps : robot.speed_fault_radps,
+          .power_w = recorded ? power_w : robot.power_limit_w,
+          .recorded = recorded};
+}
+
+/// What the controller has before its own settings are read: from robot, policy, hardware and
+/// operators.
+struct ControllerDefaults {
+  ControllerConfig config;
+};
+
+ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec* spec,
+                                       std::uint64_t operator_hold_ticks,
+                                       const HardwareConfig* hardware) {
+  ControllerConfig c = controller_config(robot);
+  if (spec) {
+    c.walk.kp_nmprad = spec->kp_nmprad;
+    c.walk.kd_nmsprad = spec->kd_nmsprad;
+    c.shaping.envelope = spec->envelope;
+    c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;
+  }
+  c.shaping.operator_hold_ticks = operator_hold_ticks;
+  if (hardware) fit_gate_to(*hardware, c.gate);
+  return {c};
+}
+
+ControllerConfig read_controller(ConfigTree& config, const ControllerDefaults& defaults,
+                                 const Ranges& ranges) {
+  ControllerConfig c = defaults.config;
+  read_settings(config, "controller.walk", walk_settings(ranges), c.walk);
+  read_settings(config, "policy", kPolicy, c.walk);
+  read_settings(config, "controller.stand", stand_settings(ranges), c.stand);
+  read_settings(config, "controller.damping", damping_settings(ranges), c.damping);
+  read_settings(config, "controller.shaping", kEnvelope, c.shaping.envelope);
+  read_settings(config, "controller.shaping", kShaping, c.shaping);
+  LoweredLimits lowered;
+  read_settings(config, "controller.gate", kLowered, lowered);
+  const auto lower = [](double limit, JointArray<double>& limits) {
     if (limit == 0.0) return;
     for (double& joint : limits) joint = std::min(joint, limit);
   };
-  lowered("gate.speed_limit_radps", g.speed_limit_radps);
-  lowered("gate.torque_limit_nm", g.torque_limit_nm);
-  for (const auto& t : kGateThresholds) {
-    // Those of the robot's file may be lowered, too.
-    const double ceiling = recorded                                    ? t.ceiling
-                           : t.value == &GateConfig::speed_fault_radps ? robot.speed_fault_radps
-                           : t.value == &GateConfig::power_limit_w     ? robot.power_limit_w
-                                                                       : t.ceiling;
-    if (t.key) number(fmt::format("gate.{}", t.key).c_str(), g.*t.value, t.least, ceiling);
-  }
-  for (const auto& t : kGateTickThresholds) {
-    ticks(fmt::format("gate.{}", t.key).c_str(), g.*t.value, static_cast<std::int64_t>(t.least),
-          t.ceiling);
-  }
+  lower(lowered.speed_limit_radps, c.gate.speed_limit_radps);
+  lower(lowered.torque_limit_nm, c.gate.torque_limit_nm);
+  read_settings(config, "controller.gate", gate_settings(ranges), c.gate);
+  // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
+  const CommandEnvelope &trained = defaults.config.shaping.envelope, &set = c.shaping.envelope;
+  const auto at_most = [](double& value, double a, double b) {
+    value = std::min(value, std::max(a, b));
+  };
+  at_most(c.walk.stop_deceleration_mps2, trained.acceleration_mps2, set.acceleration_mps2);
+  at_most(c.walk.stop_yaw_deceleration_radps2, trained.yaw_acceleration_radps2,
+          set.yaw_acceleration_radps2);
+  return c;
 }
 
-/// Throws InputError for a policy whose gains the robot's drives are not to be given.
-void require_gains(const PolicySpec& spec, const sim::Robot& robot) {
+sim::Robot read_robot(ConfigTree& config, const sim::Robot* recorded) {
+  RobotKey key;
+  read_settings(config, "", kRobot, key);
+  if (recorded) return *recorded;
+  return key.robot == RobotKey().robot ? sim::load_raibo() : sim::load_robot(key.robot);
+}
+
+/// Throws InputError for a policy whose joints are not the robot's, or whose gains its drives are
+/// not to be given. Torque limits of the robot become the policy's, where those are lower.
+void fit_robot_to(const PolicySpec& spec, sim::Robot& robot) {
+  require_joints(spec, robot.description);
   const auto check = [&](const char* gain, double value, double limit) {
     if (value <= limit) return;
     throw InputError(fmt::format("policy '{}': {} is {}, the robot '{}' takes at most {}",
@@ -94,6 +243,9 @@ void require_gains(const PolicySpec& spec, const sim::Robot& robot) {
   };
   check("kp_nmprad", spec.kp_nmprad, robot.kp_limit_nmprad);
   check("kd_nmsprad", spec.kd_nmsprad, robot.kd_limit_nmsprad);
+  for (double& limit_nm : robot.model.torque_limit_nm) {
+    limit_nm = std::min(limit_nm, spec.torque_limit_nm);
+  }
 }
 
 }  // namespace
@@ -122,55 +274,46 @@ ControllerConfig controller_config(const sim::Robot& robot) {
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
                                   const sim::Robot* robot) {
   ProcessConfig p;
-  const std::string name = config.text("robot", "raibo");
-  p.robot = robot ? *robot : name == "raibo" ? sim::load_raibo() : sim::load_robot(name);
-  p.controller = controller_config(p.robot);
-  ControllerConfig& c = p.controller;
-  if (spec) {
-    require_joints(*spec, p.robot.description);
-    require_gains(*spec, p.robot);
-    c.walk.kp_nmprad = spec->kp_nmprad;
-    c.walk.kd_nmsprad = spec->kd_nmsprad;
-    c.shaping.envelope = spec->envelope;
-    c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;
-    for (int j = 0; j < kNumJoints; ++j) {
-      double& limit_nm = p.robot.model.torque_limit_nm[j];
-      limit_nm = std::min(limit_nm, spec->torque_limit_nm);
-      c.gate.torque_limit_nm[j] = limit_nm;
-    }
-  }
+  p.robot = read_robot(config, robot);
+  if (spec) fit_robot_to(*spec, p.robot);
   p.dds = read_dds_config(config);
-  p.view_drive = config.flag("view.drive", p.view_drive);
-  // Who commands from afar may be lost on the way: the robot then slows down and stands.
-  if (p.dds.enabled || p.view_drive) c.shaping.operator_hold_ticks = p.dds.stale_ticks();
+  read_settings(config, "view", kView, p);
   if (config.has("hardware")) {
-    p.hardware = read_hardware_config(config, p.robot.description, c.gate);
-    fit_gate_to(*p.hardware, c.gate);
+    p.hardware = read_hardware_config(config, p.robot.description, controller_config(p.robot).gate);
   }
-  const CommandEnvelope trained = c.shaping.envelope;
-  read_controller(config, p.robot, c, robot != nullptr);
-  // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
-  const CommandEnvelope& set = c.shaping.envelope;
-  const auto at_most = [](double& value, double a, double b) {
-    value = std::min(value, std::max(a, b));
-  };
-  at_most(c.walk.stop_deceleration_mps2, trained.acceleration_mps2, set.acceleration_mps2);
-  at_most(c.walk.stop_yaw_deceleration_radps2, trained.yaw_acceleration_radps2,
-          set.yaw_acceleration_radps2);
-  if (p.hardware) fit_drives_to(c.gate, *p.hardware);
+  // Who commands from afar may be lost on the way: the robot then slows down and stands.
+  const std::uint64_t hold_ticks = p.dds.enabled || p.view_drive ? p.dds.stale_ticks() : 0;
+  const ControllerDefaults defaults =
+      controller_defaults(p.robot, spec, hold_ticks, p.hardware ? &*p.hardware : nullptr);
+  p.controller = read_controller(config, defaults, ranges_of(p.robot, robot != nullptr));
+  if (p.hardware) fit_drives_to(p.controller.gate, *p.hardware);
   p.driver = read_robot_driver(config, p);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
-  p.recording.bytes = static_cast<std::uint64_t>(
-      config.integer("recording.limit_bytes", static_cast<std::int64_t>(p.recording.bytes), 1,
-                     std::int64_t{1} << 50));
-  p.recording.time_s = config.number("recording.limit_s", p.recording.time_s, 0.1, 1e9);
-  p.view_port = static_cast<int>(config.integer("view.port", p.view_port, 0, 65535));
-  p.motor_constant =
-      config.number("summary.motor_constant", p.robot.motor_constant_nmpsqrtw, 1e-3, 1e3);
+  read_settings(config, "recording", kRecording, p.recording);
+  p.motor_constant = p.robot.motor_constant_nmpsqrtw;
+  read_settings(config, "summary", kSummary, p);
   config.reject_unknown();
   p.effective = config.effective();
   return p;
+}
+
+std::vector<SettingLine> process_settings() {
+  const Ranges in_words{};
+  std::vector<SettingLine> lines;
+  list_settings(lines, "", kRobot);
+  list_settings(lines, "policy", kPolicy);
+  list_settings(lines, "controller.walk", walk_settings(in_words));
+  list_settings(lines, "controller.stand", stand_settings(in_words));
+  list_settings(lines, "controller.damping", damping_settings(in_words));
+  list_settings(lines, "controller.shaping", kEnvelope);
+  list_settings(lines, "controller.shaping", kShaping);
+  list_settings(lines, "controller.gate", kLowered);
+  list_settings(lines, "controller.gate", gate_settings(in_words));
+  list_settings(lines, "view", kView);
+  list_settings(lines, "recording", kRecording);
+  list_settings(lines, "summary", kSummary);
+  return lines;
 }
 
 }  // namespace sandrunner

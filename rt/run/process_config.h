@@ -3,10 +3,13 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "drivers/robot/hardware_config.h"
 #include "policy/policy.h"
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 #include "rt/core/controller.h"
 #include "rt/core/robot_driver.h"
 #include "rt/realtime/setup.h"
@@ -42,5 +45,8 @@ ControllerConfig controller_config(const sim::Robot& robot);
 /// that no run may have any more. Throws InputError.
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
                                   const sim::Robot* robot = nullptr);
+
+/// The keys that are read here and in no other folder, for the reference.
+std::vector<SettingLine> process_settings();
 
 }  // namespace sandrunner

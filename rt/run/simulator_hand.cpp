@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
@@ -15,18 +16,26 @@
 namespace sandrunner {
 namespace {
 
-struct Setting {
-  const char* key;
-  double sim::GroundParameters::*value;
-};
-constexpr std::array kSettings = {
-    Setting{"sigma_flat_npm3", &sim::GroundParameters::sigma_flat_npm3},
-    Setting{"sigma_cone_npm3", &sim::GroundParameters::sigma_cone_npm3},
-    Setting{"stiffness_npm", &sim::GroundParameters::stiffness_npm},
-    Setting{"friction", &sim::GroundParameters::friction},
-    Setting{"drag", &sim::GroundParameters::drag},
-    Setting{"packing", &sim::GroundParameters::packing},
-};
+using Ground = sim::GroundParameters;
+
+// What pages may set of the ground, with its keys from the table of all.
+constexpr double Ground::*kOffered[] = {&Ground::sigma_flat_npm3,
+                                        &Ground::sigma_cone_npm3,
+                                        &Ground::stiffness_npm,
+                                        &Ground::friction,
+                                        &Ground::drag,
+                                        &Ground::packing};
+
+std::vector<std::string> offered_keys() {
+  std::vector<std::string> keys;
+  for (const auto member : kOffered) {
+    for (const Setting<Ground>& row : sim::ground_settings()) {
+      const auto* const number = std::get_if<double Ground::*>(&row.member);
+      if (number != nullptr && *number == member) keys.emplace_back(row.key);
+    }
+  }
+  return keys;
+}
 
 GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& wanted) {
   const sim::GroundParameters& ground = terrain.patches.front().ground;
@@ -35,8 +44,10 @@ GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& w
   now.name = terrain.name;
   now.kind = sim::kind_name(ground.kind);
   now.presets = sim::terrain_preset_names();
-  for (const Setting& setting : kSettings)
-    now.values.emplace_back(setting.key, ground.*setting.value);
+  const std::vector<std::string> keys = offered_keys();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    now.values.emplace_back(keys[i], ground.*kOffered[i]);
+  }
   return now;
 }
 
@@ -51,10 +62,9 @@ sim::TerrainDescription read(const WantedGround& wanted, const std::string& sett
     throw InputError(fmt::format("terrain: '{}', expected one of {}", one_line(wanted.preset),
                                  fmt::join(sim::terrain_preset_names(), ", ")));
   }
+  const std::vector<std::string> keys = offered_keys();
   for (const auto& [key, value] : wanted.set) {
-    if (std::ranges::find(kSettings, key, &Setting::key) == kSettings.end()) {
-      std::vector<std::string> keys;
-      for (const Setting& setting : kSettings) keys.emplace_back(setting.key);
+    if (std::ranges::find(keys, key) == keys.end()) {
       throw InputError(
           fmt::format("terrain: '{}', expected one of {}", one_line(key), fmt::join(keys, ", ")));
     }

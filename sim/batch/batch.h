@@ -26,13 +26,19 @@ struct BatchDrive {
 /// Share of a joint's speed limit above which a speed counts in `speed_excess`.
 inline constexpr double kSpeedMargin = 0.9;
 
+/// A foot is loaded when it carries more than this on average over one of the last two policy
+/// steps: on sand the normal force comes in pulses.
+inline constexpr float kLoaded_n = 3.0f;
+
 /// Sums over the ticks of one policy period, for rewards and statistics.
 template <typename S>
 struct BatchSums {
   S torque_squared{};  ///< sum over joints of tau^2, N^2 m^2
   S power{};           ///< signed sum of tau qd, W
-  S speed_squared{};   ///< sum over joints of qd^2, rad^2/s^2
-  S speed_excess{};    ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
+  /// Sum over HFE and KFE of max(tau, 0) max(qd, 0), W: legs that push off extend both.
+  S extension_power{};
+  S speed_squared{};  ///< sum over joints of qd^2, rad^2/s^2
+  S speed_excess{};   ///< sum over joints of (|qd| - kSpeedMargin limit)+^2, rad^2/s^2
   S ticks_too_fast{}, ticks_past_stop{};  ///< ticks with any such joint
   S slip{};                               ///< sum over feet in contact of |v_xy|^2, m^2/s^2
   std::array<S, kNumLegs> foot_load{};    ///< normal force of each foot, N

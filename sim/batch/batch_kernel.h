@@ -32,6 +32,9 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
                                               r.drive.inverse_no_load_speed);
       sums.torque_squared = fma(torque[j], torque[j], sums.torque_squared);
       sums.power = fma(torque[j], qd, sums.power);
+      if (j % 3 != 0) {
+        sums.extension_power = fma(max(torque[j], zero), max(qd, zero), sums.extension_power);
+      }
       sums.speed_squared = fma(qd, qd, sums.speed_squared);
       const S limit = r.model.speed_limit_radps[j];
       const S fast = max(fma(S(-kSpeedMargin), limit, abs(qd)), zero);

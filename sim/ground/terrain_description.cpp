@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "rt/base/errors.h"
 #include "rt/base/likely_meant.h"
@@ -21,62 +20,78 @@ const std::vector<std::string> kPresets = [] {
   return names;
 }();
 
-// In the order of GroundKind.
+// In the order of GroundKind and of FootShape.
 constexpr const char* kKinds[] = {"granular", "rigid", "linear"};
+constexpr const char* kShapes[] = {"tyre", "sphere", "disc"};
 
-// As short as it converts back: 60, not 59.99999999999999.
-double degrees_of(double angle_rad) {
-  const double degrees = angle_rad * (180.0 / std::numbers::pi);
-  const double rounded = std::round(degrees * 1e9) / 1e9;
-  return rounded * (std::numbers::pi / 180.0) == angle_rad ? rounded : degrees;
-}
+using G = GroundParameters;
+constexpr Setting<G> kGround[] = {
+    {"kind", words<&G::kind>(kKinds), "What the ground is: grains, hard, or springs."},
+    {"friction", &G::friction, 0.0, 5.0, "Coulomb coefficient between foot and ground."},
+    {"sigma_flat_npm3", &G::sigma_flat_npm3, 1.0, 1e10,
+     "Granular: stress gradient on the flat face of the cone of grains."},
+    {"sigma_cone_npm3", &G::sigma_cone_npm3, 1.0, 1e10,
+     "Granular: stress gradient on the side of the cone."},
+    {"recruitment", &G::recruitment, 0.01, 20.0, "Granular: height that the cone gains per depth."},
+    {"cone_angle_deg", degrees(&G::cone_angle_rad), 5.0, 85.0,
+     "Granular: angle of the cone from the horizontal."},
+    {"mass_scaling", &G::mass_scaling, 0.0, 20.0,
+     "Granular: grains that move, over those in the cone."},
+    {"packing", &G::packing, 0.0, 1.0, "Granular: volume fraction of the grains."},
+    {"grain_density_kgpm3", &G::grain_density_kgpm3, 0.0, 2e4,
+     "Granular: density of the grains' material."},
+    {"drag", &G::drag, 0.0, 1e3, "Granular: scale of the inertial drag."},
+    {"plastic_tolerance_m", &G::plastic_tolerance_m, 0.0, 0.01,
+     "Granular: the force begins this much above the remembered depth."},
+    {"stroke_stiffness_npm", &G::stroke_stiffness_npm, 0.0, 1e5,
+     "Granular: stiffness against a foot that moves sideways."},
+    {"stroke_damping_nspm", &G::stroke_damping_nspm, 0.0, 1e3,
+     "Granular: damping against a foot that moves sideways."},
+    {"stroke_depth_scaling", &G::stroke_depth_scaling, 0.0, 10.0,
+     "Granular: weight of the depth in the resistance against moving sideways."},
+    {"crater_radius_m", &G::crater_radius_m, 0.0, 1.0, "Granular: radius of the crater of a foot."},
+    {"crater_angle_deg", degrees(&G::crater_angle_rad), 5.0, 85.0,
+     "Granular: slope of the crater's wall."},
+    {"stiffness_npm", &G::stiffness_npm, 1.0, 1e6, "Linear: spring under each foot."},
+    {"damping_nspm", &G::damping_nspm, 0.0, 2e3, "Linear: damper under each foot."},
+    {"coupling_npm", &G::coupling_npm, 0.0, 1e6,
+     "Linear: force on each foot per depth of all feet together."},
+    {"roughness_m", &G::roughness_m, 0.0, 0.2, "Rigid: standard deviation of its height; 0: flat."},
+    {"roughness_wavelength_m", &G::roughness_wavelength_m, 0.05, 100.0,
+     "Rigid: shortest wavelength of its height."},
+    {"roughness_seed", &G::roughness_seed, 0, 0x1p40, "Rigid: seed of its height."},
+    {"effects.inertial_drag", &G::inertial_drag, "Granular: drag of moving grains."},
+    {"effects.added_mass", &G::added_mass, "Granular: inertia of moving grains."},
+    {"effects.plastic_memory", &G::plastic_memory,
+     "Granular: force only beyond the depth that is remembered."},
+    {"effects.healing", &G::healing,
+     "Granular: the remembered depth heals as the foot moves sideways."},
+    {"effects.filter", &G::filter, "Granular: moving average of the normal force."},
+    {"effects.stroke_resistance", &G::stroke_resistance,
+     "Granular: resistance against a foot that moves sideways."},
+    {"effects.gated_friction", &G::gated_friction,
+     "Granular: friction only while the normal force acts."},
+};
 
-// Reads the ground under `prefix` ("terrain." or, in a patch, ""); a key that is missing leaves
-// `p` as it is.
-void read_ground(ConfigTree& c, const std::string& prefix, GroundParameters& p) {
-  const auto number = [&](const char* key, double& value, double min, double max) {
-    value = c.number(prefix + key, value, min, max);
-  };
-  const auto flag = [&](const char* key, bool& value) { value = c.flag(prefix + key, value); };
-  const std::string kind =
-      c.choice(prefix + "kind", kind_name(p.kind), {kKinds[0], kKinds[1], kKinds[2]});
-  for (int i = 0; i < 3; ++i) {
-    if (kind == kKinds[i]) p.kind = static_cast<GroundKind>(i);
-  }
-  number("friction", p.friction, 0.0, 5.0);
-  number("sigma_flat_npm3", p.sigma_flat_npm3, 1.0, 1e10);
-  number("sigma_cone_npm3", p.sigma_cone_npm3, 1.0, 1e10);
-  number("recruitment", p.recruitment, 0.01, 20.0);
-  double degrees = degrees_of(p.cone_angle_rad);
-  number("cone_angle_deg", degrees, 5.0, 85.0);
-  p.cone_angle_rad = degrees * (std::numbers::pi / 180.0);
-  number("mass_scaling", p.mass_scaling, 0.0, 20.0);
-  number("packing", p.packing, 0.0, 1.0);
-  number("grain_density_kgpm3", p.grain_density_kgpm3, 0.0, 2e4);
-  number("drag", p.drag, 0.0, 1e3);
-  number("plastic_tolerance_m", p.plastic_tolerance_m, 0.0, 0.01);
-  number("stroke_stiffness_npm", p.stroke_stiffness_npm, 0.0, 1e5);
-  number("stroke_damping_nspm", p.stroke_damping_nspm, 0.0, 1e3);
-  number("stroke_depth_scaling", p.stroke_depth_scaling, 0.0, 10.0);
-  number("crater_radius_m", p.crater_radius_m, 0.0, 1.0);
-  degrees = degrees_of(p.crater_angle_rad);
-  number("crater_angle_deg", degrees, 5.0, 85.0);
-  p.crater_angle_rad = degrees * (std::numbers::pi / 180.0);
-  number("stiffness_npm", p.stiffness_npm, 1.0, 1e6);
-  number("damping_nspm", p.damping_nspm, 0.0, 2e3);
-  number("coupling_npm", p.coupling_npm, 0.0, 1e6);
-  number("roughness_m", p.roughness_m, 0.0, 0.2);
-  number("roughness_wavelength_m", p.roughness_wavelength_m, 0.05, 100.0);
-  p.roughness_seed = static_cast<std::uint64_t>(c.integer(
-      prefix + "roughness_seed", static_cast<std::int64_t>(p.roughness_seed), 0, 1LL << 40));
-  flag("effects.inertial_drag", p.inertial_drag);
-  flag("effects.added_mass", p.added_mass);
-  flag("effects.plastic_memory", p.plastic_memory);
-  flag("effects.healing", p.healing);
-  flag("effects.filter", p.filter);
-  flag("effects.stroke_resistance", p.stroke_resistance);
-  flag("effects.gated_friction", p.gated_friction);
-}
+using T = TerrainDescription;
+constexpr Setting<T> kTerrain[] = {
+    {"name", &T::name, "Name of the ground in reports."},
+    {"foot.shape", words<&T::foot_shape>(kShapes),
+     "Shape of a foot to the ground; a robot with ball feet has no tyre."},
+    {"foot.hydraulic_factor", &T::hydraulic_factor, 0.0, 10.0,
+     "c_h of the hydraulic radius c_h A/P; 0: 4 for a tyre, else 3.24."},
+};
+
+// A patch has the keys of its ground, too.
+struct PatchKeys {
+  std::string preset;
+  double from_x_m = 0.0;
+};
+constexpr Setting<PatchKeys> kPatch[] = {
+    {"preset", &PatchKeys::preset,
+     "Preset of the patch, which its other keys change; empty: the first ground."},
+    {"from_x_m", &PatchKeys::from_x_m, -1e4, 1e4, "Where the patch begins; values ascend."},
+};
 
 const std::string& checked_preset(const std::string& name) {
   if (std::find(kPresets.begin(), kPresets.end(), name) == kPresets.end()) {
@@ -106,29 +121,36 @@ void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file) {
   config.add_file(preset_or_file);
 }
 
+std::span<const Setting<GroundParameters>> ground_settings() noexcept { return kGround; }
+
+std::vector<SettingLine> terrain_settings() {
+  std::vector<SettingLine> lines;
+  list_settings(lines, "terrain", kTerrain);
+  list_settings(lines, "terrain", kGround);
+  list_settings(lines, "terrain.patch[]", kPatch);
+  return lines;
+}
+
 TerrainDescription read_terrain(ConfigTree& config) {
   TerrainDescription terrain;
-  terrain.name = config.text("terrain.name", "terrain");
-  const std::string shape = config.choice("terrain.foot.shape", "tyre", {"tyre", "sphere", "disc"});
-  terrain.foot_shape = shape == "tyre"     ? FootShape::kTyre
-                       : shape == "sphere" ? FootShape::kSphere
-                                           : FootShape::kDisc;
-  terrain.hydraulic_factor = config.number("terrain.foot.hydraulic_factor", 0.0, 0.0, 10.0);
+  read_settings(config, "terrain", kTerrain, terrain);
   TerrainPatch first;
-  read_ground(config, "terrain.", first.ground);
+  read_settings(config, "terrain", kGround, first.ground);
   terrain.patches.push_back(first);
   for (ConfigTree& table : config.tables("terrain.patch")) {
     // A patch is a preset, or else the first ground, except for the keys it gives.
     TerrainPatch patch = terrain.patches.front();
-    const std::string preset = table.text("preset", "");
-    if (!preset.empty()) {
+    PatchKeys keys;
+    read_settings(table, "", kPatch, keys);
+    if (!keys.preset.empty()) {
       ConfigTree layer;
-      layer.add_text(embedded_terrain_file(checked_preset(preset) + ".toml"), "preset " + preset);
+      layer.add_text(embedded_terrain_file(checked_preset(keys.preset) + ".toml"),
+                     "preset " + keys.preset);
       patch.ground = {};
-      read_ground(layer, "terrain.", patch.ground);
+      read_settings(layer, "terrain", kGround, patch.ground);
     }
-    patch.from_x_m = table.number("from_x_m", 0.0, -1e4, 1e4);
-    read_ground(table, "", patch.ground);
+    patch.from_x_m = keys.from_x_m;
+    read_settings(table, "", kGround, patch.ground);
     if (terrain.patches.size() > 1 && patch.from_x_m <= terrain.patches.back().from_x_m) {
       throw InputError(fmt::format("terrain.patch: from_x_m {} after {}, expected ascending values",
                                    patch.from_x_m, terrain.patches.back().from_x_m));

@@ -2,10 +2,12 @@
 // The terrain as a person describes it: a preset or a TOML file, and patches along x.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 #include "sim/ground/terrain.h"
 #include "sim/robot/robot_model.h"
 
@@ -17,7 +19,7 @@ struct TerrainPatch {
 };
 
 struct TerrainDescription {
-  std::string name;
+  std::string name = "terrain";
   std::vector<TerrainPatch> patches;  ///< ascending in from_x_m; at least one, at most kMaxRegions
   FootShape foot_shape = FootShape::kTyre;
   double hydraulic_factor = 0.0;  ///< c_h of r_h = c_h A/P; 0: 4 for a tyre, else 3.24
@@ -32,8 +34,13 @@ std::vector<std::string> terrain_preset_names();
 /// Adds the preset or file that `--terrain` names as a layer of `config`. Throws InputError.
 void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file);
 
-/// Reads the table [terrain] of `config` (keys: sim/ground/presets/README.md). Throws InputError.
+/// Reads the table [terrain] of `config`. Throws InputError.
 TerrainDescription read_terrain(ConfigTree& config);
+
+/// The keys of a ground, without their table.
+std::span<const Setting<GroundParameters>> ground_settings() noexcept;
+/// The keys of the table [terrain], for the reference.
+std::vector<SettingLine> terrain_settings();
 
 /// The foot of a robot on this terrain, and the terrain with its constants derived.
 FootProfile<double> make_foot_profile(const TerrainDescription& terrain,

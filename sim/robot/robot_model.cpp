@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
+#include "rt/base/settings.h"
 #include "rt/core/gate_config.h"
 #include "sim/robot/clearance.h"
 #include "sim/robot/embedded.h"
@@ -20,7 +22,115 @@ namespace {
 
 using Vec = Vec3<double>;
 
-// What the map calls the parts of the URDF. {leg} in a joint or link stands for a leg's name.
+// What a robot's file says that is no figure of `Robot` as it stands there. {leg} in a joint or
+// link stands for a leg's name.
+struct RobotFile {
+  std::string name, urdf;
+  std::string left_front, right_front, left_hind, right_hind;
+  std::string haa, hfe, kfe;
+  std::string base, hip, thigh, shank, foot;
+  double rotor_inertia_kgm2 = 0.0;
+  std::array<double, kJointsPerLeg> nominal_rad{}, lying_rad{};
+};
+
+using F = RobotFile;
+constexpr Setting<F> kFile[] = {
+    {"name", &F::name, "Name of the robot.", kRequired},
+    {"urdf", &F::urdf, "Path of the URDF, relative to this file.", kRequired},
+};
+constexpr Setting<F> kLegs[] = {
+    {"left_front", &F::left_front, "What replaces {leg} in names of links and joints: left front.",
+     kRequired},
+    {"right_front", &F::right_front, "What replaces {leg}: right front.", kRequired},
+    {"left_hind", &F::left_hind, "What replaces {leg}: left hind.", kRequired},
+    {"right_hind", &F::right_hind, "What replaces {leg}: right hind.", kRequired},
+};
+constexpr Setting<F> kJoints[] = {
+    {"haa", &F::haa, "Name of the hip abduction joint in the URDF.", kRequired},
+    {"hfe", &F::hfe, "Name of the hip flexion joint in the URDF.", kRequired},
+    {"kfe", &F::kfe, "Name of the knee joint in the URDF.", kRequired},
+    {"rotor_inertia_kgm2", &F::rotor_inertia_kgm2, 0.0, 1.0,
+     "Inertia of a motor's rotor at the joint: times the gear ratio squared.", kRequired},
+};
+constexpr Setting<F> kLinks[] = {
+    {"base", &F::base, "Name of the base's link in the URDF.", kRequired},
+    {"hip", &F::hip, "Name of the link that the HAA moves.", kRequired},
+    {"thigh", &F::thigh, "Name of the link that the HFE moves.", kRequired},
+    {"shank", &F::shank, "Name of the link that the KFE moves.", kRequired},
+    {"foot", &F::foot, "Name of the link that is fixed to the shank.", kRequired},
+};
+constexpr Setting<F> kPose[] = {
+    {"nominal_rad", &F::nominal_rad, -7.0, 7.0,
+     "HAA, HFE, KFE of every leg, standing; a training wants an HAA of 0.", kRequired},
+    {"lying_rad", &F::lying_rad, -7.0, 7.0, "HAA, HFE, KFE on its belly, as a run starts.",
+     kRequired},
+};
+
+using M = RobotModel<double>;
+constexpr Setting<M> kCollision[] = {
+    {"knee_radius_m", &M::knee_radius_m, 0.0, 0.5, "Radius of the thigh's lower end.", kRequired},
+    {"shank_radius_m", &M::shank_radius_m, 0.0, 0.5, "Half the thickness of the shank.", kRequired},
+};
+
+using R = Robot;
+constexpr Setting<R> kFold[] = {
+    {"fold_rad", &R::fold_rad, -7.0, 7.0,
+     "HAA, HFE, KFE folded under the hips: from here the legs extend.", kRequired},
+};
+constexpr Setting<R> kHeight[] = {
+    {"nominal_height_m", &R::nominal_height_m, 0.0, 5.0, "Height of the base, standing.",
+     "from the geometry"},
+};
+// A row whose range is that of the gate's threshold.
+constexpr Setting<R> within(const GateThreshold<double>& threshold, const char* key,
+                            double R::*member, const char* meaning) {
+  return {key, member, threshold.least, threshold.ceiling, meaning, kRequired};
+}
+constexpr Setting<R> kGains[] = {
+    {"stand_kp_nmprad", &R::stand_kp_nmprad, 0.0, 1e4, "Position gain of standing up and standing.",
+     kRequired},
+    {"stand_kd_nmsprad", &R::stand_kd_nmsprad, 0.0, 1e3,
+     "Velocity gain of standing up and standing.", kRequired},
+    within(gate_threshold(&GateConfig::kp_limit_nmprad), "kp_limit_nmprad", &R::kp_limit_nmprad,
+           "Largest position gain that a drive is given."),
+    within(gate_threshold(&GateConfig::kd_limit_nmsprad), "kd_limit_nmsprad", &R::kd_limit_nmsprad,
+           "Largest velocity gain that a drive is given."),
+};
+// With less than the range a robot that is let down falls.
+constexpr Setting<R> damping(double kd_limit_nmsprad) {
+  return {"damping_kd_nmsprad",
+          &R::damping_kd_nmsprad,
+          kLeastDamping * kd_limit_nmsprad,
+          kd_limit_nmsprad,
+          "Velocity gain of damping, also after a fault.",
+          kRequired,
+          "0.1 to 1 times kd_limit_nmsprad"};
+}
+constexpr Setting<R> kLimits[] = {
+    within(gate_threshold(&GateConfig::speed_fault_radps), "speed_fault_radps",
+           &R::speed_fault_radps, "A faster joint is a fault; well above normal running."),
+    within(gate_threshold(&GateConfig::power_limit_w), "power_w", &R::power_limit_w,
+           "Largest mechanical power of all joints together."),
+};
+constexpr Setting<R> kMotor[] = {
+    within(gate_threshold(&GateConfig::continuous_torque_nm), "continuous_torque_nm",
+           &R::continuous_torque_nm, "Rms torque that a drive gives for ever, at the joint."),
+    within(gate_threshold(&GateConfig::thermal_time_s), "thermal_time_s", &R::thermal_time_s,
+           "Time constant with which a motor's windings warm."),
+};
+constexpr Setting<TorqueSpeedLine> kLine[] = {
+    {"stall_torque_nm", &TorqueSpeedLine::stall_torque_nm, 1e-3, 1e4,
+     "Torque of the torque-speed line at rest, at the joint.", kRequired},
+    {"no_load_speed_radps", &TorqueSpeedLine::no_load_speed_radps, 1e-3, 1e4,
+     "Speed at which the torque-speed line ends, at the joint.", kRequired},
+};
+constexpr Setting<R> kConstant[] = {
+    {"constant_nmpsqrtw", &R::motor_constant_nmpsqrtw, 1e-3, 1e3,
+     "Motor constant k_m at the joint: its heat is torque^2 / k_m^2.",
+     "sqrt(stall torque / no-load speed)"},
+};
+
+// Names of the URDF's parts.
 struct Names {
   std::string base;
   std::array<std::string, kNumLegs> legs;
@@ -35,7 +145,8 @@ std::string with_leg(std::string pattern, const std::string& leg) {
   return pattern;
 }
 
-// A map in which a key that is asked for must be there: a robot has no figures by default.
+// A robot's file, in which every required row must be there: a robot has no figures by
+// default.
 class Map {
  public:
   Map(const std::string& text, std::string name) : name_(std::move(name)) {
@@ -45,41 +156,37 @@ class Map {
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{}: {}", name_, what));
   }
-  std::string text(const std::string& key) {
-    require(key);
-    return tree_.text(key, "");
-  }
-  double number(const std::string& key, double min, double max) {
-    require(key);
-    return tree_.number(key, 0.0, min, max);
-  }
-  double number_or(double fallback, const std::string& key, double min, double max) {
-    return tree_.number(key, fallback, min, max);
-  }
-  /// HAA, HFE, KFE of a leg, rad.
-  std::array<double, kJointsPerLeg> pose(const std::string& key) {
-    require(key);
-    const std::vector<double> q = tree_.numbers(key, {}, kJointsPerLeg, -7.0, 7.0);
-    return {q[0], q[1], q[2]};
+  template <typename Settings>
+  void read(const char* table, SettingRows<Settings> rows, Settings& settings) {
+    for (const Setting<Settings>& row : rows) {
+      const std::string key = setting_path(table, row.key);
+      if (row.required() && !tree_.has(key)) fail(fmt::format("'{}' is missing", key));
+      read_setting(tree_, key, row, settings);
+    }
   }
   void reject_unknown() const { tree_.reject_unknown(); }
 
  private:
-  void require(const std::string& key) const {
-    if (!tree_.has(key)) fail(fmt::format("'{}' is missing", key));
-  }
-
   std::string name_;
   ConfigTree tree_;
 };
 
-Names read_names(Map& map) {
-  return {.base = map.text("links.base"),
-          .legs = {map.text("legs.left_front"), map.text("legs.right_front"),
-                   map.text("legs.left_hind"), map.text("legs.right_hind")},
-          .joints = {map.text("joints.haa"), map.text("joints.hfe"), map.text("joints.kfe")},
-          .links = {map.text("links.hip"), map.text("links.thigh"), map.text("links.shank")},
-          .foot = map.text("links.foot")};
+RobotFile read_file(Map& map) {
+  RobotFile file;
+  map.read("", kFile, file);
+  map.read("links", kLinks, file);
+  map.read("legs", kLegs, file);
+  map.read("joints", kJoints, file);
+  map.read("pose", kPose, file);
+  return file;
+}
+
+Names names_in(const RobotFile& f) {
+  return {.base = f.base,
+          .legs = {f.left_front, f.right_front, f.left_hind, f.right_hind},
+          .joints = {f.haa, f.hfe, f.kfe},
+          .links = {f.hip, f.thigh, f.shank},
+          .foot = f.foot};
 }
 
 JointArray<double> all_legs(const std::array<double, kJointsPerLeg>& leg) {
@@ -88,41 +195,24 @@ JointArray<double> all_legs(const std::array<double, kJointsPerLeg>& leg) {
   return all;
 }
 
-// All figures of the map except the nominal height, which may be left to the geometry.
-void read_figures(Map& map, Robot& robot) {
-  RobotModel<double>& m = robot.model;
-  m.rotor_inertia.fill(map.number("joints.rotor_inertia_kgm2", 0.0, 1.0));
-  m.knee_radius_m = map.number("collision.knee_radius_m", 0.0, 0.5);
-  m.shank_radius_m = map.number("collision.shank_radius_m", 0.0, 0.5);
-  robot.nominal_rad = all_legs(map.pose("pose.nominal_rad"));
-  robot.lying_rad = all_legs(map.pose("pose.lying_rad"));
-  robot.fold_rad = map.pose("pose.fold_rad");
-  robot.stand_kp_nmprad = map.number("gains.stand_kp_nmprad", 0.0, 1e4);
-  robot.stand_kd_nmsprad = map.number("gains.stand_kd_nmsprad", 0.0, 1e3);
-  const auto limit = [&](const char* key, const GateThreshold<double>& threshold) {
-    return map.number(key, threshold.least, threshold.ceiling);
-  };
-  robot.kp_limit_nmprad =
-      limit("gains.kp_limit_nmprad", gate_threshold(&GateConfig::kp_limit_nmprad));
-  robot.kd_limit_nmsprad =
-      limit("gains.kd_limit_nmsprad", gate_threshold(&GateConfig::kd_limit_nmsprad));
-  // With less a robot that is let down falls.
-  robot.damping_kd_nmsprad = map.number(
-      "gains.damping_kd_nmsprad", kLeastDamping * robot.kd_limit_nmsprad, robot.kd_limit_nmsprad);
-  robot.speed_fault_radps =
-      limit("limits.speed_fault_radps", gate_threshold(&GateConfig::speed_fault_radps));
-  robot.power_limit_w = limit("limits.power_w", gate_threshold(&GateConfig::power_limit_w));
-  robot.continuous_torque_nm =
-      limit("motor.continuous_torque_nm", gate_threshold(&GateConfig::continuous_torque_nm));
-  robot.thermal_time_s = limit("motor.thermal_time_s", gate_threshold(&GateConfig::thermal_time_s));
-  TorqueSpeedLine& line = robot.torque_speed_line;
-  line.stall_torque_nm = map.number("motor.stall_torque_nm", 1e-3, 1e4);
-  line.no_load_speed_radps = map.number("motor.no_load_speed_radps", 1e-3, 1e4);
+// All figures; the nominal height is 0 where the geometry is to give it.
+void read_figures(Map& map, const RobotFile& file, Robot& robot) {
+  robot.model.rotor_inertia.fill(file.rotor_inertia_kgm2);
+  robot.nominal_rad = all_legs(file.nominal_rad);
+  robot.lying_rad = all_legs(file.lying_rad);
+  map.read("collision", kCollision, robot.model);
+  map.read("pose", kFold, robot);
+  map.read("pose", kHeight, robot);
+  map.read("gains", kGains, robot);
+  map.read("gains", std::array{damping(robot.kd_limit_nmsprad)}, robot);
+  map.read("limits", kLimits, robot);
+  map.read("motor", kMotor, robot);
+  const TorqueSpeedLine& line = robot.torque_speed_line;
+  map.read("motor", kLine, robot.torque_speed_line);
   // Of a DC motor, stall torque = k_t V / R and no-load speed = V / k_t: their ratio is k_t^2 / R,
   // the square of k_m, before and behind the gear.
-  robot.motor_constant_nmpsqrtw =
-      map.number_or(std::sqrt(line.stall_torque_nm / line.no_load_speed_radps),
-                    "motor.constant_nmpsqrtw", 1e-3, 1e3);
+  robot.motor_constant_nmpsqrtw = std::sqrt(line.stall_torque_nm / line.no_load_speed_radps);
+  map.read("motor", kConstant, robot);
 }
 
 // Joint j of leg l with its limits; returns its origin in the parent's frame, m.
@@ -224,15 +314,14 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
                   const std::string& urdf_text, const std::string& urdf_name) {
   Map map(map_text, map_name);
   const UrdfReader urdf(urdf_text, urdf_name);
+  const RobotFile file = read_file(map);
+  const Names names = names_in(file);
   Robot robot;
-  robot.description.name = map.text("name");
+  robot.description.name = file.name;
   robot.description.urdf = urdf_text;
-  robot.map = map_text;
-  map.text("urdf");
-  const Names names = read_names(map);
   robot.description.leg_names = names.legs;
-  read_figures(map, robot);
-  const double nominal_height_m = map.number_or(0.0, "pose.nominal_height_m", 0.0, 5.0);
+  robot.map = map_text;
+  read_figures(map, file, robot);
   map.reject_unknown();
 
   read_base(urdf, names.base, robot.model);
@@ -250,19 +339,47 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   check_pose(map, "pose.nominal_rad", robot.nominal_rad, robot);
   check_pose(map, "pose.lying_rad", robot.lying_rad, robot);
   check_pose(map, "pose.fold_rad", all_legs(robot.fold_rad), robot);
-  robot.nominal_height_m =
-      nominal_height_m > 0.0
-          ? nominal_height_m
-          : -lowest_clearance(robot.model, robot.nominal_rad, [](double, double) { return 0.0; });
+  if (robot.nominal_height_m == 0.0) {
+    robot.nominal_height_m =
+        -lowest_clearance(robot.model, robot.nominal_rad, [](double, double) { return 0.0; });
+  }
   return robot;
 }
 
 Robot load_robot(const std::string& map_path) {
-  const std::string map_text = read_input_file(map_path, "the map of a robot");
-  const std::string urdf = Map(map_text, map_path).text("urdf");
+  const std::string map_text = read_input_file(map_path, "a robot file");
+  const std::size_t first = map_text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && map_text[first] == '<') {
+    throw InputError(
+        fmt::format("{}: found XML, expected a robot file (TOML) that names the URDF; "
+                    "sim/robot/README.md tells "
+                    "how to write one",
+                    map_path));
+  }
+  RobotFile file;
+  Map(map_text, map_path).read("", std::span(kFile).last<1>(), file);
   const std::string urdf_path =
-      (std::filesystem::path(map_path).parent_path() / urdf).lexically_normal().string();
+      (std::filesystem::path(map_path).parent_path() / file.urdf).lexically_normal().string();
   return parse_robot(map_text, map_path, read_input_file(urdf_path, "a URDF"), urdf_path);
+}
+
+std::vector<SettingLine> robot_file_settings() {
+  std::vector<SettingLine> lines;
+  list_settings(lines, "", kFile);
+  list_settings(lines, "legs", kLegs);
+  list_settings(lines, "joints", kJoints);
+  list_settings(lines, "links", kLinks);
+  list_settings(lines, "collision", kCollision);
+  list_settings(lines, "pose", kPose);
+  list_settings(lines, "pose", kFold);
+  list_settings(lines, "pose", kHeight);
+  list_settings(lines, "gains", kGains);
+  list_settings(lines, "gains", std::array{damping(0.0)});
+  list_settings(lines, "limits", kLimits);
+  list_settings(lines, "motor", kMotor);
+  list_settings(lines, "motor", kLine);
+  list_settings(lines, "motor", kConstant);
+  return lines;
 }
 
 Robot load_raibo() {

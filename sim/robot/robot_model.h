@@ -7,10 +7,15 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "rt/core/messages.h"
 #include "rt/core/robot_description.h"
 #include "sim/lanes/vec.h"
+
+namespace sandrunner {
+struct SettingLine;  // rt/base/settings.h
+}
 
 namespace sandrunner::sim {
 
@@ -64,11 +69,11 @@ struct TorqueSpeedLine {
   double no_load_speed_radps = 0.0;
 };
 
-/// A RobotModel with what controller and program must know beside it, all from the robot's file
-/// (sim/robot/README.md says what each figure is and where it comes from).
+/// A RobotModel and the other figures of its robot file that controller and program need
+/// (sim/robot/README.md explains each).
 struct Robot {
   RobotDescription description;
-  std::string map;  ///< text of its map, as read: with the URDF's, all that there is to know
+  std::string map;  ///< text of its robot file, as read
   RobotModel<double> model;
   JointArray<double> nominal_rad{};  ///< posture of Stand; pose of `--start walk`
   double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching
@@ -100,6 +105,9 @@ Robot load_robot(const std::string& map_path);
 /// As load_robot, from texts; `map_name` and `urdf_name` appear in errors.
 Robot parse_robot(const std::string& map_text, const std::string& map_name,
                   const std::string& urdf_text, const std::string& urdf_name);
+
+/// The keys of a robot's file, for the reference.
+std::vector<SettingLine> robot_file_settings();
 
 /// The same figures in another scalar (one robot in float, or all lanes alike).
 template <typename To>

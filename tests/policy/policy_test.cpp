@@ -39,7 +39,8 @@ TEST_F(PolicyTest, IsRefusedForARobotWithOtherJoints) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "policy 'random' is for another robot: found joint 4 'RF_HAA', expected 'RF_HFE' "
-                 "of robot 'cart'");
+                 "of robot 'cart'; train one with sandrunner-train --robot FILE, or let it only "
+                 "stand with --policy none");
   }
 }
 

@@ -74,6 +74,28 @@ class Installed(unittest.TestCase):
         self.assertGreaterEqual(int(re.search("(?m)^TimeoutStopSec=([0-9]+)$", unit)[1]), 15)
 
 
+    def test_every_program_has_a_man_page_with_its_options_and_subcommands(self):
+        for program in (self.prefix / "bin").iterdir():
+            page = (self.prefix / f"share/man/man1/{program.name}.1").read_text()
+            self.assertIn("--version", page.replace("\\", ""))
+            for subcommand in re.findall(r"(?m)^  ([a-z-]+) ", run(program, "--help").partition("Subcommands:")[2]):
+                if subcommand.startswith("sandrunner"):
+                    continue  # an example
+                self.assertIn(f"SUBCOMMAND {subcommand.upper()}", page.replace("\\", ""))
+
+    def test_documents_bring_what_they_refer_to(self):
+        folder = self.prefix / "share/doc/sandrunner"
+        documents = sorted(folder.rglob("*.md"))
+        self.assertIn(folder / "drivers/robot/README.md", documents)
+        scripts = r"tools/(?:dds_security\.sh|ros2_localhost\.(?:sh|xml))|rt/telemetry/foxglove_layout\.json"
+        for document in documents:
+            text = document.read_text()
+            for link in re.findall(r"\]\(([^)#:]+)\)", text):
+                self.assertTrue((document.parent / link).exists(), f"{document}: {link}")
+            for path in re.findall(r"(?<![\w./-])((?:[\w-]+/)+(?:README|NOTES|CLAIMS)\.md|" + scripts + ")", text):
+                self.assertTrue((folder / path).exists() or (document.parent / path).exists(), f"{document}: {path}")
+
+
 class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -99,6 +121,14 @@ class Package(unittest.TestCase):
         self.assertIn("./usr/bin/sandrunner", paths)
         self.assertIn("./usr/lib/systemd/system/sandrunner.service", paths)
         self.assertEqual([path for path in paths if not path.startswith("./usr/")], [])
+
+    def test_it_carries_man_pages_documents_and_the_scripts_that_they_name(self):
+        paths = [line.split()[-1] for line in run("dpkg-deb", "--contents", self.package).splitlines()]
+        for path in ("man/man1/sandrunner.1", "man/man1/sandrunner-ctl.1", "man/man1/sandrunner-policy.1",
+                     "man/man1/sandrunner-replay.1", "doc/sandrunner/tools/deploy/README.md",
+                     "doc/sandrunner/rt/README.md", "doc/sandrunner/tools/dds_security.sh",
+                     "doc/sandrunner/tools/ros2_localhost.sh", "doc/sandrunner/copyright"):
+            self.assertIn("./usr/share/" + path, paths)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
+#include "rt/core/mode_machine.h"
 #include "tools/ctl/dds_io.h"
 #include "tools/ctl/errors.h"
 #include "tools/ctl/topics.h"
@@ -68,6 +69,8 @@ void show_status(const Options& options, Interrupt& interrupt) {
 
 void send_command(const Options& options, Interrupt& interrupt) {
   const DdsParticipant participant(options.dds, kIdentity);
+  ViewReader reader(participant);
+  RobotView view;
   CommandWriter writer(participant, options.dds);
   if (!interrupt.wait_until(kFindRobot_ns, [&] { return writer.has_robot(); })) {
     if (interrupt.came()) return;
@@ -78,6 +81,7 @@ void send_command(const Options& options, Interrupt& interrupt) {
       options.for_s ? std::max(1LL, std::llround(*options.for_s * (1e9 / kCommandPeriod_ns)))
                     : INT64_MAX;
   long long sent = 0;
+  std::string mode = "-";  // Walk, if the robot ever was in it; else the latest
   // Each has its own time since the start: a late one does not delay the next.
   while (sent < wanted && !interrupt.came()) {
     if (!writer.has_robot()) {
@@ -85,12 +89,22 @@ void send_command(const Options& options, Interrupt& interrupt) {
     }
     writer.send(options.velocity);
     ++sent;
+    reader.take_into(view);
+    if (mode != mode_name(Mode::kWalk)) mode = view.mode(steady_ns());
     if (interrupt.wait(start_ns + sent * kCommandPeriod_ns - steady_ns())) break;
   }
   // Not interrupt.wait(): after a signal it would not wait.
   for (int i = 0; i < kZeros; ++i) {
     if (i > 0) usleep(kCommandPeriod_ns / 1000);
     writer.send({});
+  }
+  const auto& [vx, vy, wz] = options.velocity;
+  const bool zero = vx == 0.0 && vy == 0.0 && wz == 0.0;
+  if (!zero && mode != "-" && mode != mode_name(Mode::kWalk)) {
+    throw RefusedError(
+        fmt::format("sent {} commands, none had an effect: the robot is in mode {} and obeys "
+                    "velocities in walk only (mode arm, mode stand, mode walk)",
+                    sent, mode));
   }
   print(fmt::format("sent {} commands in {:.2f} s, then zero\n", sent,
                     static_cast<double>(sent * kCommandPeriod_ns) * 1e-9));

@@ -44,13 +44,14 @@ class RobotView {
   bool alive(std::int64_t now_ns) const;
   /// Several lines, without control characters except line ends; "no robot" if it is not alive.
   std::string screen(std::int64_t now_ns) const;
+  /// "walk", "damping", ...; "-" if the robot has not told it.
+  std::string mode(std::int64_t now_ns) const;
   /// Mode, faults and command in one line; "no robot" if it is not alive.
   std::string line(std::int64_t now_ns) const;
 
  private:
   std::string value(const std::string& key) const;  // from the diagnostics; "-": none
   bool has_tick(std::int64_t now_ns) const;         // one that is not older than a second
-  std::string mode(std::int64_t now_ns) const;
   std::string faults(std::int64_t now_ns) const;
   std::string command(std::int64_t now_ns) const;
   std::string recent(std::size_t part) const;  // quantiles of late, control or write

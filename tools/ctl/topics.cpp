@@ -46,9 +46,11 @@ const std::array<Topic, 11> kTopics = {{
 }  // namespace
 
 Topic find_topic(const std::string& name, const DdsConfig& config) {
+  // ROS 2 calls rt/odom "/odom".
+  const std::string dds_name = name.starts_with('/') ? "rt" + name : name;
   for (Topic topic : kTopics) {
-    if (name != topic.name) continue;
-    if (config.stamped_cmd_vel && name == "rt/cmd_vel") {
+    if (dds_name != topic.name) continue;
+    if (config.stamped_cmd_vel && dds_name == "rt/cmd_vel") {
       topic.type = &geometry_msgs_msg_dds__TwistStamped__desc;
       topic.text = text_of<geometry_msgs_msg_dds__TwistStamped_>;
     }

@@ -36,7 +36,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--against", o.against_path, "second policy file, to compare with")
       ->type_name("FILE");
   app.add_option("--robot", o.robot_path,
-                 "map of the robot (sim/robot/README.md); default: the one that ships")
+                 "robot file (sim/robot/README.md; default: that of Raibo)")
       ->type_name("FILE");
   app.add_option("--out", o.out_dir, "folder for evaluation.json, CSV files and pictures")
       ->type_name("DIR");

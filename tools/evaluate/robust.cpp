@@ -86,7 +86,8 @@ Part Study::robust() {
         Trial& t = g.trials[i];
         t.loose_step.leg = static_cast<int>(i % kNumLegs);
         const double turn_rad = i % 4 < 2 ? c.imu_turn_rad : -c.imu_turn_rad;
-        (i % 2 == 0 ? t.imu_pitch_rad : t.imu_roll_rad) = turn_rad;
+        (i % 2 == 0 ? t.sensors.imu_pitch_rad : t.sensors.imu_roll_rad) =
+            static_cast<float>(turn_rad);
       }
       part.groups.push_back(g);
     }

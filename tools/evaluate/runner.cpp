@@ -9,12 +9,11 @@
 #include "estimator/observation.h"
 #include "rt/base/worker_pool.h"
 #include "rt/core/command_shaping.h"
+#include "sim/batch/disturbances.h"
 #include "sim/lanes/random.h"
 #include "sim/step/actuator.h"
 #include "sim/step/divergence.h"
 #include "sim/step/ground_truth.h"
-#include "tools/train/task/embedded.h"
-#include "tools/train/task/task_config.h"
 
 namespace sandrunner::evaluate {
 namespace {
@@ -22,22 +21,14 @@ namespace {
 enum Stream : std::uint64_t { kNoiseStream = 11, kPushStream = 12 };
 constexpr std::uint64_t kDrawsPerStep = 64;
 
-train::NoiseSettings training_noise() {
-  ConfigTree tree;
-  tree.add_text(embedded_train_file("training.toml"), "training.toml");
-  return train::read_noise_settings(tree);
-}
-
 // The robots of one pack from start to end.
 class PackRun {
  public:
   PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, Policy& policy,
-          const RunnerSettings& settings, const RobotFacts& facts,
-          const train::NoiseSettings& noise, const Trial* trials, int count)
+          const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count)
       : robot_(robot),
         policy_(policy),
         facts_(facts),
-        noise_(noise),
         trials_(trials),
         batch_(static_cast<int>(settings.width), foot, sim::StepSettings{}, settings.width),
         lanes_(static_cast<std::size_t>(count)) {
@@ -102,8 +93,8 @@ class PackRun {
     JointArray<double> target_rad{}, answer_rad{};  // the drives', the network's
     sim::BatchDrive<float> drive;
     TrialRecorder recorder;
-    bool in_air = false;  // the foot of the LooseStep
-    bool met = false;     // the place where it is disturbed
+    sim::TouchdownWatch touchdowns;  // of the LooseStep
+    bool met = false;                // the place where it is disturbed
   };
 
   static bool finished(const Trial& trial, const TrialRecorder& recorder) {
@@ -151,39 +142,21 @@ class PackRun {
     batch_.set_drive(i, lane.drive);
   }
 
-  // A vector of the body in the frame of its IMU, to the first order of the angles.
-  static std::array<float, 3> as_seen(const Trial& trial, const std::array<float, 3>& v) {
-    const auto roll = static_cast<float>(trial.imu_roll_rad),
-               pitch = static_cast<float>(trial.imu_pitch_rad);
-    return {v[0] - pitch * v[2], v[1] + roll * v[2], v[2] + pitch * v[0] - roll * v[1]};
-  }
-
-  std::array<float, kObservationSize> observe(const Trial& trial, std::uint64_t step,
-                                              const VelocityCommand& command,
-                                              const sim::RobotState<float>& state) const {
-    const sim::RigidState<float>& x = state.rigid;
-    const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
-    std::array<float, 3> up{r.r2.x, r.r2.y, r.r2.z};
-    std::array<float, 3> rate{x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
-    JointArray<float> q = x.q, qd = x.qd;
-    for (std::array<float, 3>* v : {&up, &rate}) *v = as_seen(trial, *v);
+  static std::array<float, kObservationSize> observe(const Trial& trial, std::uint64_t step,
+                                                     const VelocityCommand& command,
+                                                     const sim::RobotState<float>& state) {
+    sim::SensorReading seen = sim::read_sensors(state.rigid, trial.sensors);
     if (trial.noise_scale > 0.0) {
-      std::uint64_t counter = step * kDrawsPerStep;
-      const auto noise = [&](double sigma) {
+      sim::add_noise(seen, {}, [&](int i, double sigma) {
+        const std::uint64_t counter = step * kDrawsPerStep + static_cast<std::uint64_t>(i);
         return static_cast<float>(trial.noise_scale * sigma *
-                                  sim::random_normal(trial.seed, kNoiseStream, counter++));
-      };
-      for (float& u : up) u += noise(noise_.gravity);
-      const float length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
-      for (float& u : up) u /= length;
-      for (float& w : rate) w += noise(noise_.angular_velocity_radps);
-      for (float& v : q) v += noise(noise_.joint_position_rad);
-      for (float& v : qd) v += noise(noise_.joint_velocity_radps);
+                                  sim::random_normal(trial.seed, kNoiseStream, counter));
+      });
     }
     return make_observation<float>(
         {static_cast<float>(command.vx_mps), static_cast<float>(command.vy_mps),
          static_cast<float>(command.wz_radps)},
-        up, rate, q, qd);
+        seen.up, seen.angular_velocity, seen.position, seen.velocity);
   }
 
   // Pushes and the loose step. True if the state changed.
@@ -201,8 +174,7 @@ class PackRun {
         if (square <= 1.0 && square > 1e-4) break;
       }
       const double scale = trial.push_speed_mps / std::sqrt(x * x + y * y);
-      state.rigid.velocity.x += static_cast<float>(scale * x);
-      state.rigid.velocity.y += static_cast<float>(scale * y);
+      sim::push(state, scale * x, scale * y);
       changed = true;
     }
     if (trial.loose_step.from_m > 0.0) changed = loosen(trial, lane, state) || changed;
@@ -211,14 +183,12 @@ class PackRun {
 
   // Moves the foot to the loose patch when its turn has come.
   static bool loosen(const Trial& trial, Lane& lane, sim::RobotState<float>& state) {
-    sim::FootContact<float>& contact = state.feet[trial.loose_step.leg];
-    const bool was_in_air = lane.in_air;
-    lane.in_air = contact.active == 0.0f;
-    if (lane.met || !was_in_air || lane.in_air ||
-        lane.recorder.distance_m() < trial.loose_step.from_m) {
+    const int leg = trial.loose_step.leg;
+    const bool touched_down = lane.touchdowns.touched_down(state, leg);
+    if (lane.met || !touched_down || lane.recorder.distance_m() < trial.loose_step.from_m) {
       return false;
     }
-    contact.region = 1.0f;
+    sim::put_on_patch(state, leg, 1);
     lane.met = true;
     return true;
   }
@@ -226,7 +196,6 @@ class PackRun {
   const sim::Robot& robot_;
   Policy& policy_;
   const RobotFacts& facts_;
-  const train::NoiseSettings& noise_;
   const Trial* trials_;
   sim::Batch batch_;
   std::vector<Lane> lanes_;
@@ -259,7 +228,6 @@ std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootPro
                                      const std::function<void(std::size_t)>& progress) {
   const auto width = static_cast<std::size_t>(settings.width);
   const RobotFacts facts = robot_facts(robot, policy.spec());
-  const train::NoiseSettings noise = training_noise();
   std::vector<TrialFigures> figures(trials.size());
   WorkerPool pool(settings.threads);
   // One for each worker; they share the weights.
@@ -269,7 +237,7 @@ std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootPro
   pool.run(static_cast<int>((trials.size() + width - 1) / width), [&](int pack, int worker) {
     const std::size_t first = static_cast<std::size_t>(pack) * width;
     const std::size_t count = std::min(width, trials.size() - first);
-    PackRun(robot, foot, policies[static_cast<std::size_t>(worker)], settings, facts, noise,
+    PackRun(robot, foot, policies[static_cast<std::size_t>(worker)], settings, facts,
             trials.data() + first, static_cast<int>(count))
         .run(figures.data() + first);
     const std::lock_guard lock(mutex);

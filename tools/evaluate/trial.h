@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "rt/core/messages.h"
+#include "sim/batch/sensors.h"
 #include "sim/step/robot_step.h"
 
 namespace sandrunner::evaluate {
@@ -32,8 +33,7 @@ struct CommandScript {
 };
 
 /// A loose patch under one foot: the first stance of this leg beyond a distance stands on patch 1
-/// of the terrain. (Patches along x would loosen the ground under both feet of a pair.) The foot is
-/// moved there within 10 ms of its touchdown.
+/// of the terrain. The foot is moved there within 10 ms of its touchdown.
 struct LooseStep {
   double from_m = 0.0;  ///< 0: none
   int leg = 0;
@@ -49,11 +49,10 @@ struct Trial {
   double longest_s = 30.0;
   /// Distances from the start, m, along the robot's own heading; equal: no track.
   double track_begin_m = 0.0, track_end_m = 0.0;
-  int latency_ticks = 1;        ///< age of the observation at which joint targets arrive, 1 to 80
-  double noise_scale = 0.0;     ///< of the training's observation noise
+  int latency_ticks = 1;  ///< age of the observation at which joint targets arrive, 1 to 80
+  sim::SensorErrors sensors;
+  double noise_scale = 0.0;     ///< of sim::ObservationNoise
   double push_speed_mps = 0.0;  ///< kick of this size in a random direction every second
-  double imu_roll_rad = 0.0;    ///< how far the IMU is turned from where it is said to be, ...
-  double imu_pitch_rad = 0.0;   ///< ... about x and y; small angles
   LooseStep loose_step;
   double ground_changes_at_m = 0.0;  ///< world x of the terrain's second patch; 0: none to be met
   std::uint64_t seed = 0;            ///< of noise and pushes

@@ -8,14 +8,13 @@
 #include "estimator/cost_of_transport.h"
 #include "estimator/heading.h"
 #include "rt/base/quantile.h"
-#include "tools/train/task/step_outcome.h"
 
 namespace sandrunner::evaluate {
 namespace {
 
 constexpr double kStep_s = 1.0 / kPolicyHz;
-// A foot is loaded as in the training; a lift-off takes two periods without.
-using train::kLoaded_n;
+// A lift-off takes two periods without a load.
+using sim::kLoaded_n;
 constexpr std::size_t kSettled = kPolicyHz;  // periods before the tracking errors count
 constexpr double kUsualGaitCycle_s = 0.5;    // where no stride is seen
 constexpr double kShortestGaitCycle_s = 0.2, kLongestGaitCycle_s = 1.0;
@@ -77,6 +76,7 @@ void TrialRecorder::end_period(const sim::BatchSums<float>& sums) {
   Period& p = periods_.back();
   for (int l = 0; l < kNumLegs; ++l) p.load[l] = sums.foot_load[l] * kPerTick;
   p.power = sums.power * kPerTick;
+  p.extension_power = sums.extension_power * kPerTick;
   p.torque2 = sums.torque_squared * kPerTick;
   p.too_fast = sums.ticks_too_fast * kPerTick;
   p.past_stop = sums.ticks_past_stop * kPerTick;
@@ -101,6 +101,7 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
     sum.estimate_height2 += p.estimate_height2;
     sum.estimate_foot2 += p.estimate_foot2;
     sum.power += p.power;
+    sum.extension_power += p.extension_power;
     sum.torque2 += p.torque2;
     duty += loaded_share(p.load);
     for (int l = 0; l < kNumLegs; ++l) {
@@ -115,6 +116,7 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
   f.yaw_rate_radps = sum.yaw_rate / n;
   f.horizontal_speed_mps = std::hypot(f.vx_mps, f.vy_mps);
   f.power_w = sum.power / n;
+  f.leg_extension_power_w = sum.extension_power / n;
   f.torque_squared_nm2 = sum.torque2 / n;
   const double power = f.power_w + f.torque_squared_nm2 / square(facts.motor_constant);
   const double weight_n = facts.mass_kg * kGravity_mps2;
@@ -124,11 +126,16 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
   if (std::fabs(f.yaw_rate_radps) >= 0.05) {
     f.turning_cot = power / (weight_n * facts.foot_diagonal_m * std::fabs(f.yaw_rate_radps));
   }
+  std::array<double, kNumLegs> iqr_m{};
   f.clearance_iqr_m = 0.0;
-  for (auto& h : heights) {
+  for (int l = 0; l < kNumLegs; ++l) {
+    std::vector<double>& h = heights[l];
     std::sort(h.begin(), h.end());
-    f.clearance_iqr_m += (quantile(h, 0.75) - quantile(h, 0.25)) / kNumLegs;
+    iqr_m[l] = quantile(h, 0.75) - quantile(h, 0.25);
+    f.clearance_iqr_m += iqr_m[l] / kNumLegs;
   }
+  f.least_clearance_iqr_m = *std::min_element(iqr_m.begin(), iqr_m.end());
+  f.greatest_clearance_iqr_m = *std::max_element(iqr_m.begin(), iqr_m.end());
   f.stride_hz = lift_offs / (kNumLegs * n * kStep_s);
   f.duty = duty / n;
   f.body_height_m = sum.height / n;
@@ -186,11 +193,12 @@ TrialFigures TrialRecorder::figures(const Trial& trial, bool fell, bool met,
   if (trial.has_place()) f.disturbance_met = met ? 1.0 : 0.0;
   if (!fell) steady_figures(facts, f);
   if (trial.has_track()) track_figures(trial, facts, f);
-  double too_fast = 0.0, past_stop = 0.0, velocity_error = 0.0, yaw_error = 0.0;
+  double too_fast = 0.0, past_stop = 0.0, velocity_error = 0.0, yaw_error = 0.0, turned = 0.0;
   for (std::size_t i = 0; i < periods_.size(); ++i) {
     const Period& p = periods_[i];
     too_fast += p.too_fast;
     past_stop += p.past_stop;
+    turned += p.yaw_rate * kStep_s;
     if (i < kSettled) continue;
     velocity_error += p.velocity_error;
     yaw_error += p.yaw_error;
@@ -198,6 +206,7 @@ TrialFigures TrialRecorder::figures(const Trial& trial, bool fell, bool met,
   const double n = static_cast<double>(periods_.size());
   f.too_fast_share = too_fast / n;
   f.past_stop_share = past_stop / n;
+  f.turned_rad = turned;
   f.torque_limit_share = torque_limit_steps_ / n;
   f.joint_speed_max_radps = joint_speed_max_;
   if (periods_.size() > kSettled) {

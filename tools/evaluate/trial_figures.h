@@ -39,7 +39,12 @@ struct TrialFigures {
   double torque_squared_nm2 = kNotDefined;    ///< mean of the sum over joints of tau^2
   double cot = kNotDefined;                   ///< P/(m g |v_xy|); not below 0.05 m/s
   double turning_cot = kNotDefined;  ///< P/(m g l_c |wz|), l_c diagonal foot distance; paper, CoTu
+  /// Interquartile range of the height of a foot: mean of the four ...
   double clearance_iqr_m = kNotDefined;
+  double least_clearance_iqr_m = kNotDefined;     ///< ... of the foot with the least ...
+  double greatest_clearance_iqr_m = kNotDefined;  ///< ... and with the greatest
+  /// Paper, P_mech^E: mean sum over HFE and KFE of max(tau, 0) max(qd, 0).
+  double leg_extension_power_w = kNotDefined;
   double stride_hz = kNotDefined;          ///< lift-offs of a foot per second
   double duty = kNotDefined;               ///< share of 10 ms periods in which a foot is loaded
   double body_height_m = kNotDefined;      ///< above the deformed ground
@@ -53,6 +58,7 @@ struct TrialFigures {
   double past_stop_share = 0.0;     ///< of control ticks, a joint past its stop
   double torque_limit_share = 0.0;  ///< of policy steps whose new targets ask for the torque limit
   double joint_speed_max_radps = 0.0;  ///< of the samples at 100 Hz
+  double turned_rad = 0.0;             ///< integral of the yaw rate
 
   // From 1 s on, until the end or the fall.
   double velocity_error_mps = kNotDefined;  ///< mean length of the error of (vx, vy)
@@ -91,7 +97,7 @@ class TrialRecorder {
     float velocity_error = 0, yaw_error = 0, action_change = 0;
     float estimate_velocity2 = 0, estimate_height2 = 0, estimate_foot2 = 0;
     std::array<float, kNumLegs> foot_height{}, load{};
-    float power = 0, torque2 = 0, too_fast = 0, past_stop = 0;
+    float power = 0, extension_power = 0, torque2 = 0, too_fast = 0, past_stop = 0;
   };
   void track_figures(const Trial& trial, const RobotFacts& facts, TrialFigures& f) const;
   void steady_figures(const RobotFacts& facts, TrialFigures& f) const;

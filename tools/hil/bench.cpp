@@ -86,7 +86,7 @@ BenchReport Bench::play(const std::function<bool()>& more, pid_t controller,
   }
   // For whoever comes next.
   for (const Bus& bus : buses_) {
-    if (bus.deaf) set_link(bus.interface, true);
+    if (bus.down) set_link(bus.interface, true);
   }
   for (const TimedFault& fault : script_) {
     if (fault.kind == BenchFault::kQueueFull) remove_queue(buses_[fault.first].interface);
@@ -117,7 +117,7 @@ void Bench::answer(Bus& bus, int index) {
   std::array<CanFrame, CanSocket::kMaxFrames> replies;
   std::size_t count = 0;
   const double now = now_s();
-  for (int i = 0; i < got.frames && !bus.deaf; ++i) {
+  for (int i = 0; i < got.frames && !bus.down; ++i) {
     for (int j = 0; j < kNumJoints; ++j) {
       if (hardware_.drives[j].bus != index) continue;
       if (!drives_[j].answer(received[i].frame, now, replies[count])) continue;
@@ -145,7 +145,7 @@ void Bench::make_faults(double now_s) {
   for (Bus& bus : buses_) {
     if (bus.back_at_s < 0.0 || now_s < bus.back_at_s) continue;
     bus.back_at_s = -1.0;
-    bus.deaf = false;
+    bus.down = false;
     inject(bus.interface, BusEvent::kRestarted);
   }
   while (made_ < script_.size()) {
@@ -194,7 +194,7 @@ void Bench::make(const TimedFault& fault, double now_s) {
     case BenchFault::kCode:
       faults.code = static_cast<std::uint8_t>(fault.value);
       break;
-    case BenchFault::kHot:
+    case BenchFault::kOverTemperature:
       faults.temperature_degc = fault.value;
       break;
     case BenchFault::kReversed:
@@ -210,20 +210,20 @@ void Bench::make(const TimedFault& fault, double now_s) {
       on_stand_ = free_joints_ = true;
       break;
     case BenchFault::kBusOff:
-      bus.deaf = true;
+      bus.down = true;
       bus.back_at_s = now_s + kBusOff_s;
       inject(bus.interface, BusEvent::kOff);
       break;
     case BenchFault::kLinkDown:
-      bus.deaf = true;
+      bus.down = true;
       set_link(bus.interface, false);
       break;
     case BenchFault::kLinkUp:
       set_link(bus.interface, true);
-      bus.deaf = false;
+      bus.down = false;
       break;
     case BenchFault::kQueueFull:
-      bus.deaf = true;
+      bus.down = true;
       set_queue(bus.interface, 0);
       break;
     case BenchFault::kImuSilent:
@@ -298,8 +298,8 @@ void Bench::observe(double now_s) {
     const EmulatedDrive& drive = drives_[j];
     on = on && drive.state() == EmulatedDrive::State::kOn;
     walks = walks && std::fabs(drive.kp_nmprad() - walk_kp_) < 0.01 * walk_kp_;
-    const bool hears = !drive.faults().silent && !buses_[hardware_.drives[j].bus].deaf;
-    damped = damped && (drive.passive() || !hears);
+    const bool reachable = !drive.faults().silent && !buses_[hardware_.drives[j].bus].down;
+    damped = damped && (drive.passive() || !reachable);
     passive = passive && drive.passive();
     limp = limp && drive.limp();
   }

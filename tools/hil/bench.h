@@ -38,7 +38,7 @@ class Bench {
   struct Bus {
     std::string interface;
     std::unique_ptr<CanSocket> socket;
-    bool deaf = false;                   ///< off, or down
+    bool down = false;                   ///< off, or down
     double back_at_s = -1.0;             ///< when it is on again
     std::unique_ptr<CanSocket> foreign;  ///< of another program
   };

@@ -11,17 +11,17 @@ namespace {
 constexpr const char* kDamping = "damping, then off";
 constexpr const char* kNotStarted = "nothing is enabled";
 
-// A drive that hears nothing any more lets go by its own time-out, 50 ms in the examples. The robot
+// A drive that receives nothing switches off by its own time-out, 50 ms in the examples. The robot
 // stands up when the fault comes, but where another time is given: 6 s after, it walks.
 constexpr std::array<FaultRun, 27> kRuns = {{
-    {"drive-silent", "a drive says nothing, in Walk", "moteus", "6 silent LF_KFE", "joints_stale",
+    {"drive-silent", "a drive is silent, in Walk", "moteus", "6 silent LF_KFE", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-reboots", "a drive reboots in 0.3 s", "moteus", "1 reboot LF_KFE 0.3", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-resets", "a drive is off at once, and answers", "moteus", "1 reboot RF_HFE 0",
      "drive_fault", "RF_HFE", "switched off by itself", kDamping, 1, 0.006, 0.006},
     {"drive-resets-mit",
-     "a drive is off at once, in Walk, and answers: MIT layout, whose replies do not tell", "mit",
+     "a drive is off at once, in Walk, and answers: MIT layout, whose replies do not report it", "mit",
      "6 reboot RF_KFE 0", "torque_missing", "RF_KFE", "", kDamping, 1, 0.15, 0.15},
     // Three exchanges at 800 Hz without a reply, and the one that brings the command: 5 ms.
     {"damiao-reboots", "a Damiao reboots in 0.3 s, and with it forgets its time-out", "damiao",
@@ -69,7 +69,7 @@ constexpr std::array<FaultRun, 27> kRuns = {{
     {"controller-killed", "SIGKILL to the controller in Walk: moteus", "moteus", "6 kill", "", "",
      "", "the drives' time-out damps", -1, 0.052, 0.052},
     {"controller-killed-mit", "SIGKILL to the controller in Walk: MIT layout", "mit", "6 kill", "",
-     "", "", "the drives' time-out lets go", -1, 0.052, 0.052},
+     "", "", "the drives' time-out switches them off", -1, 0.052, 0.052},
     {"bench-dead", "all drives and the IMU are gone", "moteus", "1 dead", "joints_stale",
      "LF_HAA LF_HFE LF_KFE RF_HAA RF_HFE RF_KFE LH_HAA LH_HFE LH_KFE RH_HAA RH_HFE RH_KFE", "",
      "the drives' time-out damps", 1, 0.0, 0.052},

@@ -25,7 +25,7 @@ struct Kind {
 };
 
 constexpr std::array<Kind, 23> kKinds = {{
-    {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive hears and says nothing"},
+    {BenchFault::kSilent, "silent", Takes::kJoint, "JOINT: the drive receives and sends nothing"},
     {BenchFault::kReboot, "reboot", Takes::kJointAndNumber, "JOINT S: off, and back after S s"},
     {BenchFault::kLoses, "loses", Takes::kJointAndNumber, "JOINT N: one of N replies is lost"},
     {BenchFault::kSwapped, "swapped", Takes::kTwoJoints, "JOINT JOINT: each has the other's id"},
@@ -35,7 +35,7 @@ constexpr std::array<Kind, 23> kKinds = {{
     {BenchFault::kJumps, "jumps", Takes::kJointAndNumber, "JOINT RAD: its encoder jumps"},
     {BenchFault::kTurns, "turns", Takes::kJointAndNumber, "JOINT RAD: a hand turns it, on a stand"},
     {BenchFault::kCode, "code", Takes::kJointAndNumber, "JOINT N: a fault of its own"},
-    {BenchFault::kHot, "hot", Takes::kJointAndNumber, "JOINT DEGC: its temperature"},
+    {BenchFault::kOverTemperature, "hot", Takes::kJointAndNumber, "JOINT DEGC: its temperature"},
     {BenchFault::kReversed, "reversed", Takes::kJoint, "JOINT: its torque acts the other way"},
     {BenchFault::kForeign, "foreign", Takes::kJointAndNumber,
      "JOINT N: another program sends it N set-points, at 1 kHz"},

@@ -11,19 +11,19 @@
 namespace sandrunner::hil {
 
 enum class BenchFault : std::uint8_t {
-  kSilent,     ///< a drive hears and says nothing any more
-  kReboot,     ///< a drive is silent for so long, then back, and off
-  kLoses,      ///< one of so many of a drive's replies is lost
-  kSwapped,    ///< two drives have each other's identifier
-  kScaled,     ///< a drive's numbers span so many times what is configured
-  kMode,       ///< a Damiao is in this control mode
-  kJumps,      ///< a drive's encoder jumps by so much, rad
-  kTurns,      ///< on a stand, where nothing else moves: a hand turns a joint by so much, rad
-  kCode,       ///< a drive reports this fault of its own
-  kHot,        ///< a drive has this temperature, degrees C
-  kReversed,   ///< a drive's torque acts the other way than it says
-  kForeign,    ///< another program sends a drive so many set-points, one a millisecond
-  kSecond,     ///< a second controller is started, if the bench started the first
+  kSilent,           ///< a drive hears and says nothing any more
+  kReboot,           ///< a drive is silent for so long, then back, and off
+  kLoses,            ///< one of so many of a drive's replies is lost
+  kSwapped,          ///< two drives have each other's identifier
+  kScaled,           ///< a drive's numbers span so many times what is configured
+  kMode,             ///< a Damiao is in this control mode
+  kJumps,            ///< a drive's encoder jumps by so much, rad
+  kTurns,            ///< on a stand, where nothing else moves: a hand turns a joint by so much, rad
+  kCode,             ///< a drive reports this fault of its own
+  kOverTemperature,  ///< a drive has this temperature, degrees C
+  kReversed,         ///< a drive's torque acts the other way than it says
+  kForeign,          ///< another program sends a drive so many set-points, one a millisecond
+  kSecond,           ///< a second controller is started, if the bench started the first
   kStand,      ///< on a stand each joint turns under its drive's torque, and nothing else moves
   kBusOff,     ///< a bus goes off, and is on again after 0.1 s
   kLinkDown,   ///< a network interface is set down ...

@@ -94,11 +94,12 @@ int play_runs(const Arguments& a) {
 int run(int argc, char** argv) {
   Arguments a;
   CLI::App app(
-      "Plays a robot without one: the simulator as twelve CAN drives and a serial IMU, in real "
-      "time, for the controller that runs elsewhere. Reads the controller's own files.",
+      "Emulates a robot for a controller that runs elsewhere: twelve CAN drives and a serial IMU, "
+      "in "
+      "real time. Reads the controller's own files.",
       "sandrunner-hil");
   app.option_defaults()->always_capture_default();
-  app.add_option("--hardware", a.hardware, "TOML with the drives and the IMU")
+  app.add_option("--hardware", a.hardware, "hardware file, the same as the controller's")
       ->type_name("FILE")
       ->always_capture_default(false);
   app.add_option("--terrain", a.terrain, "ground: a preset or a TOML file");
@@ -123,7 +124,7 @@ int run(int argc, char** argv) {
       ->type_name("S");
   app.add_option("--out", a.out, "file for the report, JSON")->type_name("FILE");
   CLI::App* const runs =
-      app.add_subcommand("runs", "the list of fault runs, each with a controller of its own");
+      app.add_subcommand("runs", "the list of fault runs, each with its own controller");
   RunPlace& p = a.place;
   runs->add_option("--controller", p.controller, "the program")->type_name("FILE");
   runs->add_option("--hardware-dir", p.hardware_dir,

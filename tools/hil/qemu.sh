@@ -1,18 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/hil/qemu.sh [--parallel] [--out DIR] [--limit S] [--bin DIR] COMMAND: boots Debian's PREEMPT_RT kernel in QEMU
-# with real SocketCAN (can0 to can3, CAN FD; vcan0, vcan1), runs the shell command in it, and ends with its exit code.
-# sandrunner, sandrunner-hil and the programs of build/release/bin that the command names are in the guest's path; it
-# runs in /hil, where the files of drivers/robot/examples lie. What it leaves in /out is brought to DIR.
+# tools/hil/qemu.sh [--parallel] [--out DIR] [--limit S] [--bin DIR] COMMAND: boots Debian's
+# PREEMPT_RT kernel in QEMU with real SocketCAN (can0 to can3, CAN FD; vcan0, vcan1), runs the shell
+# command in it, and ends with its exit code. sandrunner, sandrunner-hil and the programs of
+# build/release/bin that the command names are in the guest's path; it runs in /hil, where the files
+# of drivers/robot/examples lie. What it leaves in /out is brought to DIR.
 #
-#   (without)   one processor, virtual time: an instruction takes a nanosecond, whatever the host does besides
-#   --parallel  two processors, the host's time: threads are really parallel, and nothing is repeatable
+#   (without)   one processor, virtual time: an instruction takes a nanosecond, whatever the host
+#               does besides
+#   --parallel  two processors, the host's time: threads are really parallel, and nothing is
+#               repeatable
 #
-# Ends with 77 and one line where that is not to be had (no QEMU, no kernel to download): tests then skip. 125: the
-# guest did not report, or not within --limit seconds (default 170).
-# The kernel comes from Debian's package, whose name is asked for at run time, and is kept in
+# Ends with 77 and one line where that is not to be had (no QEMU, no kernel to download): tests then
+# skip. 125: the guest did not report, or not within --limit seconds (default 170). The kernel comes
+# from Debian's package, whose name is asked for at run time, and is kept in
 # ${XDG_CACHE_HOME:-~/.cache}/sandrunner-hil.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 bin=$root/build/release/bin out="" limit=170 parallel=false

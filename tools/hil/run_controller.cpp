@@ -103,6 +103,7 @@ RunVerdict run_controller(const FaultRun& run, const RunPlace& place) {
       std::filesystem::absolute(fmt::format("{}/{}.toml", place.hardware_dir, run.hardware));
   std::vector<std::string> assignments = place.assignments;
   assignments.push_back("hardware.imu.device=" + place.imu_link);
+  assignments.emplace_back("hardware.timeout_unverified=true");  // the bench's drives have theirs
   const ProcessConfig config = read_bench_config(hardware, place.terrain, {}, assignments);
   std::vector<TimedFault> faults;
   if (*run.fault != '\0') {

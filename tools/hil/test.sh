@@ -1,19 +1,29 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/hil/test.sh short|walk|faults|cost|check|nudge|record|parallel|full [BIN]: the controller against the bench in the emulated
-# machine (qemu.sh), with the programs in BIN (default build/release/bin); judges, and prints what was measured.
+# tools/hil/test.sh short|walk|faults|cost|check|nudge|record|parallel|full [BIN]: the controller
+# against the bench in the emulated machine (qemu.sh), with the programs in BIN (default
+# build/release/bin); judges, and prints what was measured.
 #
-#   short     what tools/test.sh runs: tests that need CAN in the kernel, both protocols walk 2 s, some fault runs
-#   walk      both protocols in both modes walk 10 s at 1 kHz, at the speed of the same program in its own simulator
+#   short     what tools/test.sh runs: tests that need CAN in the kernel, both protocols walk 2 s,
+#             some fault runs
+#   walk      both protocols in both modes walk 10 s at 1 kHz, at the speed of the same program in
+#             its own simulator
 #   faults    the whole list of fault runs
-#   cost      what a control tick costs with twelve drives on four buses in torque mode; its system calls
-#   check     `sandrunner check --move`, each joint turned by a hand: one has the wrong sign, two are swapped
-#   nudge     `sandrunner check --nudge`, each drive pushes its joint: the torque of one acts the other way
+#   cost      what a control tick costs with twelve drives on four buses in torque mode; its system
+#             calls
+#   check     `sandrunner check --move`, each joint turned by a hand: one has the wrong sign, two
+#             are swapped
+#   nudge     `sandrunner check --nudge`, each drive pushes its joint: the torque of one acts the
+#             other way
 #   record    a recording made over CAN, replayed here
-#   parallel  two processors in the host's time: what needs no walk, which an emulated machine is too slow for
+#   parallel  two processors in the host's time: what needs no walk, which an emulated machine is
+#             too slow for
 #   full      all of these
 # Files are left in build/hil.
 set -euo pipefail
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 lane=${1:-} bin=${2:-$root/build/release/bin}

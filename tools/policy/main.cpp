@@ -139,7 +139,7 @@ int run(int argc, char** argv) {
 
   CommandEnvelope envelope;
   CLI::App* envelope_command = app.add_subcommand(
-      "envelope", "say in a policy file which velocity commands the policy can follow");
+      "envelope", "write into a policy file which velocity commands the policy can follow");
   envelope_command->add_option("IN", input, "policy file")->required();
   envelope_command->add_option("--out", output, "policy file to write")->required();
   const auto speed = [&](const char* option, double& value, const char* what) {
@@ -154,8 +154,7 @@ int run(int argc, char** argv) {
         "largest change of the yaw rate, rad/s^2");
 
   std::string path;
-  CLI::App* info_command =
-      app.add_subcommand("info", "check a policy file and print what it holds");
+  CLI::App* info_command = app.add_subcommand("info", "check a policy file and print its contents");
   info_command->add_option("FILE", path, "policy file")->required();
 
   app.footer(

@@ -51,14 +51,14 @@ std::optional<Arguments> parse(int argc, char** argv) {
       "(what can be compared is compared all the same).",
       "sandrunner-replay");
   app.add_option("FILE", a.file, "recording (run.mcap, black-box-TICK.mcap)")->required();
-  app.add_option("--from", a.from_s, "first second that is compared and drawn")->type_name("S");
+  app.add_option("--from", a.from_s, "first second to compare and draw")->type_name("S");
   app.add_option("--to", a.to_s, "last second")->type_name("S");
   app.add_option("--plot", a.plot_dir, "folder for run.csv, run.html, run.png, strip.png")
       ->type_name("DIR");
   app.add_flag("--view", a.view,
                "shows the recording, of a long one the last 10 minutes, in a browser of this "
                "computer, at the address that is printed, until Ctrl-C");
-  app.add_option("--set", a.assignments, "what if: one setting otherwise; may be repeated")
+  app.add_option("--set", a.assignments, "replay with a changed setting; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
   app.footer(

@@ -1,9 +1,14 @@
 #!/bin/sh
-# train.sh DIR SEED [NAME ...]: trains the controllers of trainings/ (all of them without a name) with
-# this seed in DIR/NAME-SEED. It continues a training that was interrupted. Of one that is complete it
-# puts the best policy and a short learning curve into DIR: NAME-SEED.safetensors, NAME-SEED.csv.
-# TRANSITIONS: length of each training, the same for all controllers that are compared.
+# SPDX-License-Identifier: BSD-3-Clause
+# tools/study/train.sh DIR SEED [NAME ...]: trains the controllers of trainings/ (all of them
+# without a name) with this seed in DIR/NAME-SEED. It continues a training that was interrupted. Of
+# one that is complete it puts the best policy and a short learning curve into DIR:
+# NAME-SEED.safetensors, NAME-SEED.csv. TRANSITIONS: length of each training, the same for all
+# controllers that are compared.
 set -eu
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 here=$(cd "$(dirname "$0")" && pwd)
 program=${SANDRUNNER_TRAIN:-$here/../../build/release/bin/sandrunner-train}
 transitions=${TRANSITIONS:-60e6}

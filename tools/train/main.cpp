@@ -40,7 +40,7 @@ int run(int argc, char** argv) {
          "TOML with settings that differ from the built-in ones (tools/train/training.toml)")
       ->type_name("FILE");
   app.add_option("--robot", robot_file,
-                 "map of the robot to train (sim/robot/README.md); default: the one that ships")
+                 "robot file of the robot to train (sim/robot/README.md; default: that of Raibo)")
       ->type_name("FILE");
   app.add_option("--set", assignments, "one setting; may be repeated")
       ->type_name("PATH=VALUE")

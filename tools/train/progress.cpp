@@ -24,7 +24,7 @@ struct Column {
   double (*value)(R row);
 };
 
-// The terms of the reward follow, each as reward_<name>.
+// The terms of the reward follow, each as reward_<name> or penalty_<name>.
 constexpr Column kColumns[] = {
     {"iteration", [](R r) { return r.iteration; }},
     {"transitions", [](R r) { return r.transitions; }},
@@ -127,8 +127,9 @@ std::vector<Series> series_of(const std::vector<ProgressRow>& rows) {
     for (const ProgressRow& row : rows) series.values.push_back(column.value(row));
     all.push_back(std::move(series));
   }
-  for (std::size_t i = 0; i < kRewardTerms; ++i) {
-    Series series{fmt::format("reward_{}", reward_term_name(i)), {}};
+  const std::vector<std::string> terms = reward_term_names();
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    Series series{terms[i], {}};
     for (const ProgressRow& row : rows) series.values.push_back(row.window.terms[i]);
     all.push_back(std::move(series));
   }
@@ -226,12 +227,11 @@ const char* Progress::explanation() {
          "And of the schedule:\n"
          "  late     share of the late penalties: rises while the battery is passed\n"
          "  min      minutes left\n"
-         "curve.csv has a row for each update: all of these, the battery's figures for each "
-         "forward "
-         "speed\n(battery.forward_share, slowest first), reward, tracking and falls under noise "
-         "and "
-         "pushes, and\neach term of the reward by its name (reward_...); curve.png draws the most "
-         "telling ones,\ncurve.html all of them and, in 3D, a run of the policy as it is.\n";
+         "curve.csv has a row for each update: all of these, the battery's figures for each\n"
+         "forward speed (battery.forward_share, slowest first), reward, tracking and falls under\n"
+         "noise and pushes, and each term of the reward by its name (reward_..., penalty_...);\n"
+         "curve.png draws the most telling ones, curve.html all of them and, in 3D, a run of the\n"
+         "policy as it is.\n";
 }
 
 void Progress::write(const std::string& dir) const {
@@ -271,11 +271,11 @@ std::string Progress::page_json(const std::string& title) const {
     }
     add(panel.title, panel.unit, lines);
   }
-  for (const bool terms : {true, false}) {  // what the robot earns comes first
-    for (const Series& series : all) {
-      if (series.name.starts_with("reward_") != terms || drawn.contains(series.name)) continue;
-      add(series.name, "", line("", series.name));
-    }
+  // The terms of the reward come first; they are the last columns.
+  std::vector<std::string> names = reward_term_names();
+  for (const Series& series : all) names.push_back(series.name);
+  for (const std::string& name : names) {
+    if (!drawn.contains(name)) add(name, "", line("", name));
   }
   return fmt::format(R"({{"title":{},"x_label":"{}","x":{},"every":{},"charts":[{}]}})",
                      nlohmann::json(title).dump(), kAbscissa, json_list(millions(rows_), every),

@@ -43,7 +43,7 @@ constexpr NumberSetting<G> kGate[] = {
 
 using L = learner::LearnerConfig;
 constexpr NumberSetting<L> kLearner[] = {
-    {"gamma", &L::gamma, 0.0, 1.0},
+    {"gamma", &L::gamma, 0.0, 0.999999},
     {"lambda", &L::lambda, 0.0, 1.0},
     {"kl_target", &L::kl_target, 1e-6, 10.0},
     {"learning_rate_start", &L::learning_rate_start, 1e-9, 1.0},

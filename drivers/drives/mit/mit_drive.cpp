@@ -16,6 +16,28 @@ namespace {
 
 constexpr std::uint8_t kUnknownFault = 0xFF;
 
+struct Model {
+  std::string name;
+};
+constexpr Setting<Model> kModel[] = {
+    {"model", &Model::name, "mit: the drive's model; a wrong name makes the message list them all.",
+     kRequired},
+};
+constexpr Setting<MitDrive> kReply[] = {
+    {"reply_id", &MitDrive::reply_id, 0, 0x7FE, "mit: identifier of its replies (master id)."},
+};
+constexpr const char* kOfTheModel = "the model's";
+using L = MitLimits;
+constexpr Setting<L> kRanges[] = {
+    {"position_rad", &L::position_rad, 0.1, 1e3, "mit: range of its positions.", kOfTheModel},
+    {"velocity_radps", &L::velocity_radps, 0.1, 1e3, "mit: range of its velocities.", kOfTheModel},
+    {"torque_nm", &L::torque_nm, 0.1, 1e3, "mit: range of the torques of commands.", kOfTheModel},
+};
+constexpr Setting<L> kReplyRange[] = {
+    {"reply_torque_nm", &L::reply_torque_nm, 0.1, 1e3, "mit: range of the torques of replies.",
+     "torque_nm"},
+};
+
 bool is_damiao(const MitDrive& drive) noexcept { return drive.variant == MitVariant::kDamiao; }
 
 /// No code means zero: a drive at rest reports half a step. Left as it is, a joint that stands
@@ -54,7 +76,9 @@ void set_address(MitDrive& drive, int id, CanFormat format) noexcept {
 }
 
 void read_drive(MitDrive& drive, ConfigTree& t, const std::string& where) {
-  const std::string name = t.text("model", "");
+  Model wanted;
+  read_settings(t, "", kModel, wanted);
+  const std::string& name = wanted.name;
   const MitModel* const model = find_mit_model(name);
   if (model == nullptr) {
     std::vector<std::string_view> names;
@@ -71,14 +95,21 @@ void read_drive(MitDrive& drive, ConfigTree& t, const std::string& where) {
     throw InputError(fmt::format("{}: id {}, but a Damiao names only 1 to 15 in its replies", where,
                                  drive.motor_id));
   }
-  drive.reply_id = static_cast<std::uint16_t>(t.integer("reply_id", 0, 0, 0x7FE));
+  drive.reply_id = 0;
+  read_settings(t, "", kReply, drive);
   // The ranges may have been changed in the drive.
   drive.limits = model->limits;
-  MitLimits& l = drive.limits;
-  l.position_rad = t.number("position_rad", l.position_rad, 0.1, 1e3);
-  l.velocity_radps = t.number("velocity_radps", l.velocity_radps, 0.1, 1e3);
-  l.torque_nm = t.number("torque_nm", l.torque_nm, 0.1, 1e3);
-  l.reply_torque_nm = t.number("reply_torque_nm", l.torque_nm, 0.1, 1e3);
+  read_settings(t, "", kRanges, drive.limits);
+  drive.limits.reply_torque_nm = drive.limits.torque_nm;
+  read_settings(t, "", kReplyRange, drive.limits);
+}
+
+void list_drive_settings(const MitDrive&, std::vector<SettingLine>& lines,
+                         const std::string& table) {
+  list_settings(lines, table, kModel);
+  list_settings(lines, table, kReply);
+  list_settings(lines, table, kRanges);
+  list_settings(lines, table, kReplyRange);
 }
 
 int drive_id(const MitDrive& drive) noexcept { return drive.motor_id; }

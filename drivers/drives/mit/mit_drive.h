@@ -11,6 +11,8 @@ namespace sandrunner {
 CanFormats can_formats(const MitDrive& drive) noexcept;
 void set_address(MitDrive& drive, int id, CanFormat format) noexcept;
 void read_drive(MitDrive& drive, ConfigTree& table, const std::string& where);
+void list_drive_settings(const MitDrive&, std::vector<SettingLine>& lines,
+                         const std::string& table);
 int drive_id(const MitDrive& drive) noexcept;
 std::optional<std::uint32_t> reply_id(const MitDrive& drive) noexcept;
 DriveRanges drive_ranges(const MitDrive& drive) noexcept;

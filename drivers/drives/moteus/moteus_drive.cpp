@@ -16,6 +16,16 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kMaxPosition_rad = 32767 * 1e-4 * kTurn_rad;
 constexpr double kMaxSpeed_radps = 32767 * 2.5e-4 * kTurn_rad;
 
+using D = MoteusDrive;
+constexpr Setting<D> kKeys[] = {
+    {"kp_nmprev", &D::kp_nmprev, 1e-6, 1e6, "moteus: the drive's servo.pid_position.kp.",
+     kRequired},
+    {"kd_nmsprev", &D::kd_nmsprev, 1e-6, 1e5, "moteus: the drive's servo.pid_position.kd.",
+     kRequired},
+    {"max_torque_nm", &D::max_torque_nm, 1e-6, 300.0, "moteus: largest torque of a command.",
+     kRequired},
+};
+
 }  // namespace
 
 CanFormats can_formats(const MoteusDrive&) noexcept { return {.classic = false, .fd = true}; }
@@ -25,17 +35,18 @@ void set_address(MoteusDrive& drive, int id, CanFormat) noexcept {
 }
 
 void read_drive(MoteusDrive& drive, ConfigTree& t, const std::string& where) {
-  const auto required = [&](const char* key, double most) {
-    const double value = t.number(key, 0.0, 1e-6, most);
-    if (value == 0.0) {
-      throw InputError(
-          fmt::format("{}: found no {}, expected that of the drive's configuration", where, key));
+  for (const Setting<D>& row : kKeys) {
+    if (!t.has(row.key)) {
+      throw InputError(fmt::format("{}: found no {}, expected that of the drive's configuration",
+                                   where, row.key));
     }
-    return value;
-  };
-  drive.kp_nmprev = required("kp_nmprev", 1e6);
-  drive.kd_nmsprev = required("kd_nmsprev", 1e5);
-  drive.max_torque_nm = required("max_torque_nm", 300.0);
+    read_setting(t, row.key, row, drive);
+  }
+}
+
+void list_drive_settings(const MoteusDrive&, std::vector<SettingLine>& lines,
+                         const std::string& table) {
+  list_settings(lines, table, kKeys);
 }
 
 int drive_id(const MoteusDrive& drive) noexcept { return drive.id; }

@@ -10,6 +10,8 @@ namespace sandrunner {
 CanFormats can_formats(const MoteusDrive& drive) noexcept;
 void set_address(MoteusDrive& drive, int id, CanFormat format) noexcept;
 void read_drive(MoteusDrive& drive, ConfigTree& table, const std::string& where);
+void list_drive_settings(const MoteusDrive&, std::vector<SettingLine>& lines,
+                         const std::string& table);
 int drive_id(const MoteusDrive& drive) noexcept;
 std::optional<std::uint32_t> reply_id(const MoteusDrive& drive) noexcept;
 DriveRanges drive_ranges(const MoteusDrive& drive) noexcept;

@@ -12,6 +12,22 @@
 namespace sandrunner {
 namespace {
 
+constexpr const char* kVelocityTypes[] = {"twist", "twist_stamped"};
+
+using C = DdsConfig;
+constexpr Setting<C> kDds[] = {
+    {"enabled", &C::enabled, "Publish telemetry over DDS; --command dds sets it."},
+    {"domain", &C::domain, 0, 230, "DDS domain (ROS_DOMAIN_ID)."},
+    {"interface", &C::interface, "Network interface; lo: this computer only."},
+    {"ros_hz", &C::ros_hz, 1, 200, "Rate of joint states, IMU, odometry and tf."},
+    {"ticks", &C::ticks, "Publish every control tick on sandrunner/ticks."},
+    {"cmd_vel", words<&C::stamped_cmd_vel>(kVelocityTypes), "Message type of rt/cmd_vel."},
+    {"stale_s", &C::stale_s, 0.01, 10.0,
+     "An operator's velocity older than this is ignored; the robot slows down."},
+    {"security_dir", &C::security_dir,
+     "Folder with keys and certificates (--dds-security); empty: no security."},
+};
+
 std::string escaped(const std::string& text) {
   std::string out;
   for (char c : text) {
@@ -64,21 +80,19 @@ std::uint64_t DdsConfig::stale_ticks() const noexcept { return ticks_from_s(stal
 
 DdsConfig read_dds_config(ConfigTree& config) {
   DdsConfig c;
-  c.enabled = config.flag("dds.enabled", c.enabled);
-  c.domain = static_cast<int>(config.integer("dds.domain", c.domain, 0, 230));
-  c.interface = config.text("dds.interface", c.interface);
-  c.ros_hz = static_cast<int>(config.integer("dds.ros_hz", c.ros_hz, 1, 200));
-  c.ticks = config.flag("dds.ticks", c.ticks);
-  c.stamped_cmd_vel =
-      config.choice("dds.cmd_vel", "twist", {"twist", "twist_stamped"}) == "twist_stamped";
-  c.stale_s = config.number("dds.stale_s", c.stale_s, 0.01, 10.0);
-  c.security_dir = config.text("dds.security_dir", c.security_dir);
+  read_settings(config, "dds", kDds, c);
   if (c.interface.empty()) {
     throw InputError(
         "dds.interface: found an empty name, expected a network interface (\"lo\": this "
         "computer only)");
   }
   return c;
+}
+
+std::vector<SettingLine> dds_settings() {
+  std::vector<SettingLine> lines;
+  list_settings(lines, "dds", kDds);
+  return lines;
 }
 
 std::string cyclone_xml(const DdsConfig& config, const std::string& identity) {

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "rt/base/config_tree.h"
+#include "rt/base/settings.h"
 
 namespace sandrunner {
 
@@ -30,6 +32,8 @@ struct DdsConfig {
 
 /// Reads the table [dds]. Throws InputError.
 DdsConfig read_dds_config(ConfigTree& config);
+/// The keys of the table [dds], for the reference.
+std::vector<SettingLine> dds_settings();
 
 /// Configuration of Cyclone DDS. On "lo": unicast within this computer, no multicast. With a
 /// `security_dir`: authentication as `identity` (DIR/identity.pem, .key, .perm.p7s), access

@@ -10,27 +10,27 @@ namespace {
 
 TEST(BusListenTest, ASilentBusIsNoProblem) {
   const HardwareConfig config = example_hardware("mit");
-  std::vector<HeardBus> heard(config.buses.size());
+  std::vector<BusTraffic> traffic(config.buses.size());
   CanFrame error;
   error.error = true;
-  heard[0].hear(config, 0, error);  // a report of the interface itself
-  EXPECT_TRUE(traffic_problems(config, example_robot(), heard).empty());
+  traffic[0].add(config, 0, error);  // a report of the interface itself
+  EXPECT_TRUE(traffic_problems(config, example_robot(), traffic).empty());
 }
 
 TEST(BusListenTest, CommandsAndRepliesAreCountedAndTheirJointsNamed) {
   const HardwareConfig config = example_hardware("mit");
-  std::vector<HeardBus> heard(config.buses.size());
+  std::vector<BusTraffic> traffic(config.buses.size());
   const MitDrive& drive = mit_of(config.drives[4]);
   CanFrame frame;
   for (int i = 0; i < 3; ++i) {
     ASSERT_EQ(encode_mit_command(drive, {}, frame), MitStatus::kOk);
-    heard[1].hear(config, 1, frame);
+    traffic[1].add(config, 1, frame);
   }
   MitReply reply;
   reply.temperature_degc = 30.0;
   ASSERT_EQ(encode_mit_reply(drive, reply, frame), MitStatus::kOk);
-  heard[1].hear(config, 1, frame);
-  const std::vector<std::string> problems = traffic_problems(config, example_robot(), heard);
+  traffic[1].add(config, 1, frame);
+  const std::vector<std::string> problems = traffic_problems(config, example_robot(), traffic);
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0],
             "hardware.bus can1: found 4 frames in 0.2 s (3 commands to and 1 replies of RF_HFE), "
@@ -39,11 +39,11 @@ TEST(BusListenTest, CommandsAndRepliesAreCountedAndTheirJointsNamed) {
 
 TEST(BusListenTest, FramesOfUnknownDrivesCountAsWell) {
   const HardwareConfig config = example_hardware("moteus");
-  std::vector<HeardBus> heard(config.buses.size());
+  std::vector<BusTraffic> traffic(config.buses.size());
   CanFrame frame;
   frame.id = 0x123;
-  heard[2].hear(config, 2, frame);
-  const std::vector<std::string> problems = traffic_problems(config, example_robot(), heard);
+  traffic[2].add(config, 2, frame);
+  const std::vector<std::string> problems = traffic_problems(config, example_robot(), traffic);
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0],
             "hardware.bus can2: found 1 frames in 0.2 s (none of them of a configured drive), "

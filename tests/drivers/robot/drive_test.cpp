@@ -262,7 +262,7 @@ TEST(DriveTest, HeatIsAFaultAsLongAsItLasts) {
   EXPECT_EQ(pair.drive.fault(), 0u);
   pair.state.temperature_degc = 81.0;
   pair.exchange(nullptr);
-  EXPECT_TRUE(pair.said(DriveTrouble::kHot));
+  EXPECT_TRUE(pair.said(DriveTrouble::kOverTemperature));
   EXPECT_EQ(drive_fault_words(pair.config(), pair.drive.fault()), "too hot");
   pair.state.temperature_degc = 60.0;
   pair.exchange(nullptr);
@@ -339,7 +339,7 @@ TEST(DriveTest, ACommandToItsIdIsForeignTrafficAndAReplyIsNot) {
   command.error = true;
   --command.id;
   EXPECT_FALSE(pair.drive.is_command(command));
-  pair.drive.hear_command(7);
+  pair.drive.note_foreign_command(7);
   EXPECT_TRUE(pair.drive.has_foreign_traffic(7));
   EXPECT_EQ(pair.drive.foreign_commands(), 1u);
 }

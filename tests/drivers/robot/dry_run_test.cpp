@@ -41,7 +41,7 @@ TEST(DryRunTest, EveryDriveIsToldOffEnableAndThePoseInItsOwnProtocol) {
 TEST(DryRunTest, TheHostsLoopTellsNoTorqueAtTheSetPoint) {
   const std::string text =
       dry_run(example_hardware("mit", {"hardware.mode=torque"}), example_robot(), stand());
-  EXPECT_THAT(text, HasSubstr("a joint at its set-point is told no torque"));
+  EXPECT_THAT(text, HasSubstr("a joint at its setpoint gets none"));
   EXPECT_THAT(text, HasSubstr("kp 0.00, kd 0.000"));
 }
 

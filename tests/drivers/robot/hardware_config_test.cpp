@@ -55,6 +55,12 @@ TEST(HardwareConfigTest, ExamplesNameEveryJointOnce) {
   EXPECT_EQ(example_hardware("mit").ticks_per_exchange(), 5);
 }
 
+TEST(HardwareConfigTest, NoExampleConfirmsWhatTheUserHasToVerify) {
+  for (const char* name : {"mit", "damiao", "moteus"}) {
+    EXPECT_FALSE(example_hardware(name).timeout_unverified) << name;
+  }
+}
+
 TEST(HardwareConfigTest, XsensImuHasItsOwnUsualRate) {
   EXPECT_EQ(example_hardware("mit").imu.protocol, ImuProtocol::kMip);
   ConfigTree tree;

@@ -22,6 +22,7 @@ TEST(LikelyMeantTest, FindsSlipsOfTheKeyboardUnitsLeftOutAndOtherTables) {
 
 TEST(LikelyMeantTest, SaysNothingWithoutALikelyOne) {
   EXPECT_EQ(did_you_mean("mud", kKnown), "");
+  EXPECT_EQ(did_you_mean("--gui", {"--out", "--set"}), "");
   EXPECT_EQ(did_you_mean("", kKnown), "");
   EXPECT_EQ(did_you_mean(std::string(100'000, 'a'), kKnown), "");
   EXPECT_EQ(did_you_mean("--form", kKnown), ", did you mean '--from'?");

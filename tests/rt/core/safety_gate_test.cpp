@@ -120,7 +120,7 @@ TEST_F(SafetyGateTest, AnEncoderThatFreezesInStandIsAFaultOnceTheJointIsToldToMo
   while (found == 0 && target_rad < 2.0) found = stand_at(target_rad += 1e-3);
   EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kEncoderFrozen));
   const double later_rad = 1e-3 * static_cast<double>(config.frozen_ticks);
-  EXPECT_NEAR(target_rad, 0.6 + config.frozen_told_rad + later_rad, 0.01);
+  EXPECT_NEAR(target_rad, 0.6 + config.frozen_commanded_rad + later_rad, 0.01);
 }
 
 TEST_F(SafetyGateTest, AJointThatHasRestedForLongHasTimeToFollowATargetThatMovesAtOnce) {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "rt/core/mode_machine.h"
+#include "rt/operator/mode_requests.h"
 #include "tests/support/wait_until.h"
 
 namespace sandrunner {
@@ -139,6 +140,11 @@ TEST_F(OperatorDeskTest, OperatorsInManyThreadsLeaveOneHolder) {
 }
 
 // The controller is this thread, which does not say for long that it has considered anything.
+TEST(ModeRequestsTest, WalkDuringStandUpIsRefusedWithTheReason) {
+  EXPECT_STREQ(decide("walk", Mode::kStandUp, nullptr).refusal,
+               "the robot is still standing up, try again when it stands");
+}
+
 TEST(OperatorDeskOfASlowControllerTest, StopAndDampAndTheCountsDoNotWaitBehindAnotherRequest) {
   RemoteOperator op{1'000'000'000'000};
   OperatorDesk desk{op, 60.0, nullptr, std::chrono::seconds(20)};

@@ -42,6 +42,8 @@ TEST_F(BadInputTest, OptionsAreRefusedBeforeAnyWork) {
   expect_refused("--duration 20s", "20s");
   expect_refused("--seed 1.5", "1.5");
   expect_refused("--seed x", "x");
+  expect_refused("--command 1 0 0",
+                 "unexpected '0': several numbers of one option need commas, as in 1,0,0");
 }
 
 TEST_F(BadInputTest, EmptyValuesAreRefused) {
@@ -164,12 +166,14 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   expect_refused("--robot map.toml", "map.toml:65: unknown key 'wheels.radius_m'");
   expect_refused("--robot absent.toml", "absent.toml: cannot be read");
   expect_refused("--robot /dev/null",
-                 "/dev/null: cannot be read (not a regular file), expected the map of a robot");
+                 "/dev/null: cannot be read (not a regular file), expected a robot file");
   write("map.toml", map.substr(0, map.find("[gains]")));
   expect_refused("--robot map.toml", "map.toml: 'gains.stand_kp_nmprad' is missing");
   expect_refused("--robot " + write_small_robot(folder_),
                  "policy 'raibo' is for another robot: found joint 1 'LF_HAA', expected 'fl_roll' "
-                 "of robot 'small'");
+                 "of robot 'small'; train one with sandrunner-train --robot FILE, or let it only "
+                 "stand with --policy none");
+  expect_refused("--robot raibo.urdf", "raibo.urdf: found XML, expected a robot file (TOML)");
 }
 
 TEST_F(BadInputTest, UnwritableOutputFoldersAreRefused) {

@@ -56,7 +56,7 @@ constexpr Refusal kRefusals[] = {
     {"mit.toml", "mode = ", "emergency_stop = {chip = \"/dev/nosuch\", line = 3}\nmode = ",
      "hardware.emergency_stop: /dev/nosuch line 3: the chip cannot be opened"},
     {"mit.toml", "[hardware]", "[controller.gate]\nspeed_fault_radps = 55\n[hardware]",
-     "speed_fault_radps: 55 rad/s is more than the drives' replies can tell"},
+     "speed_fault_radps: 55 rad/s is more than the drives' replies can report"},
     {"mit.toml", "drive_timeout_s = 0.05", "drive_timeout_s = 0.03",
      "0.03, expected more than the 0.03125 s that the loop may miss and an exchange takes"},
     {"mit.toml", "drive_timeout_s = 0.05", "drive_timeout_s = 0.031", "0.031, expected more"},
@@ -80,7 +80,9 @@ TEST_F(HardwareTest, WhatCannotWorkIsRefusedBeforeAnyFrameIsSent) {
 
 TEST_F(HardwareTest, ARobotDoesNotMoveByItselfUnlessArmed) {
   write_changed("mit.toml", "", "");
-  expect_refused("--hardware hardware.toml", "expected --arm, or --command dds");
+  expect_refused("--hardware hardware.toml", "First look: sandrunner check hardware.toml");
+  expect_refused("--hardware absent.toml",
+                 "absent.toml: cannot be read (No such file or directory)");
   expect_refused("--arm", "--arm: expected --hardware");
   expect_refused("--dry-run", "--dry-run: expected --hardware");
 }

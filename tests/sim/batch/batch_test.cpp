@@ -18,6 +18,7 @@
 
 #include "rt/core/floating_point.h"
 #include "rt/core/state_hash.h"
+#include "sim/robot/dynamics.h"
 #include "sim/step/actuator.h"
 #include "tests/sim/support.h"
 
@@ -362,6 +363,52 @@ TEST(BatchTest, AgreesWithTheStepInDouble) {
     EXPECT_LT(position, 1e-5) << kind;       // m, rad
     EXPECT_LT(velocity, 1e-3) << kind;       // rad/s
     EXPECT_NEAR(batch.sums(0).torque_squared / squared, 1.0, 1e-5) << kind;
+  }
+}
+
+// The robot hangs in the air, thighs and knees drive with a torque one way while they turn one way.
+double extension_power(float torque_sign, float speed_sign) {
+  BatchRobot<float> robot;
+  robot.model = convert_model<float>(raibo().model);
+  robot.terrain = convert_terrain<float>(
+      make_terrain(one_patch(ground_of_kind(GroundKind::kRigid)), foot(), raibo().model));
+  robot.state.rigid.position = {0.0f, 0.0f, 5.0f};
+  for (int j = 0; j < kNumJoints; ++j) {
+    const bool pushes = j % 3 != 0;
+    robot.state.rigid.q[j] = static_cast<float>(raibo().nominal_rad[j]);
+    robot.state.rigid.qd[j] = pushes ? speed_sign * 2.0f : 0.0f;
+    robot.drive.target[j] = robot.state.rigid.q[j] + (pushes ? torque_sign * 0.5f : 0.0f);
+    robot.drive.target_before[j] = robot.drive.target[j];
+  }
+  robot.drive.kp = 20.0f;
+  Batch batch(1, foot(), {}, BatchWidth::kOne);
+  batch.set_robot(0, robot);
+  batch.advance(0, 1);
+  return batch.sums(0).extension_power;
+}
+
+TEST(BatchTest, ExtensionPowerCountsThighsAndKneesThatDriveAsTheyPushOff) {
+  flush_denormals_to_zero();
+  EXPECT_NEAR(extension_power(1.0f, 1.0f), 8 * 10.0 * 2.0, 1e-3);
+  EXPECT_EQ(extension_power(-1.0f, -1.0f), 0.0);
+  EXPECT_EQ(extension_power(1.0f, -1.0f), 0.0);
+  EXPECT_EQ(extension_power(-1.0f, 1.0f), 0.0);
+}
+
+TEST(BatchTest, ThighsAndKneesPushOffInTheirPositiveDirection) {
+  for (const auto& leg : raibo().model.legs) {
+    const auto foot_at = [&](double thigh_rad, double knee_rad) {
+      const auto pose = leg_pose(leg, 0.0, thigh_rad, knee_rad);
+      const Vec3<double> foot = hip_to_base(leg, pose, pose.foot);
+      const Vec3<double> hip = hip_to_base(leg, pose, leg.hfe);
+      return foot - hip;
+    };
+    const double thigh_rad = raibo().nominal_rad[1], knee_rad = raibo().nominal_rad[2];
+    const Vec3<double> before = foot_at(thigh_rad, knee_rad);
+    EXPECT_LT(foot_at(thigh_rad + 0.1, knee_rad).x, before.x) << "the thigh swings backwards";
+    EXPECT_GT(dot(foot_at(thigh_rad, knee_rad + 0.1), foot_at(thigh_rad, knee_rad + 0.1)),
+              dot(before, before))
+        << "the knee stretches";
   }
 }
 

@@ -26,6 +26,13 @@ Ended run(std::vector<std::string> words, const DdsConfig& config) {
   return Program(std::move(words), config).wait();
 }
 
+void make_walk(const FakeRobot& robot, const DdsConfig& config) {
+  EXPECT_EQ(run({"mode", "arm"}, config).code, 0);
+  EXPECT_EQ(run({"mode", "stand"}, config).code, 0);
+  EXPECT_TRUE(robot.wait_for(Mode::kStand));
+  EXPECT_EQ(run({"mode", "walk"}, config).code, 0);
+}
+
 void expect_error(const Ended& ended, int code, const std::string& part) {
   EXPECT_EQ(ended.code, code);
   EXPECT_EQ(ended.out, "");
@@ -138,6 +145,7 @@ TEST(CtlProgramTest, CmdSendsTwentyASecondThenZero) {
 TEST(CtlProgramTest, CmdWithoutAnEndIsEndedBySignalsWithZero) {
   const DdsConfig config = test_config();
   FakeRobot robot(config);
+  make_walk(robot, config);
   Peer peer(config);
   for (const int number : {SIGINT, SIGTERM}) {
     CommandLog log(peer);
@@ -148,6 +156,16 @@ TEST(CtlProgramTest, CmdWithoutAnEndIsEndedBySignalsWithZero) {
     EXPECT_EQ(ended.code, 0) << ended.err;
     ASSERT_TRUE(wait_until([&] { return log.entries().back().is_zero(); }));
   }
+}
+
+TEST(CtlProgramTest, CmdThatMovesNothingSaysSoWithExitCodeOne) {
+  const DdsConfig config = test_config();
+  FakeRobot robot(config);
+  make_walk(robot, config);
+  EXPECT_EQ(run({"cmd", "0.5", "0", "0", "--for", "1"}, config).code, 0);
+  EXPECT_EQ(run({"mode", "damp"}, config).code, 0);
+  expect_error(run({"cmd", "0.5", "0", "0", "--for", "1"}, config), 1,
+               "sent 20 commands, none had an effect: the robot is in mode damping");
 }
 
 TEST(CtlProgramTest, SignalsEndTheSearchForARobotWithoutAnError) {

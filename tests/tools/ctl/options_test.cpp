@@ -70,7 +70,8 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
       {{"mode", "jump"}, "mode: found 'jump', expected arm, stand, walk, stop, lie, damp"},
       {{"mode"}, "REQUEST is required"},
       {{"watch", "rt/nothing"}, "watch: found 'rt/nothing', expected rt/joint_states,"},
-      {{"watch", "rt/odom", "--count", "-1"}, "--count: found -1"}};
+      {{"watch", "/nothing"}, "watch: found '/nothing', expected rt/joint_states,"},
+      {{"watch", "/odom", "--count", "-1"}, "--count: found -1"}};
   for (const auto& c : kCases) {
     try {
       parse(c.words);

@@ -72,7 +72,7 @@ TEST_F(RunnerTest, DisturbancesActAndFollowTheSeed) {
   trial.start = &study_.start(0);
   trial.duration_s = 1.5;
   trial.seed = 3;
-  std::vector<Trial> trials(9, trial);
+  std::vector<Trial> trials(10, trial);
   trials[1].noise_scale = 3.0;
   trials[2].push_speed_mps = 0.6;
   trials[3].push_speed_mps = 0.6;
@@ -80,10 +80,11 @@ TEST_F(RunnerTest, DisturbancesActAndFollowTheSeed) {
   trials[4].latency_ticks = 40;
   trials[5].push_speed_mps = 0.6;
   trials[6].latency_ticks = 80;
-  trials[7].imu_pitch_rad = 0.035;
-  trials[8].imu_roll_rad = 0.035;
+  trials[7].sensors.imu_pitch_rad = 0.035f;
+  trials[8].sensors.imu_roll_rad = 0.035f;
+  trials[9].sensors.joint_offset_rad.fill(0.02f);
   const auto bits = run(trials, standing_policy(), 1, sim::BatchWidth::kEight);
-  for (const int i : {1, 2, 3, 4, 6, 7, 8}) EXPECT_NE(bits[i], bits[0]) << i;
+  for (const int i : {1, 2, 3, 4, 6, 7, 8, 9}) EXPECT_NE(bits[i], bits[0]) << i;
   EXPECT_NE(bits[3], bits[2]);
   EXPECT_NE(bits[6], bits[4]);
   EXPECT_NE(bits[8], bits[7]);

@@ -20,6 +20,7 @@ class TrialFiguresTest : public testing::Test {
     trial_.track_begin_m = 1.0;
     trial_.track_end_m = 6.0;
     sums_.power = 100.0f * kTicksPerPolicyStep;
+    sums_.extension_power = 40.0f * kTicksPerPolicyStep;
     sums_.torque_squared = 900.0f * kTicksPerPolicyStep;
     command_.vx_mps = 1.5;
   }
@@ -33,6 +34,11 @@ class TrialFiguresTest : public testing::Test {
     truth.velocity_mps = {vx, vy, 0.0};
     estimate.velocity_mps = {vx + 0.3, vy - 0.4, 0.0};
     truth.body_height_m = 0.5;
+    // Feet rise as fast as each other's number says: from 0 to 40, 80, 120 and 160 mm.
+    for (int l = 0; l < kNumLegs; ++l) {
+      truth.foot_height_m[l] = 0.04 * (l + 1) * (periods_ % 50) / 49.0;
+    }
+    estimate.foot_height_m = truth.foot_height_m;
     estimate.body_height_m = 0.51;
     JointArray<double> before{}, target{};
     target[0] = 0.03;
@@ -70,6 +76,11 @@ TEST_F(TrialFiguresTest, SteadyRunHasTheFiguresOfTheirDefinitions) {
   EXPECT_NEAR(f.track_cot, 200.0 / (20.0 * 9.81), 1e-4);
   EXPECT_NEAR(f.cot, 200.0 / (20.0 * 9.81 * std::hypot(1.0, 0.2)), 1e-4);
   EXPECT_NEAR(f.turning_cot, 200.0 / (20.0 * 9.81 * 0.7 * 0.1), 1e-3);
+  EXPECT_NEAR(f.leg_extension_power_w, 40.0, 1e-4);
+  EXPECT_NEAR(f.turned_rad, -0.7, 1e-5);
+  EXPECT_NEAR(f.least_clearance_iqr_m, 0.02, 1e-3);
+  EXPECT_NEAR(f.clearance_iqr_m, 0.05, 2e-3);
+  EXPECT_NEAR(f.greatest_clearance_iqr_m, 0.08, 2e-3);
   EXPECT_NEAR(f.stride_hz, 2.0, 1e-9);
   EXPECT_NEAR(f.duty, 0.5, 1e-9);
   EXPECT_NEAR(f.action_change_rad, 0.05, 1e-6);

@@ -26,49 +26,18 @@ void require(bool holds, const std::string& key, double found, const std::string
   if (!holds) throw InputError(fmt::format("learner: {} is {}, expected {}", key, found, expected));
 }
 
-void check_widths(const std::string& key, const std::vector<int>& widths) {
-  for (const int width : widths) require(width >= 1, key, width, "layer widths of at least 1");
-}
-
-/// The config, if it can work.
+/// The config, if its settings fit together and the shape. The range of each of them is that of
+/// training.toml (train_config.cpp).
 const LearnerConfig& checked(const LearnerConfig& config, const RolloutShape& shape) {
-  require(shape.steps >= 1, "steps", shape.steps, "at least 1");
-  require(shape.privileged >= 1, "privileged", shape.privileged, "at least 1");
-  require(config.network.hidden >= 1, "hidden", config.network.hidden, "at least 1");
-  check_widths("estimator", config.network.estimator);
-  check_widths("actor", config.network.actor);
-  check_widths("critic", config.network.critic);
-  require(config.block_envs >= 1, "block_envs", config.block_envs, "at least 1");
-  require(config.symmetry_steps >= 1, "symmetry_steps", config.symmetry_steps, "at least 1");
-  require(config.minibatches >= 1, "minibatches", config.minibatches, "at least 1");
-  require(config.epochs >= 1, "epochs", config.epochs, "at least 1");
   require(shape.envs >= 1 && shape.envs % config.block_envs == 0, "envs", shape.envs,
           fmt::format("a multiple of block_envs, {}", config.block_envs));
   require(shape.envs / config.block_envs >= config.minibatches, "envs", shape.envs,
           fmt::format("at least a block of {} for each of {} minibatches", config.block_envs,
                       config.minibatches));
-  require(config.loss.clip > 0.0 && config.loss.clip < 1.0, "clip", config.loss.clip,
-          "between 0 and 1");
-  require(config.loss.value_weight >= 0.0, "value_weight", config.loss.value_weight, "at least 0");
-  require(config.loss.estimate_weight >= 0.0, "estimate_weight", config.loss.estimate_weight,
-          "at least 0");
-  require(config.loss.symmetry_weight >= 0.0, "symmetry_weight", config.loss.symmetry_weight,
-          "at least 0");
-  require(std::isfinite(config.loss.entropy_weight), "entropy_weight", config.loss.entropy_weight,
-          "a number");
-  require(config.gamma >= 0.0 && config.gamma < 1.0, "gamma", config.gamma, "in [0, 1)");
-  require(config.lambda >= 0.0 && config.lambda <= 1.0, "lambda", config.lambda, "in [0, 1]");
-  require(config.max_gradient_norm > 0.0, "max_gradient_norm", config.max_gradient_norm,
-          "more than 0");
-  require(config.kl_target > 0.0, "kl_target", config.kl_target, "more than 0");
-  require(config.average_updates > 0, "average_updates", config.average_updates, "more than 0");
-  require(config.learning_rate_min > 0.0, "learning_rate_min", config.learning_rate_min,
-          "more than 0");
   require(config.learning_rate_start >= config.learning_rate_min &&
               config.learning_rate_start <= config.learning_rate_max,
           "learning_rate_start", config.learning_rate_start,
           "between learning_rate_min and learning_rate_max");
-  require(config.action_std_min > 0.0, "action_std_min", config.action_std_min, "more than 0");
   require(config.action_std_start >= config.action_std_min, "action_std_start",
           config.action_std_start, "at least action_std_min");
   return config;

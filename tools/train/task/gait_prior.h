@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the reward pays at first so that a trot is found, and nothing of later.
+// What is rewarded at first so that a trot is found, and not at all later.
 #pragma once
 
 #include <algorithm>

@@ -21,11 +21,9 @@ std::array<float, kEstimateSize> Task::truth(const Env& e,
 
 void Task::privileged(const Env& e, const sim::RobotState<float>& state,
                       const sim::BatchReport<float>& report, float* out) const {
-  const sim::RigidState<float>& x = state.rigid;
-  const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
-  const auto clean = make_observation<float>(
-      e.command, {r.r2.x, r.r2.y, r.r2.z},
-      {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z}, x.q, x.qd);
+  const sim::SensorReading exact = sim::read_sensors(state.rigid, {});
+  const auto clean = make_observation<float>(e.command, exact.up, exact.angular_velocity,
+                                             exact.position, exact.velocity);
   for (int i = 0; i < kObservationSize; ++i) *out++ = normalised(scales_, i, clean[i]);
   const auto estimate = truth(e, state);
   for (int i = 0; i < kEstimateSize; ++i) {
@@ -39,7 +37,7 @@ void Task::privileged(const Env& e, const sim::RobotState<float>& state,
     *out++ = std::clamp(20.0f * report.penetration[l], -3.0f, 3.0f);
   }
   for (int j = 0; j < kNumJoints; ++j) *out++ = 0.5f * e.action[j];
-  const auto patch = static_cast<std::size_t>(e.terrain.region_at(x.position.x));
+  const auto patch = static_cast<std::size_t>(e.terrain.region_at(state.rigid.position.x));
   for (float f : e.ground_features[patch]) *out++ = f;
   for (float f : e.robot_features) *out++ = f;
 }
@@ -48,25 +46,12 @@ void Task::observe_env(int env, int t, learner::Rollout& rollout) {
   Env& e = envs_[static_cast<std::size_t>(env)];
   const sim::RobotState<float> state = batch_.state(env);
   const sim::BatchReport<float> report = batch_.report(env);
-  const sim::RigidState<float>& x = state.rigid;
-  const NoiseSettings& n = config_.noise;
-  const auto noisy = [&](float value, double sigma) {
-    return value + e.noise_level * static_cast<float>(sigma * normal(env, e));
-  };
-  const sim::Mat3<float> r = sim::rotation_matrix(x.orientation);
-  std::array<float, 3> up{noisy(r.r2.x, n.gravity), noisy(r.r2.y, n.gravity),
-                          noisy(r.r2.z, n.gravity)};
-  const float length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
-  for (float& u : up) u /= length;
-  const std::array<float, 3> rate{noisy(x.angular_velocity.x, n.angular_velocity_radps),
-                                  noisy(x.angular_velocity.y, n.angular_velocity_radps),
-                                  noisy(x.angular_velocity.z, n.angular_velocity_radps)};
-  JointArray<float> q, qd;
-  for (int j = 0; j < kNumJoints; ++j) {
-    q[j] = noisy(x.q[j] + e.joint_offset[j], n.joint_position_rad);
-    qd[j] = noisy(x.qd[j], n.joint_velocity_radps);
-  }
-  const auto raw = make_observation<float>(e.command, up, rate, q, qd);
+  sim::SensorReading seen = sim::read_sensors(state.rigid, e.sensors);
+  sim::add_noise(seen, config_.noise, [&](int, double sigma) {
+    return e.noise_level * static_cast<float>(sigma * normal(env, e));
+  });
+  const auto raw = make_observation<float>(e.command, seen.up, seen.angular_velocity, seen.position,
+                                           seen.velocity);
   auto observation = rollout.observation(t).col(env);
   for (int i = 0; i < kObservationSize; ++i) observation[i] = normalised(scales_, i, raw[i]);
   privileged(e, state, report, rollout.privileged(t).col(env).data());

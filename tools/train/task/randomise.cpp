@@ -196,7 +196,8 @@ void Task::new_robot(int env, Env& e) {
   const double latency_s = r.latency_s[static_cast<std::size_t>(3.0 * uniform(env, e))];
   drive.switch_tick = static_cast<float>(std::round(latency_s * kSimulationHz));
   const double offset = config_.noise.joint_offset_rad;
-  for (float& o : e.joint_offset) o = static_cast<float>(uniform(env, e, -offset, offset));
+  for (float& o : e.sensors.joint_offset_rad)
+    o = static_cast<float>(uniform(env, e, -offset, offset));
   e.noise_level = static_cast<float>(uniform(env, e, 0.0, config_.noise.level_high));
   e.robot_features = {static_cast<float>(5.0 * (base_factor - 1.0)),
                       drive.switch_tick / kStepsPerAction - 1.0f};
@@ -210,7 +211,8 @@ void Task::hard_reset(int env, Env& e, double nominal_share) {
   e.action = e.action_1 = e.action_2 = {};
   e.air_s = e.stance_s = {};
   e.since_touchdown_s.fill(static_cast<float>(config_.episode.length_s));  // no stride before it
-  e.unloaded_steps = e.was_active = {};
+  e.unloaded_steps = {};
+  e.touchdowns.in_air.fill(true);
   e.drift = {};
   // Some start exactly as a robot that has stood up, and is then told to go: their first step has
   // to break the symmetry.
@@ -282,8 +284,8 @@ void Task::soft_reset(int env, Env& e, float x_m) {
 bool Task::push(int env, Env& e, sim::RobotState<float>& state) const {
   if (uniform(env, e) >= config_.episode.push_probability) return false;
   const double v = config_.episode.push_speed_mps;
-  state.rigid.velocity.x += static_cast<float>(uniform(env, e, -v, v));
-  state.rigid.velocity.y += static_cast<float>(uniform(env, e, -v, v));
+  const double vx = uniform(env, e, -v, v), vy = uniform(env, e, -v, v);
+  sim::push(state, vx, vy);
   return true;
 }
 
@@ -293,14 +295,14 @@ bool Task::loosen(int env, Env& e, sim::RobotState<float>& state) const {
   if (!is_patchy(env)) return false;
   bool any = false;
   for (int l = 0; l < kNumLegs; ++l) {
-    sim::FootContact<float>& foot = state.feet[l];
-    const bool touched_down = foot.active != 0.0f && !e.was_active[l];
-    e.was_active[l] = foot.active != 0.0f;
-    if (!touched_down || uniform(env, e) >= config_.ground.loose_step_share) continue;
-    const auto other = static_cast<std::size_t>(sim::kMaxRegions * uniform(env, e));
-    const auto sigma = [&](std::size_t patch) { return e.ground_features[patch][kSigmaFlat]; };
-    if (sigma(other) >= sigma(static_cast<std::size_t>(foot.region))) continue;
-    foot.region = static_cast<float>(other);
+    if (!e.touchdowns.touched_down(state, l)) continue;
+    if (uniform(env, e) >= config_.ground.loose_step_share) continue;
+    const auto other = static_cast<int>(sim::kMaxRegions * uniform(env, e));
+    const auto sigma = [&](int patch) {
+      return e.ground_features[static_cast<std::size_t>(patch)][kSigmaFlat];
+    };
+    if (sigma(other) >= sigma(static_cast<int>(state.feet[l].region))) continue;
+    sim::put_on_patch(state, l, other);
     any = true;
   }
   return any;

@@ -13,7 +13,7 @@ namespace {
 
 // Raibo's mass and nominal height, for which the figures below are known to be good.
 constexpr double kMass_kg = 26.817, kHeight_m = 0.4725;
-constexpr double kKneeMargin_rad = 0.124;  // from a knee's stop to where it is priced
+constexpr double kKneeMargin_rad = 0.124;  // from a knee's stop to where it is penalised
 
 }  // namespace
 
@@ -38,15 +38,23 @@ std::string robot_settings(const sim::Robot& robot) {
   set("speed_step_mps", 0.02 * speed);  // each update that passes the gate; recipe
   set("backward_mps", speed);           // recipe; the next too
   set("lateral_mps", 0.5 * speed);
-  toml += "[reward]\n";
-  set("torque", 1.0e-3 / std::pow(weight * length, 2));  // per N^2 m^2: copper losses; recipe
-  set("power", 8.0e-3 / (weight * speed));  // per W: with less the gait shuffles on hard ground
-  set("joint_speed", 3e-4 * length);        // recipe
-  set("clearance_m", 0.08 * length);
-  set("knee_low_rad", robot.model.lower_rad[2] + kKneeMargin_rad);
-  set("knee_high_rad", robot.model.upper_rad[2] - kKneeMargin_rad);
-  set("height_m", 0.475 * length);
-  set("height_end_m", 0.495 * length);  // a higher body is cheaper on sand
+  toml += "[noise]\n";
+  const sim::ObservationNoise noise;
+  set("gravity", noise.gravity);
+  set("angular_velocity_radps", noise.angular_velocity_radps);
+  set("joint_position_rad", noise.joint_position_rad);
+  set("joint_velocity_radps", noise.joint_velocity_radps);
+  toml += "[penalty]\n";
+  set("energy.torque_weight",
+      1.0e-3 / std::pow(weight * length, 2));  // per N^2 m^2: copper losses; recipe
+  // Per W: with less the gait shuffles on hard ground.
+  set("energy.power_weight", 8.0e-3 / (weight * speed));
+  set("joint_speed.weight", 3e-4 * length);  // recipe
+  set("clearance.target_m", 0.08 * length);
+  set("joint_margin.knee_low_rad", robot.model.lower_rad[2] + kKneeMargin_rad);
+  set("joint_margin.knee_high_rad", robot.model.upper_rad[2] - kKneeMargin_rad);
+  set("height.target_m", 0.475 * length);
+  set("height.late_target_m", 0.495 * length);  // a higher body needs less energy on sand
   return toml;
 }
 

@@ -9,11 +9,11 @@
 
 namespace sandrunner::train {
 
-/// The settings that depend on the robot, as TOML: those that are good for Raibo, scaled by what
-/// the robot's own file says. A leg of other length is the same in its own units of length and time
-/// (Froude): commanded speeds go as the root of the height; torques are priced as shares of weight
-/// times height, power of weight times speed. Times of the gait and widths of kernels stay as they
-/// are.
+/// The settings that depend on the robot and its sensors, as TOML: those that are good for Raibo,
+/// scaled by what the robot's own file says. A leg of other length is the same in its own units of
+/// length and time (Froude): commanded speeds go as the root of the height; torques are penalised
+/// as shares of weight times height, power of weight times speed. Times of the gait and widths of
+/// kernels stay as they are.
 std::string robot_settings(const sim::Robot& robot);
 
 /// Throws InputError for a robot that cannot be trained with these settings: gains beyond its

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Settings as tables: a row says the key, the member and the range of a number.
+// The rows of rt/base/settings.h as the trainer reads them: every setting must be given.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,24 +9,18 @@
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
+#include "rt/base/settings.h"
 
 namespace sandrunner::train {
 
-/// A number of a configuration table: its key, where it goes, and its range, ends included.
-template <typename Settings>
-struct NumberSetting {
-  const char* key;
-  double Settings::*member;
-  double min, max;
-};
-
-/// For numbers without an upper limit of their own.
-inline constexpr double kNoLimit = 1e9;
-
-/// Every setting must be given: throws InputError if `key` is not.
+/// Throws InputError if `key` is not given.
 inline void require_key(const ConfigTree& config, const std::string& key) {
   if (!config.has(key)) throw InputError(fmt::format("training config: '{}' is missing", key));
 }
+
+/// A row whose member is a number.
+template <typename Settings>
+using NumberSetting = Setting<Settings>;
 
 /// Reads all rows of `numbers` from the table `table`. Throws InputError for a number that is
 /// missing or out of its range.
@@ -36,7 +30,7 @@ void read_numbers(ConfigTree& config, const std::string& table,
   for (const NumberSetting<Settings>& number : numbers) {
     const std::string key = table + "." + number.key;
     require_key(config, key);
-    settings.*number.member = config.number(key, 0.0, number.min, number.max);
+    read_setting(config, key, number, settings);
   }
 }
 

@@ -9,10 +9,6 @@
 
 namespace sandrunner::train {
 
-/// A foot is loaded when it carried more than this in the last two policy steps: on sand the normal
-/// force comes in pulses.
-inline constexpr float kLoaded_n = 3.0f;
-
 /// What a policy step (10 ms) is judged by. Velocities are those of the base origin in the heading
 /// frame.
 struct StepOutcome {
@@ -46,15 +42,6 @@ struct StepOutcome {
 /// Square of the commanded speed, m^2/s^2.
 inline double command_speed2(const StepOutcome& s) {
   return s.command[0] * s.command[0] + s.command[1] * s.command[1];
-}
-
-/// How well the commanded velocity is kept: 1 exactly, towards 0 far from it. The curricula look at
-/// this too. Sideways it is that of the last stride: a trot's swing is no error. Widths: of the
-/// squared error, m^2/s^2.
-inline float velocity_kernel(const StepOutcome& s, double width, double width_per_speed2) {
-  const double ex = s.command[0] - s.vx, ey = s.command[1] - s.drift[1];
-  return static_cast<float>(
-      std::exp(-(ex * ex + ey * ey) / (width + width_per_speed2 * command_speed2(s))));
 }
 
 /// How much counts as made of a commanded motion, for the share that is, over the last stride: in

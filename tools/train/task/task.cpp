@@ -40,7 +40,7 @@ Task::Task(const TaskConfig& config, const sim::Robot& robot, const TaskShape& s
       envs_(static_cast<std::size_t>(shape.envs)),
       sums_(static_cast<std::size_t>(shape.envs / shape.block_envs)),
       curriculum_{config.command.speed_start_mps, 0.0},
-      cost_ramp_(cost_ramp_at(config.reward, 0.0, 0.0)),
+      schedule_(schedule_at(config.reward, 0.0, 0.0)),
       tilt_end_cos_(std::cos(config.episode.tilt_end_deg * std::numbers::pi / 180.0)) {
   for (int env = 0; env < shape.envs; ++env) {
     Env& e = envs_[static_cast<std::size_t>(env)];
@@ -93,7 +93,7 @@ StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
   s.vy = velocity[1];
   s.vz = x.velocity.z;
   s.yaw_rate = dot(r.r2, x.angular_velocity);
-  const auto keep = static_cast<float>(kStep_s / config_.reward.precise_time_s);
+  const auto keep = static_cast<float>(kStep_s / config_.reward.drift_time_s);
   const std::array<float, 3> now{s.vx, s.vy, s.yaw_rate};
   for (int i = 0; i < 3; ++i) e.drift[i] += std::min(keep, 1.0f) * (now[i] - e.drift[i]);
   s.drift = e.drift;
@@ -115,7 +115,7 @@ StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
   for (int l = 0; l < kNumLegs; ++l) {
     const bool was_loaded = e.unloaded_steps[l] < kUnloadedSteps;
     e.unloaded_steps[l] =
-        sums.foot_load[l] * kPerTick > kLoaded_n ? 0 : std::min(e.unloaded_steps[l] + 1, 1000);
+        sums.foot_load[l] * kPerTick > sim::kLoaded_n ? 0 : std::min(e.unloaded_steps[l] + 1, 1000);
     s.contact[l] = e.unloaded_steps[l] < kUnloadedSteps;
     e.air_s[l] = s.contact[l] ? 0.0f : e.air_s[l] + kStep_s;
     e.stance_s[l] = s.contact[l] ? e.stance_s[l] + kStep_s : 0.0f;
@@ -144,12 +144,14 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
   s.fell = fell;
   const int kind = is_rigid(env) ? 0 : 1;
   if (absurd) {  // a fall, and nothing else that figures could tell
-    const double fall = fall_charged(s, config_.reward, cost_ramp_);
-    rollout.reward(t, env) = static_cast<float>(-config_.reward.scale * fall);
+    const penalty::Fall& fall = config_.reward.unbounded_penalties;
+    const double value = fall.value(s, schedule_);
+    rollout.reward(t, env) = static_cast<float>(-config_.reward.scale * value);
   } else {
-    const Reward earned = reward(s, config_.reward, cost_ramp_);
+    const Reward earned = reward_of(s, config_.reward, schedule_);
     rollout.reward(t, env) = earned.value;
-    window.add_step(s, earned, kind, decisive_kind(), curriculum_.speed_mps, config_.reward);
+    window.add_step(s, earned, kind, decisive_kind(), curriculum_.speed_mps,
+                    config_.reward.rewards);
   }
   ++e.step;
   rollout.reset(t + 1, env) = 0;
@@ -184,7 +186,7 @@ WindowStats Task::end_window(double transitions, double late) {
   }
   const WindowStats w = all.means();
   advance_curriculum(w);
-  cost_ramp_ = cost_ramp_at(config_.reward, transitions, late);
+  schedule_ = schedule_at(config_.reward, transitions, late);
   return w;
 }
 
@@ -206,7 +208,7 @@ void Task::save(learner::Checkpoint& checkpoint) const {
   for (int env = 0; env < batch_.size(); ++env) robots.push_back(batch_.robot(env));
   checkpoint.put("task.robots", robots.data(), robots.size());
   checkpoint.put("task.curriculum", &curriculum_, 1);
-  checkpoint.put("task.cost_ramp", &cost_ramp_, 1);
+  checkpoint.put("task.schedule", &schedule_, 1);
 }
 
 void Task::load(const learner::Checkpoint& checkpoint) {
@@ -217,7 +219,7 @@ void Task::load(const learner::Checkpoint& checkpoint) {
     batch_.set_robot(env, robots[static_cast<std::size_t>(env)]);
   for (WindowSums& sums : sums_) sums = {};  // of a window that was not finished
   checkpoint.get("task.curriculum", &curriculum_, 1);
-  checkpoint.get("task.cost_ramp", &cost_ramp_, 1);
+  checkpoint.get("task.schedule", &schedule_, 1);
 }
 
 }  // namespace sandrunner::train

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "sim/batch/batch.h"
+#include "sim/batch/disturbances.h"
+#include "sim/batch/sensors.h"
 #include "tools/train/data/checkpoint.h"
 #include "tools/train/data/rollout.h"
 #include "tools/train/data/symmetry.h"
@@ -77,9 +79,9 @@ class Task {
   }
   const sim::Batch& batch() const { return batch_; }
 
-  /// Means over the window just done; clears its sums and advances the curricula and the ramp of
-  /// the costs. `transitions`: since the start of the training; `late`: share of the late penalties
-  /// from now on, 0 to 1.
+  /// Means over the window just done; clears its sums and advances the curricula and the
+  /// schedule of the reward. `transitions`: since the start of the training; `late`: share of the
+  /// late penalties from now on, 0 to 1.
   WindowStats end_window(double transitions, double late);
   const Curriculum& curriculum() const { return curriculum_; }
   CommandRange command_range() const;
@@ -104,9 +106,10 @@ class Task {
     std::int32_t stand_steps_left = 0;         // before it does
     std::int32_t step = 0, command_steps_left = 0;
     JointArray<float> action{}, action_1{}, action_2{};  // the latest, and those before it
-    JointArray<float> joint_offset{};
+    sim::SensorErrors sensors;
     std::array<float, kNumLegs> air_s{}, stance_s{}, since_touchdown_s{};
-    std::array<std::int32_t, kNumLegs> unloaded_steps{}, was_active{};
+    std::array<std::int32_t, kNumLegs> unloaded_steps{};
+    sim::TouchdownWatch touchdowns;
     std::array<float, 3> drift{};  // vx, vy, yaw rate, low-passed
     float noise_level = 1.0f;
     // For the critic: of each patch of ground, and of the robot.
@@ -161,7 +164,7 @@ class Task {
   std::vector<Env> envs_;
   std::vector<WindowSums> sums_;  // one a block
   Curriculum curriculum_;
-  CostRamp cost_ramp_;
+  RewardSchedule schedule_;
   double tilt_end_cos_;
 };
 

@@ -168,13 +168,21 @@ RobotSettings read_robot_settings(ConfigTree& config) {
   return r;
 }
 
-}  // namespace
-
-NoiseSettings read_noise_settings(ConfigTree& config) {
-  NoiseSettings noise;
-  read_numbers(config, "noise", kNoise, noise);
-  return noise;
+RewardSettings read_reward_settings(ConfigTree& config) {
+  RewardSettings r;
+  read_numbers(config, "reward", RewardSettings::kSettings, r);
+  read_numbers(config, "penalty", PenaltySettings::kSettings, r.penalty);
+  r.for_each_term([&]<typename Term>(const std::string& table, Term& term) {
+    const char* name = Term::kName;
+    if constexpr (requires { Term::kTable; }) name = Term::kTable;
+    read_numbers(config, table + "." + name, Term::kSettings, term);
+  });
+  require_order("reward.prior_start_transitions", r.prior_start_transitions,
+                "reward.prior_end_transitions", r.prior_end_transitions);
+  return r;
 }
+
+}  // namespace
 
 TaskConfig read_task_config(ConfigTree& config) {
   TaskConfig c;
@@ -191,10 +199,8 @@ TaskConfig read_task_config(ConfigTree& config) {
   }
   c.ground = read_ground_settings(config);
   c.robot = read_robot_settings(config);
-  c.noise = read_noise_settings(config);
-  read_numbers(config, "reward", kRewardSettings, c.reward);
-  require_order("reward.prior_start_transitions", c.reward.prior_start_transitions,
-                "reward.prior_end_transitions", c.reward.prior_end_transitions);
+  read_numbers(config, "noise", kNoise, c.noise);
+  c.reward = read_reward_settings(config);
   return c;
 }
 

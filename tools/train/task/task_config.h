@@ -6,6 +6,7 @@
 
 #include "rt/base/config_tree.h"
 #include "rt/core/messages.h"
+#include "sim/batch/sensors.h"
 #include "sim/ground/ground.h"
 #include "tools/train/task/reward.h"
 
@@ -126,12 +127,8 @@ struct RobotSettings {
   bool torque_speed_line = false;      ///< whether drives lose torque towards their top speed
 };
 
-/// Standard deviations of the observation noise, but for level and offset.
-struct NoiseSettings {
-  double gravity = 0;  ///< of each component of the unit vector
-  double angular_velocity_radps = 0;
-  double joint_position_rad = 0;
-  double joint_velocity_radps = 0;
+/// How sensors err.
+struct NoiseSettings : sim::ObservationNoise {
   double joint_offset_rad = 0;  ///< largest |offset| of a joint's encoder, constant in an episode
   double level_high = 0;        ///< largest factor of the standard deviations, drawn an episode
 };
@@ -148,6 +145,5 @@ struct TaskConfig {
 
 /// Reads the tables above; throws InputError for a missing or impossible value.
 TaskConfig read_task_config(ConfigTree& config);
-NoiseSettings read_noise_settings(ConfigTree& config);
 
 }  // namespace sandrunner::train

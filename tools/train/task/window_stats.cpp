@@ -7,9 +7,8 @@
 namespace sandrunner::train {
 
 void WindowSums::add_step(const StepOutcome& s, const Reward& reward, int kind, int decisive,
-                          double top_speed_mps, const RewardSettings& settings) {
-  const double kernel =
-      velocity_kernel(s, settings.velocity_width, settings.velocity_width_per_speed2);
+                          double top_speed_mps, const reward::Velocity& velocity) {
+  const double kernel = velocity.kernel(s);
   steps_ += 1.0;
   reward_ += reward.value;
   for (std::size_t i = 0; i < kRewardTerms; ++i) terms_[i] += reward.terms[i];

@@ -32,9 +32,9 @@ struct WindowStats {
 class WindowSums {
  public:
   /// A step on ground of this kind (0 rigid, 1 soil). `top_speed_mps`: the curriculum's, which
-  /// depends on the steps on ground of kind `decisive`.
+  /// depends on the steps on ground of kind `decisive`. `velocity` has the kernel that is averaged.
   void add_step(const StepOutcome& s, const Reward& reward, int kind, int decisive,
-                double top_speed_mps, const RewardSettings& settings);
+                double top_speed_mps, const reward::Velocity& velocity);
   void add_fall(int kind) { falls_[kind] += 1.0; }
   void add(const WindowSums& other);
   WindowStats means() const;

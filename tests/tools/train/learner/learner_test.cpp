@@ -269,7 +269,7 @@ TEST(LearnerTest, LearningRateFollowsTheDivergence) {
 
 TEST(LearnerTest, DeviationStopsAtItsFloor) {
   LearnerConfig config = small_config();
-  config.loss.entropy_weight = -1.0;  // pays for a narrow policy
+  config.loss.entropy_weight = -1.0;  // rewards a narrow policy
   config.action_std_start = 0.21;
   config.kl_target = 10.0;
   Training training(1, 1, config);
@@ -277,7 +277,7 @@ TEST(LearnerTest, DeviationStopsAtItsFloor) {
   EXPECT_NEAR(training.last.action_std, 0.2, 1e-6);
 }
 
-TEST(LearnerTest, NamesTheConstantThatCannotWork) {
+TEST(LearnerTest, NamesTheSettingThatDoesNotFitTheOthers) {
   WorkerPool pool(1);
   const auto message = [&](const LearnerConfig& config, const RolloutShape& shape) -> std::string {
     try {
@@ -293,12 +293,14 @@ TEST(LearnerTest, NamesTheConstantThatCannotWork) {
             "learner: envs is 60, expected a multiple of block_envs, 8");
   EXPECT_EQ(message(config, {16, 8, kToyPrivileged}),
             "learner: envs is 16, expected at least a block of 8 for each of 4 minibatches");
-  config.gamma = 1.5;
-  EXPECT_EQ(message(config, kSmallShape), "learner: gamma is 1.5, expected in [0, 1)");
-  config = small_config();
-  config.network.critic = {16, 0};
+  config.action_std_min = 0.7;
   EXPECT_EQ(message(config, kSmallShape),
-            "learner: critic is 0, expected layer widths of at least 1");
+            "learner: action_std_start is 0.6, expected at least action_std_min");
+  config = small_config();
+  config.learning_rate_max = 1e-5;
+  EXPECT_EQ(message(config, kSmallShape),
+            "learner: learning_rate_start is 0.0005, expected between learning_rate_min and "
+            "learning_rate_max");
 }
 
 }  // namespace

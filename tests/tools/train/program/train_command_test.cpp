@@ -226,7 +226,8 @@ TEST_F(TrainCommandTest, LinesOfProgressAreShortAndExplained) {
 }
 
 TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
-  expect_refused("a", {"--set", "reward.torqe=1"}, "reward.torqe");
+  expect_refused("a", {"--set", "reward.velocity.wieght=1"}, "'reward.velocity.weight'?");
+  expect_refused("a", {"--set", "reward.debt=0.6"}, "unknown key 'reward.debt'");
   expect_refused("a", {"--set", "learner.gamma=1.5"}, "learner.gamma");
   expect_refused("a", {"--set", "ground.friction_low=2", "--set", "ground.friction_high=1"},
                  "ground.friction_low");

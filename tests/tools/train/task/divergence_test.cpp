@@ -31,7 +31,7 @@ void set_speed(Task& task, float speed_mps) {
   task.load(checkpoint);
 }
 
-/// Ten steps with all costs at their end; before one of them a robot's forward speed is
+/// Ten steps with the late penalties fully on; before one of them a robot's forward speed is
 /// `speed_mps`, if that is not its own (0).
 Outcome steps_with(float speed_mps) {
   flush_denormals_to_zero();
@@ -49,7 +49,7 @@ Outcome steps_with(float speed_mps) {
   return outcome;
 }
 
-void expect_charged_as_a_fall(const Outcome& lost) {
+void expect_penalised_as_a_fall(const Outcome& lost) {
   const Outcome other = steps_with(0.0f);
   ASSERT_EQ(other.rollout.end(kLostStep, kLostEnv), learner::End::kNone);
   EXPECT_EQ(lost.rollout.end(kLostStep, kLostEnv), learner::End::kTerminated);
@@ -72,11 +72,11 @@ void expect_charged_as_a_fall(const Outcome& lost) {
 }
 
 TEST(DivergenceTest, OfARobotThatIsNotANumberIsAFallThatNothingElseFeels) {
-  expect_charged_as_a_fall(steps_with(static_cast<float>(kNan)));
+  expect_penalised_as_a_fall(steps_with(static_cast<float>(kNan)));
 }
 
 TEST(DivergenceTest, OfARobotFasterThanAnyIsAFallThatNothingElseFeels) {
-  expect_charged_as_a_fall(steps_with(1e6f));
+  expect_penalised_as_a_fall(steps_with(1e6f));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ StepOutcome mid_trot(std::array<float, 3> command) {
   return s;
 }
 
-TEST(GaitPriorTest, PaysATrotInEveryDirectionAndInTurns) {
+TEST(GaitPriorTest, RewardsATrotInEveryDirectionAndInTurns) {
   for (const std::array<float, 3> command : {std::array{1.0f, 0.0f, 0.0f},
                                              {-1.0f, 0.0f, 0.0f},
                                              {0.0f, 0.3f, 0.0f},
@@ -27,7 +27,7 @@ TEST(GaitPriorTest, PaysATrotInEveryDirectionAndInTurns) {
   }
 }
 
-TEST(GaitPriorTest, PaysNothingToARobotToldToStand) {
+TEST(GaitPriorTest, IsNothingUnderACommandToStand) {
   EXPECT_EQ(diagonality(mid_trot({})), 0.0);
   EXPECT_EQ(paired_swing(mid_trot({}), 0.25, 0.35), 0.0);
 }
@@ -44,7 +44,7 @@ TEST(GaitPriorTest, DiagonalityOfAHopOrPaceIsZeroAndOfABoundBelow) {
   EXPECT_EQ(diagonality(s), 0.0);
 }
 
-TEST(GaitPriorTest, SwingOfAPairIsPaidByItsShorterFootWhileTheOthersCarry) {
+TEST(GaitPriorTest, SwingOfAPairIsRewardedByItsShorterFootWhileTheOthersCarry) {
   StepOutcome s = mid_trot({1.0f, 0.0f, 0.0f});
   s.air_s[3] = 0.2f;
   EXPECT_NEAR(paired_swing(s, 0.25, 0.35), 0.4, 1e-6);

@@ -19,10 +19,19 @@ TEST(RobotSettingsTest, TheShippedRobotGetsTheFiguresItsTrainingWasTunedWith) {
   const TaskConfig config = settings_of(sim::load_raibo());
   EXPECT_NEAR(config.policy.kp_nmprad, 50.0, 1e-9);
   EXPECT_NEAR(config.command.speed_max_mps, 4.0, 1e-9);
-  EXPECT_NEAR(config.reward.torque, 1.0e-3, 1e-6);
-  EXPECT_NEAR(config.reward.power, 8.0e-3, 1e-5);
-  EXPECT_NEAR(config.reward.knee_low_rad, -2.35, 1e-3);
-  EXPECT_NEAR(config.reward.height_m, 0.475, 1e-9);
+  EXPECT_NEAR(config.reward.penalties.Energy::torque_weight, 1.0e-3, 1e-6);
+  EXPECT_NEAR(config.reward.penalties.Energy::power_weight, 8.0e-3, 1e-5);
+  EXPECT_NEAR(config.reward.penalties.JointMargin::knee_low_rad, -2.35, 1e-3);
+  EXPECT_NEAR(config.reward.penalties.Height::target_m, 0.475, 1e-9);
+}
+
+TEST(RobotSettingsTest, SensorsAreAsNoisyAsThoseOfAnEvaluation) {
+  const NoiseSettings training = settings_of(sim::load_raibo()).noise;
+  const sim::ObservationNoise evaluation;
+  EXPECT_EQ(training.gravity, evaluation.gravity);
+  EXPECT_EQ(training.angular_velocity_radps, evaluation.angular_velocity_radps);
+  EXPECT_EQ(training.joint_position_rad, evaluation.joint_position_rad);
+  EXPECT_EQ(training.joint_velocity_radps, evaluation.joint_velocity_radps);
 }
 
 TEST(RobotSettingsTest, ARobotThatStandsAskewIsNotTrained) {
@@ -33,15 +42,18 @@ TEST(RobotSettingsTest, ARobotThatStandsAskewIsNotTrained) {
   EXPECT_THROW(check_robot(config, robot), InputError);
 }
 
-TEST(RobotSettingsTest, ASmallerRobotIsSlowerLowerAndItsTorqueDearer) {
+TEST(RobotSettingsTest, ASmallerRobotIsSlowerLowerAndItsTorquePenalisedMore) {
   const TemporaryFolder folder;
   const TaskConfig raibo = settings_of(sim::load_raibo()),
                    small = settings_of(sim::load_robot(write_small_robot(folder)));
   EXPECT_LT(small.command.speed_max_mps, raibo.command.speed_max_mps);
-  EXPECT_LT(small.reward.height_m, raibo.reward.height_m);
-  EXPECT_LT(small.reward.clearance_m, raibo.reward.clearance_m);
-  EXPECT_GT(small.reward.torque, raibo.reward.torque);
-  EXPECT_GT(small.reward.power, raibo.reward.power);
+  EXPECT_LT(small.reward.penalties.Height::target_m, raibo.reward.penalties.Height::target_m);
+  EXPECT_LT(small.reward.penalties.penalty::Clearance<0>::target_m,
+            raibo.reward.penalties.penalty::Clearance<0>::target_m);
+  EXPECT_GT(small.reward.penalties.Energy::torque_weight,
+            raibo.reward.penalties.Energy::torque_weight);
+  EXPECT_GT(small.reward.penalties.Energy::power_weight,
+            raibo.reward.penalties.Energy::power_weight);
 }
 
 }  // namespace

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Training: to and from a policy file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt/base/errors.h"
+#include "tools/train/task/leg_modes.h"
+#include "tools/train/training.h"
+
+namespace sandrunner::train {
+namespace {
+
+/// Throws InputError unless weights of `policy` mean in a file with the scales of `ours` what they
+/// mean in their own. Nominal positions may differ: angles are shown as what they are off them.
+void require_scales(const PolicyFile& policy, const PolicyFile& ours) {
+  const auto check = [&](const std::string& what, double is, double expected) {
+    if (std::fabs(is - expected) <= 1e-4 * std::fabs(expected)) return;
+    throw InputError(
+        fmt::format("policy '{}': its {} is {:.6g}, expected {:.6g}, with which this trainer shows "
+                    "and takes it",
+                    policy.spec.name, what, is, expected));
+  };
+  const NetworkParameters &a = policy.parameters, &b = ours.parameters;
+  constexpr std::size_t kAngles = 9;
+  for (std::size_t i = 0; i < kObservationSize; ++i) {
+    check(fmt::format("variance of observation {}", i), a.observation_variance[i],
+          b.observation_variance[i]);
+    if (i >= kAngles && i < kAngles + kNumJoints) continue;
+    check(fmt::format("mean of observation {}", i), a.observation_mean[i], b.observation_mean[i]);
+  }
+  check("clip of observations", a.observation_clip, b.observation_clip);
+  check("action scale", policy.spec.action_scale_rad, ours.spec.action_scale_rad);
+  check("action clip", policy.spec.action_clip, ours.spec.action_clip);
+}
+
+}  // namespace
+
+void Training::go_on_from(PolicyFile policy) {
+  require_scales(policy, policy_file(snapshot(), learner_.averaged()));
+  for (std::vector<float>* rows :
+       {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
+    const std::vector<float> joints = *rows;
+    modes_from_joints(config_.task.policy.mode_gain, joints.data(), joints.size() / kNumJoints,
+                      rows->data());
+  }
+  std::vector<learner::PolicyTensor> tensors;
+  for (const NamedTensor& tensor : tensors_of(policy.parameters)) {
+    tensors.push_back({tensor.name, {}, *tensor.values});
+  }
+  learner_.set_policy(tensors);
+  origin_ = fmt::format("sandrunner-train, from the weights of policy '{}'", policy.spec.name);
+}
+
+PolicyFile Training::policy_file(const Snapshot& snapshot,
+                                 const std::vector<float>& parameters) const {
+  PolicyFile file;
+  const PolicySettings& policy = config_.task.policy;
+  PolicySpec& spec = file.spec;
+  spec.name = robot_.description.name;
+  spec.joint_names = robot_.description.joint_names;
+  spec.nominal_position_rad = robot_.nominal_rad;
+  spec.action_scale_rad = policy.action_scale_rad;
+  spec.action_clip = policy.action_clip;
+  spec.kp_nmprad = policy.kp_nmprad;
+  spec.kd_nmsprad = policy.kd_nmsprad;
+  // One limit for all joints; where the robot's own are lower, they hold besides.
+  spec.torque_limit_nm = *std::ranges::max_element(robot_.model.torque_limit_nm);
+  spec.yaw_command_clip_mps2 = config_.task.command.centripetal_mps2;
+  const CommandRange commands = task_.command_range();
+  spec.envelope = {.forward_mps = snapshot.command_speed_mps,
+                   .backward_mps = commands.backward_mps,
+                   .lateral_mps = commands.lateral_mps,
+                   .yaw_radps = commands.yaw_radps,
+                   .acceleration_mps2 = config_.task.command.acceleration_mps2,
+                   .yaw_acceleration_radps2 = config_.task.command.yaw_acceleration_radps2};
+  spec.has_envelope = true;
+  const InputScales& scales = task_.scales();
+  for (int i = 0; i < kEstimateSize; ++i) {
+    spec.estimate_mean[i] = scales.estimate_mean[i];
+    spec.estimate_variance[i] = scales.estimate_deviation[i] * scales.estimate_deviation[i];
+  }
+  spec.provenance = {{"config", config_.effective},
+                     {"robot", robot_.description.name},
+                     {"seed", std::to_string(options_.seed)},
+                     {"threads", std::to_string(options_.threads)},
+                     {"transitions", fmt::format("{:.0f}", snapshot.transitions)},
+                     {"core_hours", fmt::format("{:.3f}", snapshot.core_hours)},
+                     {"processor", processors_},
+                     {"commit", builds_},
+                     {"origin", origin_}};
+  NetworkParameters& p = file.parameters;
+  p.observation_clip = scales.clip;
+  p.observation_mean.assign(scales.mean.begin(), scales.mean.end());
+  for (const float d : scales.inverse_deviation) {
+    p.observation_variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
+  }
+  const auto tensors = learner::policy_tensors(learner_.layout(), parameters);
+  for (const NamedTensor& to : tensors_of(p)) {
+    const auto from = std::ranges::find(tensors, to.name, &learner::PolicyTensor::name);
+    if (from != tensors.end()) *to.values = from->values;
+  }
+  // The robot's network answers in joints.
+  for (std::vector<float>* rows : {&p.actor.back().weight, &p.actor.back().bias}) {
+    const std::vector<float> modes = *rows;
+    joints_from_modes(policy.mode_gain, modes.data(), modes.size() / kNumJoints, rows->data());
+  }
+  file.golden = make_golden_example(p);
+  return file;
+}
+
+}  // namespace sandrunner::train
