@@ -31,7 +31,7 @@ std::uint64_t seed_of(const std::string& text) {
 CLI::App* add_check(CLI::App& app, Options& o) {
   CLI::App* const check = app.add_subcommand(
       "check",
-      "examine the buses, drives and IMU of a real robot; powers nothing without --nudge "
+      "examine the buses, drives and IMU of a real robot; only --nudge powers the drives "
       "(drivers/robot/README.md)");
   check->fallthrough();
   check->add_option("FILE", o.hardware_path, "hardware file, as for --hardware")

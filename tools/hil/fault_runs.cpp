@@ -21,8 +21,8 @@ constexpr std::array<FaultRun, 27> kRuns = {{
     {"drive-resets", "a drive is off at once, and answers", "moteus", "1 reboot RF_HFE 0",
      "drive_fault", "RF_HFE", "switched off by itself", kDamping, 1, 0.006, 0.006},
     {"drive-resets-mit",
-     "a drive is off at once, in Walk, and answers: MIT layout, whose replies do not report it", "mit",
-     "6 reboot RF_KFE 0", "torque_missing", "RF_KFE", "", kDamping, 1, 0.15, 0.15},
+     "a drive is off at once, in Walk, and answers: MIT layout, whose replies do not report it",
+     "mit", "6 reboot RF_KFE 0", "torque_missing", "RF_KFE", "", kDamping, 1, 0.15, 0.15},
     // Three exchanges at 800 Hz without a reply, and the one that brings the command: 5 ms.
     {"damiao-reboots", "a Damiao reboots in 0.3 s, and with it forgets its time-out", "damiao",
      "1 reboot LF_KFE 0.3", "joints_stale", "LF_KFE", "it has no time-out now", kDamping, 1, 0.006,

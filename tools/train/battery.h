@@ -47,8 +47,9 @@ struct BatteryFigures {
 };
 
 /// The number by which policies are compared; larger is better. One fall in a battery of 225 runs
-/// counts more than any cost of transport, and so does an error of 0.005 beyond `tracked_error`: a robot that
-/// stands still gets nowhere. Of policies that survive and track alike the cheaper is better:
+/// counts more than any cost of transport, and so does an error of 0.005 beyond `tracked_error`: a
+/// robot that stands still gets nowhere. Of policies that survive and track alike the cheaper is
+/// better:
 ///   -(1000 (1 - alive) + 1000 max(0, error - tracked_error)
 ///     + cost of transport + too_fast_weight too_fast
 ///     + drift_weight (drift + 0.5 m yaw drift))
