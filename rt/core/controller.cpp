@@ -13,30 +13,6 @@ constexpr std::uint64_t kStop = 1, kStopAndLie = 2;  // ControllerState::stoppin
 
 constexpr double kYield_radps = 0.05;  // a torque of 30 N m is relieved by 10 N m in 2 s
 
-std::optional<Event> event_of(ModeRequest request) noexcept {
-  switch (request) {
-    case ModeRequest::kNone:
-      return std::nullopt;
-    case ModeRequest::kPassive:
-      return Event::kRequestPassive;
-    case ModeRequest::kDamp:
-      return Event::kRequestDamp;
-    case ModeRequest::kStand:
-      return Event::kRequestStand;
-    case ModeRequest::kWalk:
-      return Event::kRequestWalk;
-    case ModeRequest::kResetFault:
-      return Event::kRequestReset;
-    case ModeRequest::kArm:
-      return Event::kRequestArm;
-    case ModeRequest::kStop:
-      return Event::kRequestStop;
-    case ModeRequest::kLie:
-      return Event::kRequestLie;
-  }
-  return std::nullopt;
-}
-
 /// Largest distance of two postures in one joint.
 double distance(const JointArray<double>& a, const JointArray<double>& b) noexcept {
   double largest_rad = 0.0;
@@ -183,8 +159,9 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   const Mode mode = state_.mode;
   if (command.request_id == state_.request_id) return mode;
   state_.request_id = command.request_id;
-  const std::optional<Event> event = event_of(command.request);
-  if (!event) return mode;
+  const RequestRow* const row = row_of(command.request);
+  if (!row) return mode;
+  const Event event = row->event;
   if (event == Event::kRequestWalk && config_.gate.hanging) return mode;
   if (mode == Mode::kFault && drives_on(tick)) return mode;
   if (mode == Mode::kWalk) {
@@ -209,7 +186,7 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   } else if (mode == Mode::kStand && event == Event::kRequestWalk && state_.folding != 0) {
     return mode;
   }
-  return next_mode(mode, *event);
+  return next_mode(mode, event);
 }
 
 void Controller::begin_stop(std::uint64_t tick) noexcept {

@@ -3,6 +3,20 @@
 
 namespace sandrunner {
 
+const RequestRow* row_of(ModeRequest request) noexcept {
+  for (const RequestRow& row : kRequestTable) {
+    if (row.request == request) return &row;
+  }
+  return nullptr;
+}
+
+const RequestRow* request_named(std::string_view name) noexcept {
+  for (const RequestRow& row : kRequestTable) {
+    if (row.name == name) return &row;
+  }
+  return nullptr;
+}
+
 Mode next_mode(Mode mode, Event event) noexcept {
   for (const Transition& transition : kTransitions) {
     if (transition.from == mode && transition.event == event) return transition.to;

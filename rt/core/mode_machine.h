@@ -30,6 +30,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "rt/core/messages.h"
 
@@ -51,6 +52,31 @@ enum class Event : std::uint64_t {
   kFault,
 };
 inline constexpr int kNumEvents = 12;
+
+/// A request of an operator.
+struct RequestRow {
+  ModeRequest request;
+  Event event;
+  const char* name;  ///< over DDS, on the command line, in pages and recordings
+  char key;          ///< in pages and in sandrunner-ctl drive; 0: none
+  bool calms;        ///< it ends the motion
+};
+
+/// Every request, in the order in which people see them.
+inline constexpr std::array<RequestRow, 8> kRequestTable = {{
+    {ModeRequest::kArm, Event::kRequestArm, "arm", 'r', false},
+    {ModeRequest::kStand, Event::kRequestStand, "stand", 'g', false},
+    {ModeRequest::kWalk, Event::kRequestWalk, "walk", 'f', false},
+    {ModeRequest::kStop, Event::kRequestStop, "stop", ' ', true},
+    {ModeRequest::kLie, Event::kRequestLie, "lie", 0, false},
+    {ModeRequest::kDamp, Event::kRequestDamp, "damp", 'x', true},
+    {ModeRequest::kPassive, Event::kRequestPassive, "disarm", 0, false},
+    {ModeRequest::kResetFault, Event::kRequestReset, "reset_fault", 0, false},
+}};
+
+/// Null: there is none, as for ModeRequest::kNone.
+const RequestRow* row_of(ModeRequest request) noexcept;
+const RequestRow* request_named(std::string_view name) noexcept;
 
 struct Transition {
   Mode from;

@@ -1,50 +1,65 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/operator/mode_requests.h"
 
-#include <algorithm>
+#include "rt/core/mode_machine.h"
 
 namespace sandrunner {
 
-bool is_request(std::string_view name) noexcept {
-  return std::ranges::find(kRequests, name) != kRequests.end();
+std::string request_names() {
+  std::string names;
+  for (const RequestRow& row : kRequestTable) {
+    if (&row != &kRequestTable.front()) names += &row == &kRequestTable.back() ? " or " : ", ";
+    names += row.name;
+  }
+  return names;
 }
 
 RequestDecision decide(std::string_view name, Mode mode, const char* no_walk) noexcept {
-  if (name == "damp") return {.request = ModeRequest::kDamp, .calms = true};
-  if (name == "stop") return {.request = ModeRequest::kStop, .calms = true};
-  if (name == "reset_fault") {
-    if (mode != Mode::kFault) return {.refusal = "no fault is latched"};
-    return {.request = ModeRequest::kResetFault};
+  const RequestRow* const row = request_named(name);
+  if (!row) return {.refusal = "unknown"};
+  const auto unless = [&](const char* refusal) {
+    return RequestDecision{.request = refusal ? ModeRequest::kNone : row->request,
+                           .calms = row->calms,
+                           .refusal = refusal};
+  };
+  if (row->calms) return unless(nullptr);
+  if (row->request == ModeRequest::kResetFault) {
+    return unless(mode == Mode::kFault ? nullptr : "no fault is latched");
   }
-  if (mode == Mode::kFault) return {.refusal = "a fault is latched, reset_fault comes first"};
-  if (name == "arm") {
-    if (mode != Mode::kPassive) return {.refusal = "the drives are on already"};
-    return {.request = ModeRequest::kArm};
+  if (mode == Mode::kFault) return unless("a fault is latched, reset_fault comes first");
+  const bool off = mode == Mode::kPassive;
+  switch (row->request) {
+    case ModeRequest::kArm:
+      return unless(off ? nullptr : "the drives are on already");
+    case ModeRequest::kStand:
+      return unless(off ? "the drives are off, arm comes first" : nullptr);
+    case ModeRequest::kLie:
+      return unless(off ? "the drives are off" : nullptr);
+    case ModeRequest::kPassive:
+      return unless(off                      ? "the drives are off already"
+                    : mode == Mode::kDamping ? nullptr
+                                             : "the robot carries itself, lie comes first");
+    case ModeRequest::kWalk:
+      if (no_walk) return unless(no_walk);
+      if (mode == Mode::kStandUp) {
+        return unless("the robot is still standing up, try again when it stands");
+      }
+      return unless(mode == Mode::kStand || mode == Mode::kWalk
+                        ? nullptr
+                        : "the robot does not stand, stand comes first");
+    case ModeRequest::kNone:
+    case ModeRequest::kDamp:
+    case ModeRequest::kStop:
+    case ModeRequest::kResetFault:
+      break;
   }
-  if (name == "stand") {
-    if (mode == Mode::kPassive) return {.refusal = "the drives are off, arm comes first"};
-    return {.request = ModeRequest::kStand};
-  }
-  if (name == "lie") {
-    if (mode == Mode::kPassive) return {.refusal = "the drives are off"};
-    return {.request = ModeRequest::kLie};
-  }
-  if (name == "disarm") {
-    if (mode == Mode::kPassive) return {.refusal = "the drives are off already"};
-    if (mode != Mode::kDamping) return {.refusal = "the robot carries itself, lie comes first"};
-    return {.request = ModeRequest::kPassive};
-  }
-  if (no_walk) return {.refusal = no_walk};
-  if (mode == Mode::kStandUp) {
-    return {.refusal = "the robot is still standing up, try again when it stands"};
-  }
-  if (mode != Mode::kStand && mode != Mode::kWalk) {
-    return {.refusal = "the robot does not stand, stand comes first"};
-  }
-  return {.request = ModeRequest::kWalk};
+  return unless(nullptr);
 }
 
-bool calms(std::string_view name) noexcept { return decide(name, Mode::kPassive, nullptr).calms; }
+bool calms(std::string_view name) noexcept {
+  const RequestRow* const row = request_named(name);
+  return row && row->calms;
+}
 
 const char* failure(ModeRequest request, Mode after) noexcept {
   switch (request) {

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
+#include <string>
 #include <string_view>
 
 #include "rt/core/messages.h"
 
 namespace sandrunner {
 
-/// What an operator may request over DDS or from a page of --view, by name.
-inline constexpr std::array<std::string_view, 8> kRequests = {
-    "arm", "stand", "walk", "stop", "lie", "damp", "disarm", "reset_fault"};
-inline constexpr const char* kRequestNames =
-    "arm, stand, walk, stop, lie, damp, disarm or reset_fault";
-bool is_request(std::string_view name) noexcept;
+/// The names of kRequestTable for a message: "arm, stand, ... or reset_fault".
+std::string request_names();
 
 /// What to do about a request.
 struct RequestDecision {
@@ -22,8 +18,8 @@ struct RequestDecision {
   const char* refusal = nullptr;             ///< why not; null: accepted
 };
 
-/// Decides in `mode`; `name` is one of the above. "stop" ends every motion: a walking robot's in a
-/// controlled stop, a rising one's in damping; it makes no robot stand up. `no_walk`: why the
+/// Decides in `mode`; `name` is one of kRequestTable. "stop" ends every motion: a walking robot's
+/// in a controlled stop, a rising one's in damping; it makes no robot stand up. `no_walk`: why the
 /// robot may not walk; null: it may.
 RequestDecision decide(std::string_view name, Mode mode, const char* no_walk) noexcept;
 

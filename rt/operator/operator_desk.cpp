@@ -72,8 +72,9 @@ RequestOutcome OperatorDesk::request(std::string_view name, const OperatorId& wh
     if (objection) objected = objection();
   }
   Lock lock(mutex_);
-  const std::string refusal = is_request(name) ? follow(name, who, objected, lock)
-                                               : fmt::format("unknown, expected {}", kRequestNames);
+  const std::string refusal = request_named(name)
+                                  ? follow(name, who, objected, lock)
+                                  : fmt::format("unknown, expected {}", request_names());
   ++(refusal.empty() ? counts_.requests_accepted : counts_.requests_refused);
   RequestOutcome outcome{refusal.empty(), refusal};
   if (outcome.accepted) outcome.text = fmt::format("mode {}", mode_name(operator_.mode()));

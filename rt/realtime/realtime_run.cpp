@@ -153,7 +153,7 @@ RealtimeEnd run_threads(const Rig& rig, const RealtimeConfig& realtime, Clock& c
 }  // namespace
 
 RealtimeEnd run_realtime(const Rig& rig, const RealtimeConfig& realtime, Clock& clock) {
-  const RealtimeEnd end = run_threads(rig, realtime, clock);
+  RealtimeEnd end = run_threads(rig, realtime, clock);
   // Files are finished when memory and processors are free again.
   for (TickSink* sink : rig.sinks) sink->end();
   return end;

@@ -54,16 +54,12 @@ CLI::App* add_check(CLI::App& app, Options& o) {
   return check;
 }
 
-}  // namespace
+// Options whose words are not the values that they stand for.
+struct Words {
+  std::string start = "stand", clock = "lockstep", seed = "0";
+};
 
-std::optional<Options> parse_options(int argc, const char* const* argv) {
-  Options o;
-  CLI::App app{
-      "Controls a legged robot. Without --hardware, the robot is simulated on sand or another "
-      "ground.",
-      "sandrunner"};
-  app.option_defaults()->always_capture_default();
-  std::string start = "stand";
+void add_robot_options(CLI::App& app, Options& o) {
   app.add_option("--policy", o.policy_path,
                  "policy file (default: that of Raibo); none: the robot only stands up")
       ->type_name("FILE")
@@ -80,6 +76,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_flag("--arm", o.arm, "with --hardware: the run may move the robot by itself");
   app.add_flag("--dry-run", o.dry_run,
                "with --hardware: print the frames for the drives; opens nothing");
+}
+
+void add_run_options(CLI::App& app, Options& o, Words& t) {
   app.add_option(
          "--terrain", o.terrain,
          fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
@@ -95,20 +94,22 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("DIR");
   app.add_option("--duration", o.duration_s, "time in Walk, s")->type_name("S");
   app.add_option(
-         "--start", start,
+         "--start", t.start,
          "stand: lies, stands up, walks, stands again, lies down; walk: walks at once from the "
          "nominal pose")
       ->check(CLI::IsMember({"stand", "walk"}))
       ->type_name("stand|walk");
-  std::string clock = "lockstep";
-  std::string seed = "0";
   app.add_option(
-         "--clock", clock,
+         "--clock", t.clock,
          "lockstep: one thread, simulated time, as fast as possible; realtime: the threads of "
          "the robot on the system's clock")
       ->check(CLI::IsMember({"lockstep", "realtime"}))
       ->type_name("lockstep|realtime");
-  app.add_option("--seed", seed, "0: the nominal start; above 0: a disturbed one")->type_name("N");
+  app.add_option("--seed", t.seed, "0: the nominal start; above 0: a disturbed one")
+      ->type_name("N");
+}
+
+void add_file_options(CLI::App& app, Options& o) {
   app.add_option("--config", o.config_files,
                  "TOML file with settings; may be repeated, later ones win")
       ->type_name("FILE")
@@ -130,37 +131,17 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_flag("--view", o.view,
                "show the run in a browser of this computer, at the printed address, until Ctrl-C; "
                "lockstep then runs in real time");
-  const CLI::App* report = app.add_subcommand(
-      "rt-report", "report what this machine allows a real-time process, with a 10 s sample");
-  CLI::App* const check = add_check(app, o);
-  app.footer(
-      "Examples:\n"
-      "  sandrunner --command 2,0,0 --out results\n"
-      "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
-      "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
-      "  sandrunner --clock realtime --command dds\n"
-      "  sandrunner --view --command live --terrain grass\n"
-      "  sandrunner check robot.toml");
-  if (!parse_command_line(app, argc, argv)) return std::nullopt;
-  o.start_walking = start == "walk";
-  if (check->parsed()) {
-    if (app.count("--hardware") > 0 || o.arm || o.dry_run) {
-      throw InputError("check: reads its own FILE, expected no --hardware, --arm or --dry-run");
-    }
-    o.check.asked = true;
-    return o;
-  }
+}
+
+// Throws InputError for options that do not go together.
+void require_consistent(const CLI::App& app, const Options& o, const Words& t) {
   const bool hardware = !o.hardware_path.empty();
   if (hardware) require_regular_file(o.hardware_path, "a hardware file (drivers/robot/README.md)");
-  if (hardware && (o.start_walking || (app.count("--clock") > 0 && clock == "lockstep"))) {
+  if (hardware && (o.start_walking || (app.count("--clock") > 0 && t.clock == "lockstep"))) {
     throw InputError(
         "--hardware: a robot lies first and has its own time: expected neither --start walk nor "
         "--clock lockstep");
   }
-  o.clock = clock == "realtime" || hardware ? RunClock::kRealtime : RunClock::kLockstep;
-  o.rt_report = report->parsed();
-  o.live_page = o.command == "live";
-  o.live = o.live_page || o.command == "dds";
   if (o.live_page && !o.view) throw InputError("--command live: expected --view with it");
   if (o.live && !o.live_page && o.clock == RunClock::kLockstep) {
     throw InputError("--command dds: operators need --clock realtime");
@@ -186,7 +167,48 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
         o.hardware_path));
   }
   if (o.arm && !hardware) throw InputError("--arm: expected --hardware with it");
-  o.seed = seed_of(seed);
+}
+
+}  // namespace
+
+std::optional<Options> parse_options(int argc, const char* const* argv) {
+  Options o;
+  CLI::App app{
+      "Controls a legged robot. Without --hardware, the robot is simulated on sand or another "
+      "ground.",
+      "sandrunner"};
+  app.option_defaults()->always_capture_default();
+  Words t;
+  add_robot_options(app, o);
+  add_run_options(app, o, t);
+  add_file_options(app, o);
+  const CLI::App* report = app.add_subcommand(
+      "rt-report", "report what this machine allows a real-time process, with a 10 s sample");
+  CLI::App* const check = add_check(app, o);
+  app.footer(
+      "Examples:\n"
+      "  sandrunner --command 2,0,0 --out results\n"
+      "  sandrunner --terrain rigid --command 1,0,0.5 --duration 10\n"
+      "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
+      "  sandrunner --clock realtime --command dds\n"
+      "  sandrunner --view --command live --terrain grass\n"
+      "  sandrunner check robot.toml");
+  if (!parse_command_line(app, argc, argv)) return std::nullopt;
+  o.start_walking = t.start == "walk";
+  if (check->parsed()) {
+    if (app.count("--hardware") > 0 || o.arm || o.dry_run) {
+      throw InputError("check: reads its own FILE, expected no --hardware, --arm or --dry-run");
+    }
+    o.check.asked = true;
+    return o;
+  }
+  o.clock =
+      t.clock == "realtime" || !o.hardware_path.empty() ? RunClock::kRealtime : RunClock::kLockstep;
+  o.rt_report = report->parsed();
+  o.live_page = o.command == "live";
+  o.live = o.live_page || o.command == "dds";
+  require_consistent(app, o, t);
+  o.seed = seed_of(t.seed);
   return o;
 }
 

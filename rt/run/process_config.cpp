@@ -7,6 +7,7 @@
 #include <array>
 
 #include "rt/base/errors.h"
+#include "rt/run/robot_drivers.h"
 
 namespace sandrunner {
 namespace {
@@ -286,6 +287,7 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
       controller_defaults(p.robot, spec, hold_ticks, p.hardware ? &*p.hardware : nullptr);
   p.controller = read_controller(config, defaults, ranges_of(p.robot, robot != nullptr));
   if (p.hardware) fit_drives_to(p.controller.gate, *p.hardware);
+  p.driver = read_robot_driver(config, p);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   read_settings(config, "recording", kRecording, p.recording);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "rt/base/config_tree.h"
 #include "rt/base/settings.h"
 #include "rt/core/controller.h"
+#include "rt/core/robot_driver.h"
 #include "rt/realtime/setup.h"
 #include "rt/telemetry/dds/dds_config.h"
 #include "rt/telemetry/recording/recorder.h"
@@ -26,9 +28,10 @@ struct ProcessConfig {
   RealtimeConfig realtime;
   RecordingLimits recording;
   DdsConfig dds;
-  std::optional<HardwareConfig> hardware;  ///< if there is a table [hardware]
-  bool view_drive = false;                 ///< pages of --view that have the key may command
-  int view_port = 8765;                    ///< of --view; 0: one that is free
+  std::optional<HardwareConfig> hardware;     ///< if there is a table [hardware]
+  std::shared_ptr<const RobotDriver> driver;  ///< of a real robot; null: no table of one
+  bool view_drive = false;                    ///< pages of --view that have the key may command
+  int view_port = 8765;                       ///< of --view; 0: one that is free
   double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   std::string effective;        ///< TOML of every setting with the value in effect
 };

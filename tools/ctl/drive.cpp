@@ -20,9 +20,16 @@
 namespace sandrunner::ctl {
 namespace {
 
-constexpr const char* kHelp =
-    "w/s forward, backward   a/d left, right   q/e turn   +/- faster, slower   space stop\n"
-    "r arm   g stand   f walk   x damp   ESC or Ctrl-C quit\n";
+std::string help() {
+  std::string requests;
+  for (const RequestRow& row : kRequestTable) {
+    if (row.key == '\0') continue;
+    requests +=
+        fmt::format("{} {}   ", row.key == ' ' ? "space" : std::string(1, row.key), row.name);
+  }
+  return "w/s forward, backward   a/d left, right   q/e turn   +/- faster, slower\n" + requests +
+         "ESC or Ctrl-C quit\n";
+}
 
 // Errors are ignored: output that nobody can read is no reason to end the drive.
 void say(const std::string& text) {
@@ -35,23 +42,6 @@ std::size_t columns() {
   winsize size{};
   const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
   return known ? size.ws_col - 1u : 79u;
-}
-
-const char* request_of(KeyAction action) {
-  switch (action) {
-    case KeyAction::kStop:
-      return "stop";
-    case KeyAction::kArm:
-      return "arm";
-    case KeyAction::kStand:
-      return "stand";
-    case KeyAction::kWalk:
-      return "walk";
-    case KeyAction::kDamp:
-      return "damp";
-    default:
-      return nullptr;
-  }
 }
 
 class Drive {
@@ -75,7 +65,7 @@ class Drive {
     }
     RawTerminal terminal;
     say(fmt::format(
-        "{}{}", kHelp,
+        "{}{}", help(),
         device_ ? "gamepad " + device_->name() +
                       ": hold the left shoulder button; left stick moves, right stick turns\n"
                 : "no gamepad\n"));
@@ -113,14 +103,13 @@ class Drive {
 
   void press(char key) {
     const KeyAction action = keys_.press(key, steady_ns());
-    if (action == KeyAction::kNone) return;
+    if (!action.request && !action.quits) return;
     if (gamepad_) gamepad_->stop();
-    quit_ = quit_ || action == KeyAction::kQuit;
-    const char* const request = request_of(action);
-    if (!request) return;
+    quit_ = quit_ || action.quits;
+    if (!action.request) return;
     send(std::nullopt);  // zero at once, before the request
-    modes_.ask(request);
-    asked_ = request;
+    modes_.ask(action.request->name);
+    asked_ = action.request->name;
     waits_ = true;
     asked_ns_ = steady_ns();
   }

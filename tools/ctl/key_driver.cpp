@@ -43,10 +43,6 @@ std::vector<char> KeyReader::keys(std::string_view bytes) {
 }
 
 KeyAction KeyDriver::press(char key, std::int64_t now_ns) {
-  const auto stop_and = [this](KeyAction action) {
-    key_ = '\0';
-    return action;
-  };
   switch (key) {
     case 'w':
     case 's':
@@ -56,30 +52,27 @@ KeyAction KeyDriver::press(char key, std::int64_t now_ns) {
     case 'e':
       key_ = key;
       last_ns_ = now_ns;
-      return KeyAction::kNone;
+      return {};
     case '+':
     case '=':
       rescale(scale_tenths_ + 1, now_ns);
-      return KeyAction::kNone;
+      return {};
     case '-':
       rescale(scale_tenths_ - 1, now_ns);
-      return KeyAction::kNone;
-    case ' ':
-      return stop_and(KeyAction::kStop);
-    case 'r':
-      return stop_and(KeyAction::kArm);
-    case 'g':
-      return stop_and(KeyAction::kStand);
-    case 'f':
-      return stop_and(KeyAction::kWalk);
-    case 'x':
-      return stop_and(KeyAction::kDamp);
+      return {};
     case kKeyEscape:
     case kKeyCtrlC:
-      return stop_and(KeyAction::kQuit);
+      key_ = '\0';
+      return {.quits = true};
     default:
-      return KeyAction::kNone;
+      break;
   }
+  for (const RequestRow& row : kRequestTable) {
+    if (row.key == '\0' || row.key != key) continue;
+    key_ = '\0';
+    return {.request = &row};
+  }
+  return {};
 }
 
 void KeyDriver::rescale(int tenths, std::int64_t now_ns) {

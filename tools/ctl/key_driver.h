@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rt/core/messages.h"
+#include "rt/core/mode_machine.h"
 
 namespace sandrunner::ctl {
 
@@ -32,8 +33,11 @@ class KeyReader {
   bool pasting_ = false;
 };
 
-/// What a key asks for besides a velocity.
-enum class KeyAction { kNone, kStop, kArm, kStand, kWalk, kDamp, kQuit };
+/// What a key asks for besides a velocity; mostly nothing.
+struct KeyAction {
+  const RequestRow* request = nullptr;
+  bool quits = false;
+};
 
 /// Turns keys into a velocity: w/s forward/backward, a/d left/right, q/e turn left/right. The last
 /// of them is in force until no steering key has come for 0.6 s, which is longer than a terminal

@@ -8,6 +8,7 @@
 
 #include "rt/base/command_line.h"
 #include "rt/base/errors.h"
+#include "rt/core/mode_machine.h"
 #include "rt/operator/command_gate.h"
 #include "rt/operator/mode_requests.h"
 #include "tools/ctl/topics.h"
@@ -34,8 +35,8 @@ void check(const Options& o) {
     if (o.for_s && !(*o.for_s > 0.0 && *o.for_s <= 86400.0)) {
       throw InputError(fmt::format("--for: found {}, expected above 0 to 86400 s", *o.for_s));
     }
-  } else if (o.subcommand == "mode" && !is_request(o.mode)) {
-    throw InputError(fmt::format("mode: found '{}', expected {}", o.mode, kRequestNames));
+  } else if (o.subcommand == "mode" && !request_named(o.mode)) {
+    throw InputError(fmt::format("mode: found '{}', expected {}", o.mode, request_names()));
   } else if (o.subcommand == "watch") {
     find_topic(o.topic, o.dds);
     if (o.count < 0) {
@@ -77,7 +78,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
           ->type_name("S")
           ->default_str("");
   CLI::App* mode = app.add_subcommand("mode", "request a mode and print the answer");
-  mode->add_option("REQUEST", o.mode, kRequestNames)->required()->always_capture_default(false);
+  mode->add_option("REQUEST", o.mode, request_names())->required()->always_capture_default(false);
   CLI::App* watch = app.add_subcommand("watch", "print the messages of a topic, one per line");
   watch->add_option("TOPIC", o.topic, topic_names())->required()->always_capture_default(false);
   watch->add_option("--count", o.count, "end after N messages; 0: at Ctrl-C")->type_name("N");

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <thread>
 
-#include "rt/operator/mode_requests.h"
+#include "rt/core/mode_machine.h"
 #include "rt/telemetry/dds/ros.h"
 
 namespace sandrunner {
@@ -47,7 +47,8 @@ dds_guid_t participant_of(dds_entity_t reader, dds_instance_handle_t writer) {
 }
 
 TriggerServices::TriggerServices(const DdsParticipant& participant) {
-  for (const std::string_view request : kRequests) {
+  for (const RequestRow& row : kRequestTable) {
+    const std::string_view request = row.name;
     services_.push_back(
         {.request = request,
          .calls = participant.reader(fmt::format("rq/sandrunner/{}Request", request).c_str(),

@@ -19,30 +19,6 @@ constexpr const char* kEventIdl =
     "module sandrunner {\n  struct Event {\n    unsigned long long tick;\n    string kind;\n"
     "    string text;\n  };\n};\n";
 
-const char* request_name(ModeRequest request) {
-  switch (request) {
-    case ModeRequest::kNone:
-      break;
-    case ModeRequest::kPassive:
-      return "passive";
-    case ModeRequest::kDamp:
-      return "damp";
-    case ModeRequest::kStand:
-      return "stand";
-    case ModeRequest::kWalk:
-      return "walk";
-    case ModeRequest::kResetFault:
-      return "reset_fault";
-    case ModeRequest::kArm:
-      return "arm";
-    case ModeRequest::kLie:
-      return "lie";
-    case ModeRequest::kStop:
-      return "stop";
-  }
-  return "none";
-}
-
 // The QoS with which `ros2 bag play` offers a topic, as rosbag2 writes it: a list of one profile,
 // values of the enumerations as numbers, which every release from Humble on reads (later ones write
 // names). 1, 1, 1: keep last, reliable, transient local. Empty: rosbag2's default, which is
@@ -191,7 +167,8 @@ void RecordingWriter::write_events(const TickRecord& tick) {
   if (!has_last_ && in_the_middle_) last_request_ = request;
   if (!has_last_ || mode != last_mode_) event("mode", mode_name(tick.output.mode));
   if (request != last_request_) {
-    event("request", request_name(tick.input.command.request));
+    const RequestRow* const row = row_of(tick.input.command.request);
+    event("request", row ? row->name : "none");
   }
   for (int bit = 0; bit < kNumFaults; ++bit) {
     const std::uint64_t mask = std::uint64_t{1} << bit;

@@ -10,12 +10,11 @@
 namespace sandrunner {
 namespace {
 
-enum class Kind : std::uint32_t { kFrames, kFootprints, kTiles };
 constexpr std::size_t kMessageBytes = 50'000;
 
 // The rows from number `from` on, which moves behind them; empty: there are none.
 template <typename Row>
-std::string message(Kind kind, const ViewRows<Row>& rows, std::uint64_t& from) {
+std::string message(ViewRowKind kind, const ViewRows<Row>& rows, std::uint64_t& from) {
   static_assert(std::is_trivially_copyable_v<Row>);
   from = std::max(from, rows.begin());
   const std::uint64_t count = std::min(rows.end - from, kMessageBytes / sizeof(Row));
@@ -68,13 +67,14 @@ ViewFeed::Place ViewFeed::join() const {
 
 std::string ViewFeed::next(Place& place) const {
   const std::lock_guard lock(mutex_);
-  if (std::string tiles = message(Kind::kTiles, tiles_, place.tile); !tiles.empty()) return tiles;
-  std::string prints = message(Kind::kFootprints, footprints_, place.footprint);
+  if (std::string tiles = message(ViewRowKind::kTiles, tiles_, place.tile); !tiles.empty())
+    return tiles;
+  std::string prints = message(ViewRowKind::kFootprints, footprints_, place.footprint);
   if (!prints.empty()) return prints;
   if (place.frame >= place.past_ends && frames_.end - place.frame > kMostBehind) {
     place.frame = frames_.end - 1;
   }
-  return message(Kind::kFrames, frames_, place.frame);
+  return message(ViewRowKind::kFrames, frames_, place.frame);
 }
 
 double ViewFeed::now_s() const {

@@ -47,30 +47,39 @@ std::span<const RowField> page_fields() {
 
 std::string view_hello(const RunScene& scene, const std::string& note) {
   const RobotDescription& robot = scene.robot;
-  nlohmann::ordered_json json = {{"robot", robot.name},
-                                 {"terrain", scene.terrain},
-                                 {"policy", scene.policy},
-                                 {"build", build_name()},
-                                 {"note", note},
-                                 {"granular", scene.granular_ground},
-                                 {"foot_radius_m", scene.foot_radius_m},
-                                 {"legs", robot.leg_names},
-                                 {"joints", robot.joint_names},
-                                 {"feet", feet_links(robot)},
-                                 {"base", robot.base_frame},
-                                 {"frame_fields", layout(page_fields())},
-                                 {"footprint_fields", layout(footprint_fields())},
-                                 {"tile_fields", layout(view_tile_fields())},
-                                 {"tile_side", kViewTileSide},
-                                 {"tile_step_m", kViewTileStep_m},
-                                 {"modes", nlohmann::ordered_json::array()},
-                                 {"faults", nlohmann::ordered_json::array()},
-                                 {"urdf", robot.ros_urdf}};
+  nlohmann::ordered_json json = {
+      {"robot", robot.name},
+      {"terrain", scene.terrain},
+      {"policy", scene.policy},
+      {"build", build_name()},
+      {"note", note},
+      {"granular", scene.granular_ground},
+      {"foot_radius_m", scene.foot_radius_m},
+      {"legs", robot.leg_names},
+      {"joints", robot.joint_names},
+      {"feet", feet_links(robot)},
+      {"base", robot.base_frame},
+      {"frame_fields", layout(page_fields())},
+      {"footprint_fields", layout(footprint_fields())},
+      {"tile_fields", layout(view_tile_fields())},
+      {"tile_side", kViewTileSide},
+      {"tile_step_m", kViewTileStep_m},
+      {"modes", nlohmann::ordered_json::array()},
+      {"faults", nlohmann::ordered_json::array()},
+      {"requests", nlohmann::ordered_json::array()},
+      {"row_flags", {{"has_truth", kRowHasTruth}, {"has_estimate", kRowHasEstimate}}},
+      {"row_kinds", kViewRowKinds},
+      {"no_truth", kNoTruthNote},
+      {"urdf", robot.ros_urdf}};
   for (int mode = 0; mode <= static_cast<int>(Mode::kFault); ++mode) {
     json["modes"].push_back(mode_name(static_cast<Mode>(mode)));
   }
   for (const FaultRow& row : kFaultTable) {
     json["faults"].push_back({{"name", row.name}, {"meaning", row.meaning}});
+  }
+  for (const RequestRow& row : kRequestTable) {
+    json["requests"].push_back(
+        {{"name", row.name}, {"key", row.key == 0 ? std::string() : std::string(1, row.key)}});
   }
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {

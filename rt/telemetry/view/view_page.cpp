@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -18,8 +19,13 @@ namespace {
 
 constexpr std::size_t kMostTiles = 1024;
 
+// Throws std::logic_error if page.html has no such line.
 void replace(std::string& text, std::string_view what, std::string_view by) {
-  text.replace(text.find(what), what.size(), by);
+  const std::size_t at = text.find(what);
+  if (at == std::string::npos) {
+    throw std::logic_error(fmt::format("page.html: found no line '{}'", what));
+  }
+  text.replace(at, what.size(), by);
 }
 
 std::string data(std::string_view id, std::string_view content) {
@@ -31,13 +37,14 @@ std::string note_of(const RunRecord& record) {
   std::string text;
   if (record.periods_per_row > 1) {
     text =
-        fmt::format("A long run: shown at {} frames a second. ",
+        fmt::format("A long run: shown at {} frames a second.",
                     static_cast<double>(kPolicyHz) / static_cast<double>(record.periods_per_row));
   }
   if (!record.has_truth()) {
-    text += "This robot does not tell what really is: all that is shown is measured or estimated. ";
+    if (!text.empty()) text += ' ';
+    text += kNoTruthNote;
   }
-  return text.substr(0, text.empty() ? 0 : text.size() - 1);
+  return text;
 }
 
 std::string page_of(const RunRecord& record, std::string_view curve) {

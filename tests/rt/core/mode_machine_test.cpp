@@ -32,6 +32,21 @@ TEST(ModeMachineTest, EveryEventInEveryModeLeadsWhereTheTableSays) {
   }
 }
 
+TEST(ModeMachineTest, EveryRequestHasOneRowAndKeysAreUnlike) {
+  std::set<std::string> names;
+  std::set<char> keys;
+  for (const RequestRow& row : kRequestTable) {
+    EXPECT_EQ(row_of(row.request), &row);
+    EXPECT_EQ(request_named(row.name), &row);
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    if (row.key != 0) {
+      EXPECT_TRUE(keys.insert(row.key).second) << row.name;
+    }
+  }
+  EXPECT_EQ(row_of(ModeRequest::kNone), nullptr);
+  EXPECT_EQ(request_named("jump"), nullptr);
+}
+
 TEST(ModeMachineTest, TableHasNoIdleOrDoubleRow) {
   std::set<std::pair<Mode, Event>> seen;
   for (const Transition& t : kTransitions) {

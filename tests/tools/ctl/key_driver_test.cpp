@@ -31,7 +31,7 @@ TEST(KeyDriverTest, EachKeySteersItsOwnAxisAndTheLastOneCounts) {
   } kCases[] = {{'w', 0.5, 0, 0},   {'s', -0.5, 0, 0}, {'a', 0, 0.25, 0},
                 {'d', 0, -0.25, 0}, {'q', 0, 0, 0.5},  {'e', 0, 0, -0.5}};
   for (const auto& c : kCases) {
-    EXPECT_EQ(driver.press(c.key, 0), KeyAction::kNone);
+    EXPECT_EQ(driver.press(c.key, 0).request, nullptr);
     expect_command(driver.command(1), c.vx_mps, c.vy_mps, c.wz_radps);
   }
 }
@@ -48,20 +48,22 @@ TEST(KeyDriverTest, AKeyHoldsFor600Milliseconds) {
 }
 
 TEST(KeyDriverTest, KeysThatDoNotSteerEndTheMotion) {
-  const std::pair<char, KeyAction> kCases[] = {
-      {' ', KeyAction::kStop}, {'g', KeyAction::kStand},   {'f', KeyAction::kWalk},
-      {'x', KeyAction::kDamp}, {'\x1b', KeyAction::kQuit}, {'\x03', KeyAction::kQuit}};
-  for (const auto& [key, action] : kCases) {
+  const std::pair<char, const char*> kCases[] = {{' ', "stop"},    {'r', "arm"},  {'g', "stand"},
+                                                 {'f', "walk"},    {'x', "damp"}, {'\x1b', nullptr},
+                                                 {'\x03', nullptr}};
+  for (const auto& [key, name] : kCases) {
     KeyDriver driver;
     driver.press('w', 0);
-    EXPECT_EQ(driver.press(key, 10 * kMs), action) << key;
+    const KeyAction action = driver.press(key, 10 * kMs);
+    EXPECT_EQ(action.quits, name == nullptr) << key;
+    EXPECT_STREQ(action.request ? action.request->name : nullptr, name) << key;
     EXPECT_FALSE(driver.command(11 * kMs)) << key;
   }
 }
 
 TEST(KeyDriverTest, UnknownKeysNeitherSteerNorProlong) {
   KeyDriver driver;
-  EXPECT_EQ(driver.press('k', 0), KeyAction::kNone);
+  EXPECT_EQ(driver.press('k', 0).request, nullptr);
   EXPECT_FALSE(driver.command(1));
   driver.press('w', 0);
   driver.press('k', 500 * kMs);

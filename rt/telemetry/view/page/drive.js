@@ -7,19 +7,19 @@ import { Stick } from './stick.js';
 const kEvery_ms = 50, kZeros = 3, kDeadZone = 0.1;
 const kFull = { vx: 1, vy: 0.5, wz: 1 };
 const kKeys = { w: ['vx', 1], s: ['vx', -1], a: ['vy', 1], d: ['vy', -1], q: ['wz', 1], e: ['wz', -1] };
-const kRequestKeys = { ' ': 'stop', r: 'arm', g: 'stand', f: 'walk', x: 'damp' };
-const kRequests = ['arm', 'stand', 'walk', 'stop', 'lie', 'damp', 'disarm', 'reset_fault'];
 const element = (id) => document.getElementById(id);
 const beyondDeadZone = (way) => Math.sign(way) * Math.max(Math.abs(way) - kDeadZone, 0) / (1 - kDeadZone);
 
 export class Drive {
-  constructor(live) {
+  /** @param {object[]} requests {name, key} of each, as hello has them */
+  constructor(live, requests) {
     this.live = live;
     this.held = new Set();
     this.stick = new Stick();
     this.tenths = 5;
     this.zeros = 0;
-    for (const name of kRequests) {
+    this.requestKeys = Object.fromEntries(requests.filter(({ key }) => key).map(({ name, key }) => [key, name]));
+    for (const { name } of requests) {
       const button = document.createElement('button');
       button.textContent = name.replace('_', ' ');
       button.onclick = () => this.request(name);
@@ -58,7 +58,7 @@ export class Drive {
     const key = event.key.toLowerCase();
     if (!this.allowed || !isForPage(event)) return;
     if (kKeys[key]) this.held.add(key);
-    else if (kRequestKeys[key]) { if (!event.repeat) this.request(kRequestKeys[key]); }
+    else if (this.requestKeys[key]) { if (!event.repeat) this.request(this.requestKeys[key]); }
     else if (key === '+' || key === '=') this.tenths = Math.min(20, this.tenths + 1);
     else if (key === '-') this.tenths = Math.max(1, this.tenths - 1);
     else return;

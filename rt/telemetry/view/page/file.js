@@ -14,8 +14,9 @@ async function inflate(id) {
  * Puts the planes of pack_rows (view_pack.h) together.
  * @param {object[]} fields of the rows, as hello has them
  * @param {Uint8Array} planes
+ * @param {object} flags as Table's
  */
-function unpack(fields, planes) {
+function unpack(fields, planes, flags) {
   const widthOf = (type) => Table.kTypes[type].BYTES_PER_ELEMENT;
   const perRow = fields.reduce((sum, f) => sum + f.count * widthOf(f.type), 0);
   const rows = planes.length / perRow;
@@ -30,7 +31,7 @@ function unpack(fields, planes) {
       columns[name].push(new Table.kTypes[type](bytes.buffer));
     }
   }
-  return new Table(rows, columns);
+  return new Table(rows, columns, flags);
 }
 
 /** The learning curve that a training's page has besides; else nothing. */
@@ -46,7 +47,7 @@ export async function readRun() {
   const [frames, footprints, tiles] = await Promise.all(['frames', 'footprints', 'tiles'].map(inflate));
   return {
     hello,
-    frames: unpack(hello.frame_fields, frames),
+    frames: unpack(hello.frame_fields, frames, hello.row_flags),
     footprints: unpack(hello.footprint_fields, footprints),
     tiles: unpack(hello.tile_fields, tiles),
   };

@@ -5,9 +5,9 @@ import { Table } from './table.js';
 const kReaders = { f64: 'getFloat64', f32: 'getFloat32', u32: 'getUint32', i32: 'getInt32', i16: 'getInt16' };
 
 export class GrowingTable extends Table {
-  /** @param {object[]} fields as hello has them  @param {number} most rows */
-  constructor(fields, most) {
-    super(0, Object.fromEntries(fields.map(({ name, type, count }) => [name, Array.from({ length: count }, () => new Table.kTypes[type](0))])));
+  /** @param {object[]} fields as hello has them  @param {number} most rows  @param {object} flags as Table's */
+  constructor(fields, most, flags) {
+    super(0, Object.fromEntries(fields.map(({ name, type, count }) => [name, Array.from({ length: count }, () => new Table.kTypes[type](0))])), flags);
     this.fields = fields;
     this.most = most;
     this.room = 0;

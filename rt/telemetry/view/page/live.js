@@ -74,7 +74,7 @@ export class Live {
     if (!this.run) {
       this.run = {
         hello,
-        frames: new GrowingTable(hello.frame_fields, kMostFrames),
+        frames: new GrowingTable(hello.frame_fields, kMostFrames, hello.row_flags),
         footprints: new GrowingTable(hello.footprint_fields, kMostPrints),
         tiles: new GrowingTable(hello.tile_fields, kMostTiles),
       };
@@ -86,11 +86,11 @@ export class Live {
   }
 
   #rows(buffer) {
-    const [kind, count] = new Uint32Array(buffer, 0, 2), { frames, footprints, tiles } = this.run;
-    const table = [frames, footprints, tiles][kind], rows = new DataView(buffer, 8);
+    const [kind, count] = new Uint32Array(buffer, 0, 2);
+    const table = this.run[this.run.hello.row_kinds[kind]], rows = new DataView(buffer, 8);
     // After a break the server sends its past again.
     const last = table.count - 1;
-    const isOld = kind === 2 ? (at) => this.#hasTile(at('tile_x'), at('tile_y')) : (at) => last >= 0 && at('t_s') <= table.time(last);
+    const isOld = table === this.run.tiles ? (at) => this.#hasTile(at('tile_x'), at('tile_y')) : (at) => last >= 0 && at('t_s') <= table.time(last);
     table.append(rows, count, isOld);
     if (!this.recorded) this.#start();
   }
@@ -106,7 +106,7 @@ export class Live {
     if (run.live || run.frames.count < 2) return;
     run.live = this;
     if (!tellsTruth(run.frames)) {
-      run.hello.note = `${run.hello.note} This robot does not tell what really is: all that is shown is measured or estimated.`.trim();
+      run.hello.note = `${run.hello.note} ${run.hello.no_truth}`.trim();
     }
     this.begin(this.run);
   }

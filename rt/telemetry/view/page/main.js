@@ -68,7 +68,7 @@ function savePicture(view, t) {
 
 // What only a page has that somebody serves.
 function makeLive({ live, frames, hello }, player, view, changed) {
-  const showTime = makeRobotTime(live), drive = new Drive(live), lost = element('lost');
+  const showTime = makeRobotTime(live), drive = new Drive(live, hello.requests), lost = element('lost');
   const hand = new Hand(live, frames, view, (kind) => {
     hello.granular = kind === 'granular';
     view.groundIsSoft?.(hello.granular);

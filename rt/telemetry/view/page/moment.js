@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is drawn at one time: between two frames, everything that moves is interpolated.
 
-const kHasTruth = 1, kHasEstimate = 2;  // bits of `flags` (rt/report/run_row.h)
 const kLongestGap_s = 0.1;  // over a longer one, unless all are so long, nothing is known of the motion between
 
 /** Whether a run tells what really is: simulated robots do. */
-export const tellsTruth = (frames) => frames.count > 0 && (frames.at(0, 'flags') & kHasTruth) !== 0;
+export const tellsTruth = (frames) => frames.count > 0 && frames.has(0, frames.flags.has_truth);
 
 /** The moment at time t of at least one frame: plain numbers and arrays; `row` is the frame at or before it. */
 export function momentAt(frames, t) {
@@ -17,7 +16,6 @@ export function momentAt(frames, t) {
     const b = frames.at(next, field, k);
     return share > 0 && Number.isFinite(b) ? a + share * (b - a) : a;
   });
-  const flags = frames.at(row, 'flags');
   return {
     t, row,
     position: mix('position_m'),
@@ -35,8 +33,8 @@ export function momentAt(frames, t) {
     mode: frames.at(row, 'mode'),
     faults: frames.at(row, 'faults'),
     skipped: frames.at(row, 'skipped'),
-    hasTruth: (flags & kHasTruth) !== 0,
-    hasEstimate: (flags & kHasEstimate) !== 0,
+    hasTruth: frames.has(row, frames.flags.has_truth),
+    hasEstimate: frames.has(row, frames.flags.has_estimate),
   };
 }
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "rt/core/messages.h"
-#include "rt/operator/mode_requests.h"
+#include "rt/core/mode_machine.h"
 #include "rt/telemetry/dds/participant.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/sandrunner.h"
@@ -121,8 +121,8 @@ class Attacker {
         velocities_(participant_.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc, 1)),
         requests_(participant_.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc, 32)),
         texts_(participant_.writer("rt/sandrunner/request", std_msgs_msg_dds__String__desc, 32)) {
-    for (const std::string_view request : kRequests) {
-      const std::string topic = "rq/sandrunner/" + std::string(request) + "Request";
+    for (const RequestRow& row : kRequestTable) {
+      const std::string topic = "rq/sandrunner/" + std::string(row.name) + "Request";
       services_.push_back(
           participant_.writer(topic.c_str(), std_srvs_srv_dds__Trigger_Request__desc, 10));
     }
@@ -185,7 +185,8 @@ class Attacker {
     if (what < 14) {
       text_ = kUseful[static_cast<std::size_t>(pick(3))];
     } else if (what < 18) {
-      text_ = kRequests[static_cast<std::size_t>(pick(static_cast<int>(kRequests.size())))];
+      text_ = kRequestTable[static_cast<std::size_t>(pick(static_cast<int>(kRequestTable.size())))]
+                  .name;
     } else {
       for (int i = pick(8) == 0 ? 60000 : pick(20); i > 0; --i) {
         text_ += static_cast<char>(1 + pick(255));

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "rt/core/mode_machine.h"
 #include "rt/report/run_observer.h"
 #include "rt/telemetry/view/view_hello.h"
 #include "rt/telemetry/view/view_pack.h"
@@ -137,6 +138,16 @@ TEST(ViewHelloTest, FeetAreTheLinksBelowTheLastJoints) {
   EXPECT_EQ(hello.at("base"), "base_link");
   EXPECT_EQ(hello.at("modes").at(4), "walk");
   EXPECT_EQ(hello.at("faults").size(), static_cast<std::size_t>(kNumFaults));
+}
+
+TEST(ViewHelloTest, PageLearnsRequestsFlagsAndKindsOfRowsFromTheServer) {
+  const Json hello = Json::parse(view_hello(example_scene(), ""));
+  ASSERT_EQ(hello.at("requests").size(), kRequestTable.size());
+  EXPECT_EQ(hello.at("requests").at(3), (Json{{"name", "stop"}, {"key", " "}}));
+  EXPECT_EQ(hello.at("requests").at(7), (Json{{"name", "reset_fault"}, {"key", ""}}));
+  EXPECT_EQ(hello.at("row_flags").at("has_truth"), kRowHasTruth);
+  EXPECT_EQ(hello.at("row_kinds").at(static_cast<int>(ViewRowKind::kTiles)), "tiles");
+  EXPECT_EQ(hello.at("no_truth"), kNoTruthNote);
 }
 
 TEST(ViewTilesTest, RoughGroundIsThereWhereTheRobotWas) {

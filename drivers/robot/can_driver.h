@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/robot/hardware_config.h"
+#include "rt/core/gate_config.h"
+#include "rt/core/robot_description.h"
+#include "rt/core/robot_driver.h"
+
+namespace sandrunner {
+
+/// The driver of robots whose drives are on CAN buses (can_robot.h).
+class CanDriver final : public RobotDriver {
+ public:
+  CanDriver(HardwareConfig config, RobotDescription robot, const GateConfig& gate);
+
+  std::unique_ptr<RobotIo> connect() const override;
+  std::vector<std::string> warnings() const override;
+  std::string dry_run(const StandConfig& stand) const override;
+  std::string report(const RobotIo& robot) const override;
+
+ private:
+  const HardwareConfig config_;
+  const RobotDescription robot_;
+  const GateConfig gate_;
+};
+
+}  // namespace sandrunner

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/run/live_view.h"
+
+#include <fmt/format.h>
+
+#include "rt/base/standard_error.h"
+
+namespace sandrunner {
+
+LiveView::LiveView(const RunScene& scene, const ProcessConfig& config, RunClock clock,
+                   const std::atomic<int>& interrupts, Operators& operators,
+                   sim::Simulator* simulator)
+    : feed_(scene) {
+  if (clock == RunClock::kLockstep) pace_.emplace(interrupts);
+  if (pace_ && simulator) {
+    hand_.emplace(*simulator, config.simulator.terrain, config.effective, operators.stand_again());
+  }
+  server_.emplace(config.view_port,
+                  ViewServer::Parts{.feed = feed_,
+                                    .pace = pace_ ? &*pace_ : nullptr,
+                                    .desk = config.view_drive ? operators.desk() : nullptr,
+                                    .hand = hand_ ? &*hand_ : nullptr});
+  to_standard_error(fmt::format("sandrunner: look at {}\n", server_->url()));
+}
+
+RobotNow LiveView::act(std::uint64_t next, TickSinks sinks) {
+  pace_->wait();
+  return hand_ ? hand_->act(next, sinks) : RobotNow::kAsBefore;
+}
+
+}  // namespace sandrunner

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/run/operators.h"
+
+namespace sandrunner {
+namespace {
+
+const char* no_walk(const ProcessConfig& config, bool has_policy) {
+  if (config.controller.gate.hanging) return "the robot hangs (hardware.hanging), it may not walk";
+  return has_policy ? nullptr : "no policy to walk with";
+}
+
+}  // namespace
+
+Operators::Operators(const Options& options, const ProcessConfig& config,
+                     const CommandSource& command, bool has_policy)
+    : no_walk_(no_walk(config, has_policy)),
+      script_(command, {.walk_s = options.duration_s, .start_walking = options.start_walking},
+              no_walk_ == nullptr) {
+  if (!options.live) return;
+  remote_.emplace(config.dds.stale_ticks());
+  desk_.emplace(*remote_, config.dds.stale_s, no_walk_);
+  if (options.view && options.clock == RunClock::kLockstep) stand_again_.emplace(*remote_);
+}
+
+OperatorInput& Operators::input() noexcept {
+  if (stand_again_) return *stand_again_;
+  if (remote_) return *remote_;
+  return script_;
+}
+
+void Operators::report(RunResult& result) const {
+  if (!remote_) script_.report(result);
+}
+
+}  // namespace sandrunner
