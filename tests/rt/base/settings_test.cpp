@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/base/settings.h"
 
+#include <gtest/gtest.h>
+
 #include "rt/base/errors.h"
 
 namespace sandrunner {
