@@ -24,6 +24,9 @@ class BetweenTicks {
   virtual RobotNow act(std::uint64_t next, TickSinks sinks) = 0;
 };
 
+/// Nothing wants the run to end.
+inline const std::atomic<int> kNoInterrupts{0};
+
 /// A run, assembled: run_lockstep and run_realtime take it. All parts outlive the run.
 struct Rig {
   RobotIo& robot;
@@ -35,7 +38,7 @@ struct Rig {
   BetweenTicks* between = nullptr;  ///< in lockstep only; null: nothing
   /// How often the end of the run was requested: at the first time the operator ends it gently, at
   /// the second in damping at once.
-  const std::atomic<int>& interrupts;
+  const std::atomic<int>& interrupts = kNoInterrupts;
 };
 
 }  // namespace sandrunner

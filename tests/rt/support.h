@@ -72,7 +72,7 @@ struct SimulatedRun {
   PolicyRunner policy = {};
   std::string command = "1,0,0";
   RunPlan plan = {};
-  const std::atomic<int>* interrupts = nullptr;
+  const std::atomic<int>* interrupts = &kNoInterrupts;
   std::function<void(const RunRow& row)> at_row = {};
   std::function<void(const TickRecord& tick)> at_tick = {};
   std::function<void(std::int64_t start_ns)> at_begin = {};
@@ -85,7 +85,6 @@ inline RunResult simulate(const SimulatedRun& run) {
   sim::Simulator simulator(run.config.robot, run.config.simulator);
   if (!run.plan.start_walking) simulator.reset_lying();
   const CommandSource command(run.command);
-  const std::atomic<int> nobody{false};
   CallingSink sink;
   sink.at_begin = run.at_begin;
   sink.at_tick = run.at_tick;
@@ -98,7 +97,7 @@ inline RunResult simulate(const SimulatedRun& run) {
                 .policy = policy,
                 .op = run.live ? *run.live : script,
                 .sinks = {&sink},
-                .interrupts = run.interrupts ? *run.interrupts : nobody};
+                .interrupts = *run.interrupts};
   const RunRows rows{.scene = scene_of(run.config, policy.name()), .sinks = {&sink}};
   SystemClock system;
   RunResult result = run.realtime ? run_in_realtime(rig, rows, run.config.realtime,

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -29,7 +28,6 @@ struct Wakeups {
 };
 
 Wakeups ours(const ProcessConfig& config, PolicyRunner& policy) {
-  const std::atomic<int> nobody{0};
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command("1,0,0");
   RunScript script(command, {.walk_s = kSample_s, .start_walking = true}, true);
@@ -38,8 +36,7 @@ Wakeups ours(const ProcessConfig& config, PolicyRunner& policy) {
                                         .controller = config.controller,
                                         .start = Mode::kWalk,
                                         .policy = policy,
-                                        .op = script,
-                                        .interrupts = nobody},
+                                        .op = script},
                                        config.realtime, clock);
   const LogHistogram& late = end.report.control.late;
   return {1e-3 * static_cast<double>(late.quantile_ns(0.5)),

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <utility>
 
 #include "rt/run/process_config.h"
@@ -31,14 +30,12 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, double 
   PolicyRunner policy(Policy(file.spec, Network(file.parameters)));
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command(fmt::format("{},0,0", speed_mps));
-  const std::atomic<int> nobody{false};
   RunScript script(command, {.walk_s = kWalk_s, .start_walking = true}, true);
   RunResult run = run_in_lockstep({.robot = simulator,
                                    .controller = config.controller,
                                    .start = Mode::kWalk,
                                    .policy = policy,
-                                   .op = script,
-                                   .interrupts = nobody},
+                                   .op = script},
                                   {.scene = scene_of(config, file.spec.name)});
   const auto& provenance = file.spec.provenance;
   return run_page(

@@ -221,15 +221,13 @@ TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
   PolicyRunner policy(load_shipped_policy());
   const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   const CommandSource command("1,0,0");
-  const std::atomic<int> nobody{false};
   RealRobot robot(config);
   RunScript script(command, {.walk_s = 1.0, .start_walking = true}, true);
   RunResult result = run_in_lockstep({.robot = robot,
                                       .controller = config.controller,
                                       .start = Mode::kWalk,
                                       .policy = policy,
-                                      .op = script,
-                                      .interrupts = nobody},
+                                      .op = script},
                                      {.scene = scene_of(config, "raibo")});
   script.report(result);
   const RunResult known = simulate(

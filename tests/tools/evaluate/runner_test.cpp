@@ -3,13 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include "rt/core/floating_point.h"
-#include "rt/run/run.h"
-#include "rt/run/run_script.h"
-#include "rt/run/scene.h"
 #include "support.h"
+#include "tests/rt/support.h"
 
 namespace sandrunner::evaluate {
 namespace {
@@ -137,24 +133,13 @@ TEST_F(RunnerTest, FactsAreTheRobotsWithTheLowerOfTwoTorqueLimits) {
 TEST_F(RunnerTest, AgreesWithTheControlProcess) {
   flush_denormals_to_zero();
   const Policy policy = load_shipped_policy();
-  PolicyRunner runner(policy);
   for (const char* ground : {"dry-sand", "rigid"}) {
     SCOPED_TRACE(ground);
-    ConfigTree tree;
-    sim::add_terrain_layer(tree, ground);
-    const ProcessConfig config = read_process_config(tree, &policy.spec());
-    const std::atomic<int> interrupt{false};
-    const CommandSource command("1.5,0,0");
-    sim::Simulator simulator(config.robot, config.simulator);
-    RunScript script(command, {.walk_s = 5.0, .start_walking = true}, true);
-    RunResult process = run_in_lockstep({.robot = simulator,
-                                         .controller = config.controller,
-                                         .start = Mode::kWalk,
-                                         .policy = runner,
-                                         .op = script,
-                                         .interrupts = interrupt},
-                                        {.scene = scene_of(config, policy.spec().name)});
-    script.report(process);
+    const ProcessConfig config = config_of(ground, {}, &policy.spec());
+    const RunResult process = simulate({.config = config,
+                                        .policy = PolicyRunner(policy),
+                                        .command = "1.5,0,0",
+                                        .plan = {.walk_s = 5.0, .start_walking = true}});
     ASSERT_TRUE(process.survived);
     const sandrunner::RunFigures& p = process.figures;
     const MotionFigures& motion = p.motion.value();

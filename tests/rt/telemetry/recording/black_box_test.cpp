@@ -393,15 +393,13 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   };
   sim::Simulator simulator(config_.robot, config_.simulator);
   PolicyRunner policy = policy_;
-  const std::atomic<int> never{0};
   SystemClock clock;
   run_realtime({.robot = simulator,
                 .controller = config_.controller,
                 .start = Mode::kWalk,
                 .policy = policy,
                 .op = op,
-                .sinks = {&*ticks_, &sink},
-                .interrupts = never},
+                .sinks = {&*ticks_, &sink}},
                config_.realtime, clock);
   const BlackBoxResult result = close();
   EXPECT_FALSE(ticks_->result().difference) << ticks_->result().difference->what;
