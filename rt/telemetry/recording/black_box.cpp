@@ -49,7 +49,6 @@ struct BlackBox::File {
   std::deque<std::shared_ptr<const Block>> blocks;  // still to be written; they outlive the window
   std::optional<WholeFile> whole;
   std::optional<RecordingWriter> writer;
-  std::uint64_t bytes_at_state = 0;
   std::future<void> kept;  // a slow disk takes longer for this than the queue is deep
 
   // Writes the next block, or whatever else comes next; true: the file is done. Throws.
@@ -72,10 +71,8 @@ struct BlackBox::File {
 
  private:
   void write(const Block& block) {
-    // The first in a chunk: none is needed behind ticks that can be read.
-    if (!block.state.empty() && writer->bytes_written() != bytes_at_state) {
+    if (!block.state.empty() && writer->wants_state()) {
       writer->write_state(block.first_tick, block.state);
-      bytes_at_state = writer->bytes_written();
     }
     writer->write(uncompressed(block.bytes, block.ticks));
   }

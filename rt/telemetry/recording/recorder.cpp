@@ -42,10 +42,8 @@ void Recorder::finish() {
 
 void Recorder::write(const TickQueue::Batch& batch, const std::optional<ReplayState>& before) {
   if (!writer_) writer_.emplace(path_, info_);
-  if (before && writer_->bytes_written() != bytes_at_state_) {
-    // The first message of ticks in a chunk comes behind it: bytes are written when a chunk ends.
+  if (before && writer_->wants_state()) {
     writer_->write_state(before->next_tick, replay_state_bytes(*before));
-    bytes_at_state_ = writer_->bytes_written();
   }
   write_notes();
   writer_->write(batch);

@@ -60,7 +60,6 @@ class Recorder final : public TickKeeper {
   std::vector<Note> notes_;  // that are not written yet
   // Only the thread that writes uses what follows.
   std::optional<RecordingWriter> writer_;
-  std::uint64_t bytes_at_state_ = 0;  // of the file, when the last state was written
   bool stopped_ = false;
   RecordingResult result_;
 };

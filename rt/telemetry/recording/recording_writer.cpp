@@ -108,6 +108,7 @@ void RecordingWriter::write_state(std::uint64_t next_tick, const std::string& st
                        .log_time_ns = time_ns(next_tick),
                        .publish_time_ns = time_ns(next_tick),
                        .data = cdr.bytes()});
+  bytes_at_state_ = bytes_written();
 }
 
 void RecordingWriter::write_batch(std::span<const TickRecord> batch) {

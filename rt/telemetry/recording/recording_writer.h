@@ -50,6 +50,9 @@ class RecordingWriter {
   /// The next ticks, in order. Throws InputError once if the disk is full; what was written until
   /// then is readable. If the process is killed later, at most the last half second is lost.
   void write(std::span<const TickRecord> ticks);
+  /// A chunk has ended since the last state was written, or none was: the next chunk can be
+  /// replayed by itself only if write_state() comes first.
+  bool wants_state() const noexcept { return bytes_written() != bytes_at_state_; }
   /// The state before the next tick (replay_state_bytes()), from which a replay can go on if what
   /// is before it in the file was lost.
   void write_state(std::uint64_t next_tick, const std::string& state);
@@ -75,6 +78,7 @@ class RecordingWriter {
   Odometry odometry_;
   Diagnostics diagnostics_;
   SlowerRate policy_rate_{kPolicyHz}, diagnostics_rate_{1};
+  std::uint64_t bytes_at_state_ = 0;  // of the file, when the last state was written
   std::uint64_t batches_ = 0, states_ = 0, events_ = 0, last_flush_tick_ = 0;
   bool in_the_middle_, has_last_ = false;
   std::uint64_t last_mode_ = 0, last_faults_ = 0, last_request_ = 0;

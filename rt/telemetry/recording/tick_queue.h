@@ -13,8 +13,8 @@
 
 namespace sandrunner {
 
-/// What a queue does with a batch that finds it full: lets the giver wait, which hurts nobody in
-/// lockstep, or drops the batch and counts its ticks.
+/// What a queue does with a batch when it is full: add() waits, which only slows a run in lockstep
+/// down, or the batch is dropped and its ticks are counted.
 enum class WhenFull { kWait, kDrop };
 
 /// Hands ticks from one ordinary thread to another, in batches.
