@@ -14,7 +14,7 @@ namespace sandrunner::train {
 namespace {
 
 using R = RunSettings;
-constexpr NumberSetting<R> kRun[] = {
+constexpr Setting<R> kRun[] = {
     {"transitions", &R::transitions, 1.0, 1e13},
     {"checkpoint_interval_s", &R::checkpoint_interval_s, 0.0, 1e6},
     {"settle_share", &R::settle_share, 0.0, 1.0},
@@ -24,7 +24,7 @@ constexpr NumberSetting<R> kRun[] = {
 };
 
 using B = BatterySettings;
-constexpr NumberSetting<B> kBattery[] = {
+constexpr Setting<B> kBattery[] = {
     {"duration_s", &B::duration_s, 1.0, 60.0},
     {"softest_flat_npm3", &B::softest_flat_npm3, 1.0, 1e10},
     {"softest_cone_npm3", &B::softest_cone_npm3, 1.0, 1e10},
@@ -35,14 +35,14 @@ constexpr NumberSetting<B> kBattery[] = {
 };
 
 using G = GateSettings;
-constexpr NumberSetting<G> kGate[] = {
+constexpr Setting<G> kGate[] = {
     {"least_alive", &G::least_alive, 0.0, 1.0},
     {"rise_share", &G::rise_share, 1e-3, 1.0},
     {"back_rate", &G::back_rate, 0.0, 100.0},
 };
 
 using L = learner::LearnerConfig;
-constexpr NumberSetting<L> kLearner[] = {
+constexpr Setting<L> kLearner[] = {
     {"gamma", &L::gamma, 0.0, 0.999999},
     {"lambda", &L::lambda, 0.0, 1.0},
     {"kl_target", &L::kl_target, 1e-6, 10.0},
@@ -54,7 +54,7 @@ constexpr NumberSetting<L> kLearner[] = {
     {"action_std_min", &L::action_std_min, 1e-3, 10.0},
 };
 
-constexpr NumberSetting<learner::LossConfig> kLoss[] = {
+constexpr Setting<learner::LossConfig> kLoss[] = {
     {"estimate_weight", &learner::LossConfig::estimate_weight, 0.0, 1e3},
     {"symmetry_weight", &learner::LossConfig::symmetry_weight, 0.0, 1e3},
 };

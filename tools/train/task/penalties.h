@@ -21,7 +21,7 @@ struct Energy {
   double speed_mps = 0;      ///< energy counts times this speed over ...
   double offset_mps = 0;     ///< ... the sum of this one and the commanded
   double late_factor = 0;
-  static constexpr NumberSetting<Energy> kSettings[] = {
+  static constexpr Setting<Energy> kSettings[] = {
       {"torque_weight", &Energy::torque_weight, 0.0, kNoLimit},
       {"power_weight", &Energy::power_weight, 0.0, kNoLimit},
       {"speed_mps", &Energy::speed_mps, 0.0, 1e3},
@@ -39,7 +39,7 @@ struct Energy {
 struct JointSpeed {
   static constexpr const char* kName = "joint_speed";
   double weight = 0;  ///< per rad^2/s^2
-  static constexpr NumberSetting<JointSpeed> kSettings[] = {
+  static constexpr Setting<JointSpeed> kSettings[] = {
       {"weight", &JointSpeed::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
@@ -52,7 +52,7 @@ struct SpeedExcess {
   static constexpr const char* kName = "speed_excess";
   double weight = 0;  ///< per rad^2/s^2
   double late_factor = 0;
-  static constexpr NumberSetting<SpeedExcess> kSettings[] = {
+  static constexpr Setting<SpeedExcess> kSettings[] = {
       {"weight", &SpeedExcess::weight, 0.0, kNoLimit},
       {"late_factor", &SpeedExcess::late_factor, 0.0, kNoLimit},
   };
@@ -64,7 +64,7 @@ struct SpeedExcess {
 struct Slip {
   static constexpr const char* kName = "slip";
   double weight = 0;  ///< per m^2/s^2
-  static constexpr NumberSetting<Slip> kSettings[] = {
+  static constexpr Setting<Slip> kSettings[] = {
       {"weight", &Slip::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const { return weight * s.slip; }
@@ -73,7 +73,7 @@ struct Slip {
 struct Smoothness1 {
   static constexpr const char* kName = "smoothness_1";
   double weight = 0;  ///< per square of the action's change
-  static constexpr NumberSetting<Smoothness1> kSettings[] = {
+  static constexpr Setting<Smoothness1> kSettings[] = {
       {"weight", &Smoothness1::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
@@ -89,7 +89,7 @@ struct Smoothness1 {
 struct Smoothness2 {
   static constexpr const char* kName = "smoothness_2";
   double weight = 0;  ///< per square of the change of the action's change
-  static constexpr NumberSetting<Smoothness2> kSettings[] = {
+  static constexpr Setting<Smoothness2> kSettings[] = {
       {"weight", &Smoothness2::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
@@ -110,7 +110,7 @@ struct ShortStride {
   static constexpr const char* kName = "short_stride";
   double weight = 0;      ///< per s that a stride is shorter than the next
   double shortest_s = 0;  ///< from touchdown to touchdown of a foot
-  static constexpr NumberSetting<ShortStride> kSettings[] = {
+  static constexpr Setting<ShortStride> kSettings[] = {
       {"weight", &ShortStride::weight, 0.0, kNoLimit},
       {"shortest_s", &ShortStride::shortest_s, 0.0, kNoLimit},
   };
@@ -128,7 +128,7 @@ struct Pose {
   static constexpr const char* kName = "pose";
   double weight = 0;         ///< per rad^2
   double flexion_share = 0;  ///< of that, for HFE and KFE
-  static constexpr NumberSetting<Pose> kSettings[] = {
+  static constexpr Setting<Pose> kSettings[] = {
       {"weight", &Pose::weight, 0.0, kNoLimit},
       {"flexion_share", &Pose::flexion_share, 0.0, kNoLimit},
   };
@@ -148,7 +148,7 @@ struct JointMargin {
   static constexpr const char* kName = "joint_margin";
   double weight = 0;  ///< per rad of a knee past one of the next two
   double knee_low_rad = 0, knee_high_rad = 0;
-  static constexpr NumberSetting<JointMargin> kSettings[] = {
+  static constexpr Setting<JointMargin> kSettings[] = {
       {"weight", &JointMargin::weight, 0.0, kNoLimit},
       {"knee_low_rad", &JointMargin::knee_low_rad, -7.0, 7.0},
       {"knee_high_rad", &JointMargin::knee_high_rad, -7.0, 7.0},
@@ -165,7 +165,7 @@ struct JointMargin {
 struct Orientation {
   static constexpr const char* kName = "orientation";
   double weight = 0;  ///< per rad^2 of tilt
-  static constexpr NumberSetting<Orientation> kSettings[] = {
+  static constexpr Setting<Orientation> kSettings[] = {
       {"weight", &Orientation::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
@@ -178,7 +178,7 @@ struct BaseVertical {
   static constexpr const char* kName = "base_vertical";
   double weight = 0;  ///< per m^2/s^2
   double late_factor = 0;
-  static constexpr NumberSetting<BaseVertical> kSettings[] = {
+  static constexpr Setting<BaseVertical> kSettings[] = {
       {"weight", &BaseVertical::weight, 0.0, kNoLimit},
       {"late_factor", &BaseVertical::late_factor, 0.0, kNoLimit},
   };
@@ -190,7 +190,7 @@ struct BaseVertical {
 struct BaseRollPitch {
   static constexpr const char* kName = "base_roll_pitch";
   double weight = 0;  ///< per rad/s
-  static constexpr NumberSetting<BaseRollPitch> kSettings[] = {
+  static constexpr Setting<BaseRollPitch> kSettings[] = {
       {"weight", &BaseRollPitch::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
@@ -203,7 +203,7 @@ struct Height {
   double weight = 0;         ///< per m^2 below the target
   double target_m = 0;       ///< of the base above the deformed ground
   double late_target_m = 0;  ///< likewise, when the late penalties are fully on
-  static constexpr NumberSetting<Height> kSettings[] = {
+  static constexpr Setting<Height> kSettings[] = {
       {"weight", &Height::weight, 0.0, kNoLimit},
       {"target_m", &Height::target_m, 0.0, kNoLimit},
       {"late_target_m", &Height::late_target_m, 0.0, kNoLimit},
@@ -225,7 +225,7 @@ struct Clearance {
   static constexpr const char* kName = kClearanceNames[kLeg];
   double weight = 0;    ///< per m^2 below the target, times the root of the foot's speed
   double target_m = 0;  ///< of the foot above the surface
-  static constexpr NumberSetting<Clearance> kSettings[] = {
+  static constexpr Setting<Clearance> kSettings[] = {
       {"weight", &Clearance::weight, 0.0, kNoLimit},
       {"target_m", &Clearance::target_m, 0.0, kNoLimit},
   };
@@ -240,7 +240,7 @@ struct Clearance {
 struct JointStop {
   static constexpr const char* kName = "joint_stop";
   double weight = 0;  ///< of a step in which a joint is past its stop all the time
-  static constexpr NumberSetting<JointStop> kSettings[] = {
+  static constexpr Setting<JointStop> kSettings[] = {
       {"weight", &JointStop::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule& schedule) const {
@@ -252,7 +252,7 @@ struct JointStop {
 struct Fall {
   static constexpr const char* kName = "fall";
   double weight = 0;
-  static constexpr NumberSetting<Fall> kSettings[] = {
+  static constexpr Setting<Fall> kSettings[] = {
       {"weight", &Fall::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule& schedule) const {

@@ -196,8 +196,9 @@ void Task::new_robot(int env, Env& e) {
   const double latency_s = r.latency_s[static_cast<std::size_t>(3.0 * uniform(env, e))];
   drive.switch_tick = static_cast<float>(std::round(latency_s * kSimulationHz));
   const double offset = config_.noise.joint_offset_rad;
-  for (float& o : e.sensors.joint_offset_rad)
+  for (float& o : e.sensors.joint_offset_rad) {
     o = static_cast<float>(uniform(env, e, -offset, offset));
+  }
   e.noise_level = static_cast<float>(uniform(env, e, 0.0, config_.noise.level_high));
   e.robot_features = {static_cast<float>(5.0 * (base_factor - 1.0)),
                       drive.switch_tick / kStepsPerAction - 1.0f};

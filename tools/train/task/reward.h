@@ -26,7 +26,7 @@ struct PenaltySettings {
   double ramp_transitions = 0;  ///< at which that factor is 1
   double late_factor = 0;       ///< of them, when the late penalties are fully on
 
-  static constexpr NumberSetting<PenaltySettings> kSettings[] = {
+  static constexpr Setting<PenaltySettings> kSettings[] = {
       {"weight", &PenaltySettings::weight, 0.0, kNoLimit},
       {"start_factor", &PenaltySettings::start_factor, 0.0, kNoLimit},
       {"ramp_transitions", &PenaltySettings::ramp_transitions, 1.0, 1e12},
@@ -46,7 +46,7 @@ struct RewardSettings {
   Penalties penalties;
   UnboundedPenalties unbounded_penalties;
 
-  static constexpr NumberSetting<RewardSettings> kSettings[] = {
+  static constexpr Setting<RewardSettings> kSettings[] = {
       {"scale", &RewardSettings::scale, 1e-9, 1e3},
       {"floor", &RewardSettings::floor, -kNoLimit, 0.0},
       {"drift_time_s", &RewardSettings::drift_time_s, 0.01, 10.0},

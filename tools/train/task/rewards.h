@@ -19,7 +19,7 @@ struct Velocity {
   double weight = 0;
   double width = 0;             ///< of the squared error, m^2/s^2
   double width_per_speed2 = 0;  ///< and for each m^2/s^2 of commanded speed
-  static constexpr NumberSetting<Velocity> kSettings[] = {
+  static constexpr Setting<Velocity> kSettings[] = {
       {"weight", &Velocity::weight, 0.0, kNoLimit},
       {"width", &Velocity::width, 1e-6, 1e3},
       {"width_per_speed2", &Velocity::width_per_speed2, 0.0, kNoLimit},
@@ -38,7 +38,7 @@ struct Velocity {
 struct Progress {
   static constexpr const char* kName = "progress";
   double weight = 0;
-  static constexpr NumberSetting<Progress> kSettings[] = {
+  static constexpr Setting<Progress> kSettings[] = {
       {"weight", &Progress::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
@@ -53,7 +53,7 @@ struct Yaw {
   static constexpr const char* kName = "yaw";
   double weight = 0;
   double width = 0;  ///< of the squared error, rad^2/s^2
-  static constexpr NumberSetting<Yaw> kSettings[] = {
+  static constexpr Setting<Yaw> kSettings[] = {
       {"weight", &Yaw::weight, 0.0, kNoLimit},
       {"width", &Yaw::width, 1e-6, 1e3},
   };
@@ -67,7 +67,7 @@ struct Yaw {
 struct YawProgress {
   static constexpr const char* kName = "yaw_progress";
   double weight = 0;
-  static constexpr NumberSetting<YawProgress> kSettings[] = {
+  static constexpr Setting<YawProgress> kSettings[] = {
       {"weight", &YawProgress::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
@@ -87,7 +87,7 @@ struct Precise {
   double drift_late_factor = 0;
   double lateral_width = 0;  ///< of the error, m/s
   double yaw_width = 0;      ///< of the error, rad/s
-  static constexpr NumberSetting<Precise> kSettings[] = {
+  static constexpr Setting<Precise> kSettings[] = {
       {"forward_weight", &Precise::forward_weight, 0.0, kNoLimit},
       {"forward_width", &Precise::forward_width, 1e-6, 1e3},
       {"forward_width_per_speed", &Precise::forward_width_per_speed, 0.0, kNoLimit},
@@ -114,7 +114,7 @@ struct Air {
   double target_s = 0;          ///< longest swing and stance that are rewarded in full
   double longest_swing_s = 0;   ///< a longer swing is not rewarded at all
   double longest_stance_s = 0;  ///< a longer stance is not rewarded at all
-  static constexpr NumberSetting<Air> kSettings[] = {
+  static constexpr Setting<Air> kSettings[] = {
       {"weight", &Air::weight, 0.0, kNoLimit},
       {"target_s", &Air::target_s, 1e-3, 10.0},
       {"longest_swing_s", &Air::longest_swing_s, 0.0, kNoLimit},
@@ -141,7 +141,7 @@ struct Air {
 struct Diagonality {
   static constexpr const char* kName = "diagonality";
   double weight = 0;
-  static constexpr NumberSetting<Diagonality> kSettings[] = {
+  static constexpr Setting<Diagonality> kSettings[] = {
       {"weight", &Diagonality::weight, 0.0, kNoLimit},
   };
   double value(const StepOutcome& s, const RewardSchedule& schedule) const {
@@ -155,7 +155,7 @@ struct PairedSwing {
   double weight = 0;
   double target_s = 0;   ///< longest swing of a pair that is rewarded in full
   double longest_s = 0;  ///< a longer swing is not rewarded at all
-  static constexpr NumberSetting<PairedSwing> kSettings[] = {
+  static constexpr Setting<PairedSwing> kSettings[] = {
       {"weight", &PairedSwing::weight, 0.0, kNoLimit},
       {"target_s", &PairedSwing::target_s, 1e-3, 10.0},
       {"longest_s", &PairedSwing::longest_s, 0.0, kNoLimit},

@@ -18,16 +18,12 @@ inline void require_key(const ConfigTree& config, const std::string& key) {
   if (!config.has(key)) throw InputError(fmt::format("training config: '{}' is missing", key));
 }
 
-/// A row whose member is a number.
-template <typename Settings>
-using NumberSetting = Setting<Settings>;
-
 /// Reads all rows of `numbers` from the table `table`. Throws InputError for a number that is
 /// missing or out of its range.
 template <typename Settings, std::size_t kRows>
 void read_numbers(ConfigTree& config, const std::string& table,
-                  const NumberSetting<Settings> (&numbers)[kRows], Settings& settings) {
-  for (const NumberSetting<Settings>& number : numbers) {
+                  const Setting<Settings> (&numbers)[kRows], Settings& settings) {
+  for (const Setting<Settings>& number : numbers) {
     const std::string key = table + "." + number.key;
     require_key(config, key);
     read_setting(config, key, number, settings);

@@ -11,7 +11,7 @@ namespace sandrunner::train {
 namespace {
 
 using P = PolicySettings;
-constexpr NumberSetting<P> kPolicy[] = {
+constexpr Setting<P> kPolicy[] = {
     {"action_scale_rad", &P::action_scale_rad, 1e-3, 10.0},
     {"action_clip", &P::action_clip, 0.1, 1e3},
     {"kp_nmprad", &P::kp_nmprad, 0.0, kNoLimit},
@@ -21,7 +21,7 @@ constexpr NumberSetting<P> kPolicy[] = {
 };
 
 using E = EpisodeSettings;
-constexpr NumberSetting<E> kEpisode[] = {
+constexpr Setting<E> kEpisode[] = {
     {"length_s", &E::length_s, 0.1, 1000.0},
     {"soft_reset_share", &E::soft_reset_share, 0.0, 1.0},
     {"soft_reset_new_ground", &E::soft_reset_new_ground, 0.0, 1.0},
@@ -36,7 +36,7 @@ constexpr NumberSetting<E> kEpisode[] = {
 };
 
 using C = CommandSettings;
-constexpr NumberSetting<C> kCommand[] = {
+constexpr Setting<C> kCommand[] = {
     // within what a policy file may allow
     {"speed_start_mps", &C::speed_start_mps, 0.0, 20.0},
     {"speed_max_mps", &C::speed_max_mps, 0.0, 20.0},
@@ -62,7 +62,7 @@ constexpr NumberSetting<C> kCommand[] = {
 };
 
 using G = GroundSettings;
-constexpr NumberSetting<G> kGround[] = {
+constexpr Setting<G> kGround[] = {
     {"patch_length_low_m", &G::patch_length_low_m, 0.01, 1e3},
     {"patch_length_high_m", &G::patch_length_high_m, 0.01, 1e3},
     {"patch_rigid_share", &G::patch_rigid_share, 0.0, 1.0},
@@ -99,7 +99,7 @@ constexpr NumberSetting<G> kGround[] = {
 };
 
 using R = RobotSettings;
-constexpr NumberSetting<R> kRobot[] = {
+constexpr Setting<R> kRobot[] = {
     {"base_mass_spread", &R::base_mass_spread, 0.0, 0.9},
     {"link_mass_spread", &R::link_mass_spread, 0.0, 0.9},
     {"foot_position_m", &R::foot_position_m, 0.0, kNoLimit},
@@ -109,7 +109,7 @@ constexpr NumberSetting<R> kRobot[] = {
 };
 
 using N = NoiseSettings;
-constexpr NumberSetting<N> kNoise[] = {
+constexpr Setting<N> kNoise[] = {
     {"gravity", &N::gravity, 0.0, kNoLimit},
     {"angular_velocity_radps", &N::angular_velocity_radps, 0.0, kNoLimit},
     {"joint_position_rad", &N::joint_position_rad, 0.0, kNoLimit},
