@@ -83,11 +83,11 @@ void add_run_options(CLI::App& app, Options& o, Words& t) {
          "--terrain", o.terrain,
          fmt::format("ground: {}, or a TOML file", fmt::join(sim::terrain_preset_names(), ", ")))
       ->type_name("PRESET|FILE");
-  app.add_option("--command", o.command,
-                 "velocity vx,vy,wz (m/s, m/s, rad/s), clamped to the policy's envelope, or a CSV "
-                 "file with "
-                 "header t_s,vx,vy,wz, linear between rows; dds: operators command over DDS "
-                 "(sandrunner-ctl, ROS 2), until Ctrl-C; live: the page of --view commands")
+  app.add_option(
+         "--command", o.command,
+         "velocity vx,vy,wz (m/s, m/s, rad/s), clamped to the policy's envelope, or a CSV "
+         "file with header t_s,vx,vy,wz, linear between rows; dds: operators command over DDS "
+         "(sandrunner-ctl, ROS 2), until Ctrl-C; live: the page of --view commands")
       ->type_name("VX,VY,WZ|FILE|dds|live");
   app.add_option("--dds-security", o.dds_security_dir,
                  "folder made by tools/dds_security.sh: DDS with authentication and encryption")

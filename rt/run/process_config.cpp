@@ -34,7 +34,7 @@ constexpr Setting<ProcessConfig> kSummary[] = {
 
 constexpr const char* kFromPolicy = "from the policy file";
 
-/// Ends of ranges that the robot's file gives: no drive gets more than that allows, whoever asks.
+/// Ends of ranges that the robot's file gives: no setting gives a drive more than that.
 struct Ranges {
   double kp_nmprad, kd_nmsprad, speed_fault_radps, power_w;
   bool recorded = false;  ///< what was run once may be read that no run is to have any more

@@ -92,8 +92,9 @@ RunRecording::RunRecording(const Options& options, const ProcessConfig& config,
     prepare_folder(options.record_dir, "--record");
     keepers.push_back(&recorder_.emplace(path_, info, config.recording));
   }
-  if (options.clock == RunClock::kRealtime)
+  if (options.clock == RunClock::kRealtime) {
     keepers.push_back(&black_box_.emplace(black_box_folder(options), info));
+  }
   if (keepers.empty()) return;
   ticks_.emplace(config.controller, start_mode_of(info), policy,
                  options.clock == RunClock::kRealtime ? WhenFull::kDrop : WhenFull::kWait,

@@ -155,8 +155,9 @@ RobotNow SimulatorHand::act(std::uint64_t next, TickSinks sinks) {
 // Upright, until it carries itself.
 RobotNow SimulatorHand::hold(std::uint64_t next, TickSinks sinks) {
   const bool holds = stand_again_ && stand_again_->holds();
-  if (holds != holding_)
+  if (holds != holding_) {
     note(sinks, next, "hand", holds ? "sets the robot on its legs" : "lets it go");
+  }
   holding_ = holds;
   if (holds && simulator_.carry_to_stand()) stand_again_->is_upright();
   return holds ? RobotNow::kChanged : RobotNow::kAsBefore;

@@ -352,8 +352,7 @@ Robot load_robot(const std::string& map_path) {
   if (first != std::string::npos && map_text[first] == '<') {
     throw InputError(
         fmt::format("{}: found XML, expected a robot file (TOML) that names the URDF; "
-                    "sim/robot/README.md tells "
-                    "how to write one",
+                    "sim/robot/README.md tells how to write one",
                     map_path));
   }
   RobotFile file;
