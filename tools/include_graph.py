@@ -34,7 +34,7 @@ LAYERS = [
     ["tools/bench/mujoco", "tools/evaluate", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
     ["tools/hil/emulated"],
-    ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
+    ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
 NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/operator/", "rt/realtime/", "rt/report/", "rt/telemetry/")
