@@ -29,8 +29,8 @@ class Case {
   bool below_by_share(const Figure& a, const Figure& b, double share) {
     return check(study::below_by_share(a, b, share));
   }
-  /// "excess x": agrees or contradicts, by `a` over `b`.
-  Outcome excess(const Figure& a, const Figure& b, double x);
+  /// "excess x": agrees or contradicts, by `a` over `b`, which are in this unit.
+  Outcome excess(const Figure& a, const Figure& b, double x, const char* unit = "m/s");
   /// There is nothing that could be compared.
   void set_too_few() { too_few_ = true; }
   bool too_few() const { return too_few_; }

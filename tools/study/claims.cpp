@@ -128,10 +128,10 @@ Judgement judge(const Claim& claim, const Evidence& evidence) {
 
 // Case.
 
-Outcome Case::excess(const Figure& a, const Figure& b, double x) {
+Outcome Case::excess(const Figure& a, const Figure& b, double x, const char* unit) {
   const double found = study::excess(a, b);
   return {above(a, b) && found >= 0.5 * x && found <= 2.0 * x, above(b, a),
-          fmt::format("{} against {} m/s or W: {:+.1f} %", printed(a, 1.0, 2), printed(b, 1.0, 2),
+          fmt::format("{} against {} {}: {:+.1f} %", printed(a, 1.0, 2), printed(b, 1.0, 2), unit,
                       100.0 * found)};
 }
 

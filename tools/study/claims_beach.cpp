@@ -194,7 +194,7 @@ Outcome env_rigid_fails_fast(Case& c) {
 
 Outcome extension_power(Case& c) {
   return c.excess(at_one_mps(c, "pl-rigid", "extension_w"),
-                  at_one_mps(c, "env-rigid", "extension_w"), paper::kExtensionExcess);
+                  at_one_mps(c, "env-rigid", "extension_w"), paper::kExtensionExcess, "W");
 }
 
 Outcome quasistatic_completes(Case& c) {

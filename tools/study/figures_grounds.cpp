@@ -197,9 +197,9 @@ std::vector<StudyFigure> estimator_figures(const Evidence& evidence) {
                              {"body_height_rmse_m", "Body height", "mm", 1e3},
                              {"foot_height_rmse_m", "Foot heights", "mm", 1e3}};
   const plot::Style kGrounds[] = {{{0.80, 0.58, 0.10}},
-                                      {{0.35, 0.35, 0.38}, {9.0, 4.0}},
-                                      {{0.75, 0.20, 0.20}, {3.0, 3.0}},
-                                      {{0.10, 0.55, 0.20}, {9.0, 3.0, 2.0, 3.0}}};
+                                  {{0.35, 0.35, 0.38}, {9.0, 4.0}},
+                                  {{0.75, 0.20, 0.20}, {3.0, 3.0}},
+                                  {{0.10, 0.55, 0.20}, {9.0, 3.0, 2.0, 3.0}}};
   for (const Part& part : kParts) {
     plot::Chart chart;
     chart.title = part.title;

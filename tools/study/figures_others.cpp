@@ -86,8 +86,7 @@ std::vector<StudyFigure> hidden_state_figures(const Evidence& evidence) {
     constexpr int kPhases = 8;
     for (int g = 0; g < 4; ++g) by_ground.series.push_back(dots(kGrounds[g], kColors[g]));
     for (int p = 0; p < kPhases; ++p) {
-      by_phase.series.push_back(
-          dots(fmt::format("{:.3f}", p / static_cast<double>(kPhases)), hue(p / 8.0)));
+      by_phase.series.push_back(dots(fmt::format("phase {}/{}", p, kPhases), hue(p / 8.0)));
     }
     for (std::size_t i = 0; i < lists.at("x").size(); ++i) {
       const auto g = static_cast<std::size_t>(lists.at("ground")[i]);

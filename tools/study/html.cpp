@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+
 #include "rt/base/input_file.h"
 #include "rt/telemetry/view/view_pack.h"
 
@@ -27,6 +30,19 @@ std::string escaped(std::string_view text) {
       default:
         out += c;
     }
+  }
+  return out;
+}
+
+std::string from_markdown(std::string_view text) {
+  std::string out;
+  bool in_code = false;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('`', at), text.size());
+    out += escaped(text.substr(at, end - at));
+    if (end < text.size()) out += in_code ? "</code>" : "<code>";
+    in_code = !in_code;
+    at = end + 1;
   }
   return out;
 }

@@ -11,6 +11,9 @@ namespace sandrunner::study {
 /// The text as it stands in HTML.
 std::string escaped(std::string_view text);
 
+/// The same of a line of Markdown with `code` in it.
+std::string from_markdown(std::string_view text);
+
 /// A table; cells are HTML already.
 struct HtmlTable {
   std::vector<std::string> heads;

@@ -20,7 +20,7 @@
 namespace sandrunner::study {
 namespace {
 
-constexpr double kStripFrom_m = 3.0, kStripTo_m = 3.3;
+constexpr double kStripFrom_m = 5.0, kStripTo_m = 5.3;
 constexpr double kTimes_s[] = {0.0, 0.27, 0.37, 0.62, 0.78};  // the paper's
 constexpr int kStarts = 16;
 constexpr std::size_t kMostBytes = 3'000'000;
@@ -40,7 +40,7 @@ RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
   PolicyRunner policy(model.policy);
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command("2.5,0,0");
-  RunScript script(command, {.walk_s = 4.5, .start_walking = true}, true);
+  RunScript script(command, {.walk_s = 5.0, .start_walking = true}, true);
   return run_in_lockstep({.robot = simulator,
                           .controller = config.controller,
                           .start = Mode::kWalk,

@@ -17,7 +17,7 @@ struct RecoveryRun {
   int seed = 0;        ///< of the start
 };
 
-/// At 2.5 m/s over a strip of half the stiffness from 3.0 to 3.3 m: the first of the starts 0 to 15
+/// At 2.5 m/s over a strip of half the stiffness from 5.0 to 5.3 m: the first of the starts 0 to 15
 /// in which the left front foot alone of the front feet stands on the strip. Nothing: there is
 /// none.
 std::optional<RecoveryRun> find_recovery_run(const Lab& lab, const Model& model);

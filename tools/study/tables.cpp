@@ -111,8 +111,9 @@ std::string verdict_tables(const std::vector<JudgedClaim>& judged) {
     for (; i < judged.size() && judged[i].claim.section == section; ++i) {
       const auto& [claim, judgement] = judged[i];
       table.rows.push_back(
-          {claim.id, escaped(claim.quote), escaped(claim.figure), escaped(claim.agrees_if),
-           escaped(claim.contradicts_if), escaped(judgement.ours),
+          {claim.id, from_markdown(claim.quote), from_markdown(claim.figure),
+           from_markdown(claim.agrees_if), from_markdown(claim.contradicts_if),
+           escaped(judgement.ours),
            fmt::format("<span class=\"{}\">{}</span>", verdict_class(judgement.verdict),
                        escaped(judgement_text(judgement)))});
     }

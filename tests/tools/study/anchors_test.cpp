@@ -17,7 +17,25 @@ struct Recorded {
 
 TEST(AnchorsTest, NoValueOfOursDriftsByMoreThanOnePercent) {
   constexpr Recorded kRecorded[] = {
-      {"x", 0.0},
+      {"final depth, mm", 25.34},
+      {"stopping time, ms", 86.5},
+      {"final depth, mm", 30.144},
+      {"stopping time, ms", 73},
+      {"final depth, mm", 41.865},
+      {"stopping time, ms", 62.75},
+      {"final depth, mm", 54.093},
+      {"stopping time, ms", 59},
+      {"final depth, mm", 66.251},
+      {"stopping time, ms", 56.75},
+      {"exponent of the depth over the ball's density", 1.1233},
+      {"exponent over its diameter", 0.67563},
+      {"exponent over the height of the drop", 0.31948},
+      {"stress gained per depth, MN/m\u00b3, loose poppy seeds", 0.4},
+      {"stress gained per depth, MN/m\u00b3, close poppy seeds", 0.4},
+      {"pressure over depth at 10 mm, MN/m\u00b3", 0.79579},
+      {"pressure over depth at 30 mm, MN/m\u00b3", 0.57032},
+      {"pressure over depth at 60 mm, MN/m\u00b3", 0.48516},
+      {"force at 0.64 m/s over that at 0.04 m/s", 1.0096},
   };
   const std::vector<Anchor> found = ground_anchors();
   ASSERT_EQ(found.size(), std::size(kRecorded));
