@@ -109,7 +109,7 @@ std::vector<StudyFigure> ground_figures(const Evidence& evidence) {
   StudyFigure turns{"turns",
                     "0.92 rad/s on dry sand, \"in all terrains\" around 0.94 rad/s; the command is "
                     "not printed",
-                    "10 s on the spot, 16 runs each way; caps: least and greatest run.",
+                    "10 s on the spot, as many runs each way; caps: least and greatest run.",
                     {}};
   turns.page.title = "Yaw rate at a command of 1 rad/s";
   turns.page.width_px = 1240;
@@ -126,7 +126,7 @@ std::vector<StudyFigure> mattress_figures(const Evidence& evidence) {
                      "Ours turns at 0.71 rad/s, and at 1.54 rad/s for 2 rad/s; PL/Env-Rigid never "
                      "makes half a turn; "
                      "rates and costs of turning are not printed",
-                     "The paper has five runs each way, we have 16. Success: more than half a turn "
+                     "As many runs each way; the paper has five. Success: more than half a turn "
                      "in 10 s without "
                      "a contact of base or thigh.",
                      {}};

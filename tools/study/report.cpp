@@ -50,12 +50,14 @@ constexpr std::string_view kFairness =
     "claims about it are not judged.</p>\n";
 
 constexpr std::string_view kBeach =
-    "<p>Commands of 0.5 to 4.0 m/s, 16 runs each over 5 m after 1 m, as in the paper (five runs). "
-    "A deterministic simulator would answer 16 of 16 or 0 of 16, so each run has a beach of its "
-    "own, "
-    "the same for all controllers. Average and top are the greatest of runs 0 to 4, as many as the "
-    "paper has, over all commands, of successful runs: no contact of base or thigh and no joint "
-    "beyond its limit. With several seeds: median [least, greatest].</p>\n";
+    "<p>Commands of 0.5 to 4.0 m/s over 5 m after 1 m, as in the paper, which has five runs each. "
+    "A "
+    "deterministic simulator would answer that all runs succeed or none, so each run has a beach "
+    "of "
+    "its own, the same for all controllers. Average and top are the greatest of runs 0 to 4, as "
+    "many "
+    "as the paper has, over all commands, of successful runs: no contact of base or thigh and no "
+    "joint beyond its limit. With several seeds: median [least, greatest].</p>\n";
 
 constexpr std::string_view kGround =
     "<p>The contact model against experiments that others published; the paper has no such "
