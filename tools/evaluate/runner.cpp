@@ -136,7 +136,7 @@ class PackRun {
     const StateEstimate truth = sim::ground_truth(robot_.model, state, *trial.terrain);
     if (observe_) {
       observe_(first_ + static_cast<std::size_t>(i),
-               {state, truth, answer.estimate, torque_of(lane, state), lane.memory});
+               {state, truth, answer.estimate, torque_of(lane, state), lane.memory.h});
     }
     lane.recorder.begin_period(state, truth, answer.estimate, asked, lane.target_rad, target_rad,
                                policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "policy/policy.h"
@@ -26,7 +27,7 @@ struct ObservedStep {
   const StateEstimate& truth;
   const StateEstimate& estimate;
   const JointArray<double>& torque_nm;  ///< of the drives, under the targets until this step
-  const NetworkState& memory;           ///< after the step
+  std::span<const float> hidden;        ///< the encoder's state h after the step
 };
 /// `trial`: its place in the list. Called by several threads, for one trial by one of them.
 using StepObserver = std::function<void(std::size_t trial, const ObservedStep& step)>;
