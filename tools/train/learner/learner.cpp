@@ -67,15 +67,13 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       layout_(config.network, shape.privileged),
       pool_(pool),
       symmetry_(std::move(symmetry)),
-      rollout_(shape, config.network.hidden),
+      rollout_(shape, layout_.memory()),
       parameters_(initial_parameters(layout_, seed, config.action_std_start)),
       weights_(layout_),
       averaged_(parameters_),
       adam_(parameters_.size()),
-      h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
-      c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
-      mirror_h_(h_),
-      mirror_c_(c_),
+      memory_(Matrix<float>::Zero(layout_.memory(), shape.envs)),
+      mirror_memory_(memory_),
       asymmetry_(Matrix<float>::Zero(kActionSize, shape.envs)) {
   if (!symmetry_) config_.loss.symmetry_weight = 0.0;
   counters_.seed = seed;
@@ -95,8 +93,7 @@ void Learner::act_block(int block, int t, int worker) {
   const int first = block * config_.block_envs;
   const int end = first + config_.block_envs;
   acting_[static_cast<std::size_t>(worker)].act(weights_, rollout_, t, first,
-                                                h_.middleCols(first, config_.block_envs),
-                                                c_.middleCols(first, config_.block_envs));
+                                                memory_.middleCols(first, config_.block_envs));
   if (symmetry_) act_in_mirror(block, t, worker);
 
   const std::uint64_t step = counters_.steps + static_cast<std::uint64_t>(t);
@@ -122,15 +119,16 @@ void Learner::act_block(int block, int t, int worker) {
 void Learner::act_in_mirror(int block, int t, int worker) {
   const int first = block * config_.block_envs;
   Matrix<float> observation = rollout_.observation(t).middleCols(first, config_.block_envs);
-  std::array<float, kObservationSize> scratch;
+  Matrix<float> insight = rollout_.insight(t).middleCols(first, config_.block_envs);
+  std::array<float, std::max(kObservationSize, kInsightSize)> scratch;
   for (int i = 0; i < config_.block_envs; ++i) {
     symmetry_->observation.apply(observation.col(i), scratch.data());
+    if (insight.rows() > 0) symmetry_->insight.apply(insight.col(i), scratch.data());
   }
   Matrix<float> mean(kActionSize, config_.block_envs);
-  acting_[static_cast<std::size_t>(worker)].answer(weights_, observation, &rollout_.reset(t, first),
-                                                   mirror_h_.middleCols(first, config_.block_envs),
-                                                   mirror_c_.middleCols(first, config_.block_envs),
-                                                   mean);
+  acting_[static_cast<std::size_t>(worker)].answer(
+      weights_, observation, insight, &rollout_.reset(t, first),
+      mirror_memory_.middleCols(first, config_.block_envs), mean);
   const float share = 1.0f / static_cast<float>(config_.symmetry_steps);
   for (int i = 0; i < config_.block_envs; ++i) {
     symmetry_->action.apply(mean.col(i), scratch.data());
@@ -310,6 +308,7 @@ UpdateStats Learner::update() {
   rollout_.observation(0) = rollout_.observation(last);
   rollout_.privileged(0) = rollout_.privileged(last);
   rollout_.estimate_target(0) = rollout_.estimate_target(last);
+  rollout_.insight(0) = rollout_.insight(last);
   for (int env = 0; env < rollout_.shape.envs; ++env) {
     rollout_.reset(0, env) = rollout_.reset(last, env);
   }
@@ -328,18 +327,18 @@ UpdateStats Learner::update() {
 
 void Learner::begin_window() {
   weights_.set(parameters_.data());
-  rollout_.initial_h(0) = h_;
-  rollout_.initial_c(0) = c_;
+  rollout_.initial_memory(0) = memory_;
   rollout_.log_std =
       Eigen::Map<const Vector<float>>(parameters_.data() + layout_.log_std(), kActionSize);
 }
 
 std::string Learner::architecture() const {
   const NetworkSizes& network = config_.network;
-  return fmt::format("envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}",
-                     rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged,
-                     network.hidden, join(network.estimator), join(network.actor),
-                     join(network.critic));
+  return fmt::format(
+      "envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}{}",
+      rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged, network.hidden,
+      join(network.estimator), join(network.actor), join(network.critic),
+      network.are_a_robots() ? "" : ", " + wiring_text(network.encoder, network.actor_sees));
 }
 
 void Learner::save(Checkpoint& checkpoint) const {
@@ -351,10 +350,9 @@ void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.put("learner.averaged", averaged_.data(), averaged_.size());
   checkpoint.put("learner.adam_m", adam_.m.data(), adam_.m.size());
   checkpoint.put("learner.adam_v", adam_.v.data(), adam_.v.size());
-  checkpoint.put("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
-  checkpoint.put("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
-  checkpoint.put("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
-  checkpoint.put("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
+  checkpoint.put("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
+  checkpoint.put("learner.mirror_memory", mirror_memory_.data(),
+                 static_cast<std::size_t>(mirror_memory_.size()));
   checkpoint.put("learner.asymmetry", asymmetry_.data(),
                  static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.put("learner.reset", &rollout_.reset(0, 0),
@@ -366,6 +364,7 @@ void Learner::save(Checkpoint& checkpoint) const {
   put_first_step("learner.observation", rollout_.observation);
   put_first_step("learner.privileged", rollout_.privileged);
   put_first_step("learner.estimate_target", rollout_.estimate_target);
+  put_first_step("learner.insight", rollout_.insight);
 }
 
 void Learner::load(const Checkpoint& checkpoint) {
@@ -379,10 +378,9 @@ void Learner::load(const Checkpoint& checkpoint) {
   checkpoint.get("learner.averaged", averaged_.data(), averaged_.size());
   checkpoint.get("learner.adam_m", adam_.m.data(), adam_.m.size());
   checkpoint.get("learner.adam_v", adam_.v.data(), adam_.v.size());
-  checkpoint.get("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
-  checkpoint.get("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
-  checkpoint.get("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
-  checkpoint.get("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
+  checkpoint.get("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
+  checkpoint.get("learner.mirror_memory", mirror_memory_.data(),
+                 static_cast<std::size_t>(mirror_memory_.size()));
   checkpoint.get("learner.asymmetry", asymmetry_.data(),
                  static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.get("learner.reset", &rollout_.reset(0, 0),
@@ -394,6 +392,7 @@ void Learner::load(const Checkpoint& checkpoint) {
   get_first_step("learner.observation", rollout_.observation);
   get_first_step("learner.privileged", rollout_.privileged);
   get_first_step("learner.estimate_target", rollout_.estimate_target);
+  get_first_step("learner.insight", rollout_.insight);
   counters_ = counters;
   adam_.step = counters.adam_steps;
   begin_window();

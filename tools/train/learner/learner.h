@@ -165,11 +165,9 @@ class Learner {
   std::vector<float> averaged_;
   double action_std_most_ = 1e3;
   Adam adam_;
-  Matrix<float> h_;  // memory of each environment
-  Matrix<float> c_;
-  Matrix<float> mirror_h_;  // of the policy that sees the mirror
-  Matrix<float> mirror_c_;
-  Matrix<float> asymmetry_;  // of each environment's answers, lately
+  Matrix<float> memory_;         // of each environment
+  Matrix<float> mirror_memory_;  // of the policy that sees the mirror
+  Matrix<float> asymmetry_;      // of each environment's answers, lately
   AdvantageScale advantage_scale_;
   std::vector<BlockPass<float>> acting_;       // one a worker, one step
   std::vector<BlockPass<float>> learning_;     // one a worker, a window
