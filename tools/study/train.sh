@@ -18,7 +18,7 @@ if [ $# -lt 2 ]; then
 fi
 out=$1 seed=$2
 shift 2
-[ $# -gt 0 ] || set -- ours env-rigid env-linear env-quasistatic
+[ $# -gt 0 ] || set -- ours env-rigid env-linear env-quasistatic oracle-h oracle-o teacher-gm teacher-rigid
 for name in "$@"; do
   if [ ! -f "$here/trainings/$name.toml" ]; then
     echo "train.sh: found '$name', expected one of" "$(cd "$here/trainings" && echo *.toml)" >&2

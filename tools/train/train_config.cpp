@@ -103,19 +103,17 @@ void read_gate(ConfigTree& config, const BatterySettings& battery, GateSettings&
   }
 }
 
-// Settings that have one value: another is refused, as nothing would come of it.
-void read_wiring(ConfigTree& config) {
-  const auto only = [&](const std::string& key, const char* value, const char* lacks) {
+void read_wiring(ConfigTree& config, learner::NetworkSizes& network) {
+  const auto text = [&](const std::string& key) {
     require_key(config, key);
-    if (const std::string found = config.text(key, value); found != value) {
-      throw InputError(
-          fmt::format("training config: {} = '{}', expected '{}': the trainer has no {} yet", key,
-                      found, value, lacks));
-    }
+    return config.text(key, "");
   };
-  only("network.encoder", "lstm", "other encoder");
-  only("network.actor", "encoding, estimate", "actor with other inputs");
-  only("imitation.teacher", "", "imitation of a teacher");
+  network.encoder = learner::parse_encoder("network.encoder", text("network.encoder"));
+  network.actor_sees = learner::parse_actor_inputs("network.actor", text("network.actor"));
+  if (const std::string teacher = text("imitation.teacher"); !teacher.empty()) {
+    throw InputError(fmt::format(
+        "imitation.teacher: found '{}', expected none: the trainer does not imitate yet", teacher));
+  }
 }
 
 // What one table asks of another.
@@ -151,7 +149,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   c.window = read_integer(config, "learner.window", 1, 4096);
   c.learner = read_learner_config(config);
   c.task = read_task_config(config);
-  read_wiring(config);
+  read_wiring(config, c.learner.network);
   check_blocks(c);
   config.reject_unknown();
   c.effective = config.effective();

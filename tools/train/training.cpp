@@ -71,7 +71,9 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       options_(options),
       pool_(options.threads),
       task_(config.task, robot, {config.run.envs, config.learner.block_envs}, options.seed),
-      learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
+      learner_(config.learner,
+               {config.run.envs, config.window, task_.privileged_size(),
+                config.learner.network.see_insight() ? learner::kInsightSize : 0},
                options.seed, pool_, Task::symmetry()),
       gate_(config.gate, config.battery.tracked_error, config.run.transitions,
             config.run.settle_share, config.task.reward.prior_start_transitions),
@@ -206,19 +208,22 @@ void Training::save() {
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
   const Snapshot now = snapshot();
-  const PolicyFile policy = policy_file(now, learner_.averaged());
-  write_policy_file(options_.out + "/policy.safetensors", policy);
+  write_network(options_.out + "/policy.safetensors", policy_spec(now), learner_.averaged());
   if (!best_is_written_) {
-    PolicyFile best = policy_file(best_, best_parameters_);
-    best.spec.provenance["battery"] = Progress::summary(best_.battery);
-    write_policy_file(options_.out + "/best.safetensors", best);
+    PolicySpec best = policy_spec(best_);
+    best.provenance["battery"] = Progress::summary(best_.battery);
+    write_network(options_.out + "/best.safetensors", std::move(best), best_parameters_);
     best_is_written_ = true;
   }
   progress_.write(options_.out);
-  pool_.run(1, [&](int, int) {
-    write_file(options_.out + "/curve.html", curve_page(progress_, policy, now.transitions, robot_,
-                                                        config_.task.command.speed_start_mps));
-  });
+  if (config_.learner.network.are_a_robots()) {
+    const PolicyFile policy = policy_file(policy_spec(now), learner_.averaged());
+    pool_.run(1, [&](int, int) {
+      write_file(options_.out + "/curve.html",
+                 curve_page(progress_, policy, now.transitions, robot_,
+                            config_.task.command.speed_start_mps));
+    });
+  }
   saved_at_s_ = wall_seconds();
   fallbacks_ = 0;
 }

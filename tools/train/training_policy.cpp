@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rt/base/errors.h"
 #include "tools/train/task/leg_modes.h"
@@ -35,10 +36,25 @@ void require_scales(const PolicyFile& policy, const PolicyFile& ours) {
   check("action clip", policy.spec.action_clip, ours.spec.action_clip);
 }
 
+std::vector<float> observation_variance(const InputScales& scales) {
+  std::vector<float> variance;
+  for (const float d : scales.inverse_deviation) {
+    variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
+  }
+  return variance;
+}
+
 }  // namespace
 
 void Training::go_on_from(PolicyFile policy) {
-  require_scales(policy, policy_file(snapshot(), learner_.averaged()));
+  const learner::NetworkSizes& network = config_.learner.network;
+  if (!network.are_a_robots()) {
+    throw InputError(fmt::format(
+        "--from: found networks wired as '{}', expected '{}': those of a "
+        "policy file",
+        learner::wiring_text(network.encoder, network.actor_sees), learner::wiring_text({}, {})));
+  }
+  require_scales(policy, policy_file(policy_spec(snapshot()), learner_.averaged()));
   for (std::vector<float>* rows :
        {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
     const std::vector<float> joints = *rows;
@@ -53,11 +69,9 @@ void Training::go_on_from(PolicyFile policy) {
   origin_ = fmt::format("sandrunner-train, from the weights of policy '{}'", policy.spec.name);
 }
 
-PolicyFile Training::policy_file(const Snapshot& snapshot,
-                                 const std::vector<float>& parameters) const {
-  PolicyFile file;
+PolicySpec Training::policy_spec(const Snapshot& snapshot) const {
   const PolicySettings& policy = config_.task.policy;
-  PolicySpec& spec = file.spec;
+  PolicySpec spec;
   spec.name = robot_.description.name;
   spec.joint_names = robot_.description.joint_names;
   spec.nominal_position_rad = robot_.nominal_rad;
@@ -90,12 +104,17 @@ PolicyFile Training::policy_file(const Snapshot& snapshot,
                      {"processor", processors_},
                      {"commit", builds_},
                      {"origin", origin_}};
+  return spec;
+}
+
+PolicyFile Training::policy_file(PolicySpec spec, const std::vector<float>& parameters) const {
+  PolicyFile file;
+  file.spec = std::move(spec);
+  const InputScales& scales = task_.scales();
   NetworkParameters& p = file.parameters;
   p.observation_clip = scales.clip;
   p.observation_mean.assign(scales.mean.begin(), scales.mean.end());
-  for (const float d : scales.inverse_deviation) {
-    p.observation_variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
-  }
+  p.observation_variance = observation_variance(scales);
   const auto tensors = learner::policy_tensors(learner_.layout(), parameters);
   for (const NamedTensor& to : tensors_of(p)) {
     const auto from = std::ranges::find(tensors, to.name, &learner::PolicyTensor::name);
@@ -104,10 +123,32 @@ PolicyFile Training::policy_file(const Snapshot& snapshot,
   // The robot's network answers in joints.
   for (std::vector<float>* rows : {&p.actor.back().weight, &p.actor.back().bias}) {
     const std::vector<float> modes = *rows;
-    joints_from_modes(policy.mode_gain, modes.data(), modes.size() / kNumJoints, rows->data());
+    joints_from_modes(config_.task.policy.mode_gain, modes.data(), modes.size() / kNumJoints,
+                      rows->data());
   }
   file.golden = make_golden_example(p);
   return file;
+}
+
+StudyModelFile Training::study_model(PolicySpec spec, const std::vector<float>& parameters) const {
+  StudyModelFile file;
+  file.spec = std::move(spec);
+  file.sizes = config_.learner.network;
+  const InputScales& scales = task_.scales();
+  file.observation_clip = scales.clip;
+  file.observation_mean.assign(scales.mean.begin(), scales.mean.end());
+  file.observation_variance = observation_variance(scales);
+  set_trained(parameters, config_.task.policy.mode_gain, file);
+  return file;
+}
+
+void Training::write_network(const std::string& path, PolicySpec spec,
+                             const std::vector<float>& parameters) const {
+  if (config_.learner.network.are_a_robots()) {
+    write_policy_file(path, policy_file(std::move(spec), parameters));
+  } else {
+    write_study_model(path, study_model(std::move(spec), parameters));
+  }
 }
 
 }  // namespace sandrunner::train

@@ -33,12 +33,24 @@ std::map<std::string, std::string> settings_of(const std::string& file) {
   return settings;
 }
 
-TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsInItsGroundAlone) {
+TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListed) {
   const std::map<std::string, std::map<std::string, std::string>> expected = {
       {"ours", {}},
       {"env-rigid", {{"ground.rigid_envs", "64"}, {"ground.patchy_envs", "0"}}},
       {"env-quasistatic", {{"ground.inertial_high", "0.0"}}},  // the low end is 0 anyway
       {"env-linear", {{"ground.yielding", "\"linear\""}}},
+      {"oracle-h", {{"network.actor", "\"encoding, estimate, terrain\""}}},
+      {"oracle-o", {{"network.actor", "\"estimate, proprioception, terrain\""}}},
+      {"teacher-gm",
+       {{"network.encoder", "\"insight\""},
+        {"network.actor", "\"encoding, proprioception\""},
+        {"learner.estimate_weight", "0.0"}}},
+      {"teacher-rigid",
+       {{"network.encoder", "\"insight\""},
+        {"network.actor", "\"encoding, proprioception\""},
+        {"learner.estimate_weight", "0.0"},
+        {"ground.rigid_envs", "64"},
+        {"ground.patchy_envs", "0"}}},
   };
   const auto built_in = settings_of("");
   std::set<std::string> found;

@@ -10,8 +10,10 @@
 #include <string_view>
 
 #include "policy/policy_file.h"
+#include "rt/base/errors.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
+#include "tools/train/model/model_file.h"
 
 namespace sandrunner {
 namespace {
@@ -161,10 +163,27 @@ TEST_F(TrainCommandTest, HardGroundAloneCanBeTrainedOn) {
             0);
 }
 
-TEST_F(TrainCommandTest, SettingsThatHaveOneValueRefuseAnother) {
-  expect_refused("a", {"--set", "network.encoder=tcn"}, "network.encoder = 'tcn', expected 'lstm'");
-  expect_refused("a", {"--set", "network.actor=encoding"}, "network.actor = 'encoding'");
+TEST_F(TrainCommandTest, UnknownWiringIsRefused) {
+  expect_refused("a", {"--set", "network.encoder=gru"}, "network.encoder: found 'gru', expected");
+  expect_refused("a", {"--set", "network.actor=\"estimate, sight\""},
+                 "network.actor: found 'sight', expected some of encoding, estimate");
   expect_refused("a", {"--set", "imitation.teacher=teacher.safetensors"}, "imitation.teacher");
+}
+
+TEST_F(TrainCommandTest, AnotherWiringEndsInAStudyModelThatIsNoPolicy) {
+  ASSERT_EQ(run("a", {"--set", "network.actor=\"encoding, estimate, terrain\""}), 0);
+  const train::StudyModelFile model =
+      train::read_study_model(folder_.path("a") + "/best.safetensors");
+  EXPECT_TRUE(model.sizes.actor_sees.terrain);
+  EXPECT_NE(model.spec.provenance.at("battery").find("alive"), std::string::npos);
+  try {
+    policy("a");
+    FAIL() << "read as a policy";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'sandrunner.format' is 'study 1', expected '1'"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(TrainCommandTest, WeightsDoNotDependOnTheNumberOfThreads) {
