@@ -103,17 +103,18 @@ void read_gate(ConfigTree& config, const BatterySettings& battery, GateSettings&
   }
 }
 
-void read_wiring(ConfigTree& config, learner::NetworkSizes& network) {
+void read_wiring(ConfigTree& config, TrainConfig& c) {
   const auto text = [&](const std::string& key) {
     require_key(config, key);
     return config.text(key, "");
   };
+  learner::NetworkSizes& network = c.learner.network;
   network.encoder = learner::parse_encoder("network.encoder", text("network.encoder"));
   network.actor_sees = learner::parse_actor_inputs("network.actor", text("network.actor"));
-  if (const std::string teacher = text("imitation.teacher"); !teacher.empty()) {
-    throw InputError(fmt::format(
-        "imitation.teacher: found '{}', expected none: the trainer does not imitate yet", teacher));
-  }
+  c.teacher = text("imitation.teacher");
+  if (c.teacher.empty()) return;
+  c.learner.loss.policy_weight = 0.0;
+  c.learner.loss.imitation_weight = c.learner.loss.encoding_weight = 1.0;
 }
 
 // What one table asks of another.
@@ -149,7 +150,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   c.window = read_integer(config, "learner.window", 1, 4096);
   c.learner = read_learner_config(config);
   c.task = read_task_config(config);
-  read_wiring(config, c.learner.network);
+  read_wiring(config, c);
   check_blocks(c);
   config.reject_unknown();
   c.effective = config.effective();

@@ -62,6 +62,17 @@ std::map<std::string, std::string> settings_in(std::string_view effective) {
   return settings;
 }
 
+learner::RolloutShape rollout_shape(const TrainConfig& config) {
+  learner::RolloutShape shape;
+  shape.envs = config.run.envs;
+  shape.steps = config.window;
+  shape.privileged = Task::privileged_size();
+  const bool imitates = !config.teacher.empty();
+  shape.insight = imitates || config.learner.network.see_insight() ? learner::kInsightSize : 0;
+  shape.teacher = imitates ? config.learner.network.hidden : 0;
+  return shape;
+}
+
 }  // namespace
 
 Training::Training(const TrainConfig& config, const sim::Robot& robot,
@@ -71,10 +82,7 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       options_(options),
       pool_(options.threads),
       task_(config.task, robot, {config.run.envs, config.learner.block_envs}, options.seed),
-      learner_(config.learner,
-               {config.run.envs, config.window, task_.privileged_size(),
-                config.learner.network.see_insight() ? learner::kInsightSize : 0},
-               options.seed, pool_, Task::symmetry()),
+      learner_(config.learner, rollout_shape(config), options.seed, pool_, Task::symmetry()),
       gate_(config.gate, config.battery.tracked_error, config.run.transitions,
             config.run.settle_share, config.task.reward.prior_start_transitions),
       checkpoint_path_(checkpoint_path(options.out)),
@@ -82,6 +90,7 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       robot_hash_(hash_of(robot)),
       builds_(build_commit()),
       processors_(processor_name()) {
+  if (!config.teacher.empty()) imitate(config.teacher);
   if (config.battery.every_updates > 0) {
     battery_.emplace(config.battery, config.task, config.learner.block_envs, robot,
                      learner_.layout(), pool_);
@@ -346,6 +355,8 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   r.kl = update.kl;
   r.action_std = update.action_std;
   r.asymmetry = update.asymmetry;
+  r.imitation_rms = update.imitation_rms;
+  r.encoding_rms = update.encoding_rms;
   r.explained_variance = update.explained_variance;
   return r;
 }

@@ -57,6 +57,7 @@ class Training {
   void run(const std::atomic<bool>& interrupted);
 
  private:
+  void imitate(const std::string& teacher_file);
   void save();
   void restore(const learner::Checkpoint& checkpoint);
   void require_same_settings(const learner::Checkpoint& checkpoint) const;

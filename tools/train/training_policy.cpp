@@ -13,35 +13,35 @@
 namespace sandrunner::train {
 namespace {
 
-/// Throws InputError unless weights of `policy` mean in a file with the scales of `ours` what they
+/// Throws InputError unless weights of `network` mean in a file with the scales of `ours` what they
 /// mean in their own. Nominal positions may differ: angles are shown as what they are off them.
-void require_scales(const PolicyFile& policy, const PolicyFile& ours) {
+void require_scales(const PolicySpec& spec, const ObservationScales& network,
+                    const PolicySpec& our_spec, const ObservationScales& ours) {
   const auto check = [&](const std::string& what, double is, double expected) {
     if (std::fabs(is - expected) <= 1e-4 * std::fabs(expected)) return;
     throw InputError(
         fmt::format("policy '{}': its {} is {:.6g}, expected {:.6g}, with which this trainer shows "
                     "and takes it",
-                    policy.spec.name, what, is, expected));
+                    spec.name, what, is, expected));
   };
-  const NetworkParameters &a = policy.parameters, &b = ours.parameters;
   constexpr std::size_t kAngles = 9;
   for (std::size_t i = 0; i < kObservationSize; ++i) {
-    check(fmt::format("variance of observation {}", i), a.observation_variance[i],
-          b.observation_variance[i]);
+    check(fmt::format("variance of observation {}", i), network.variance[i], ours.variance[i]);
     if (i >= kAngles && i < kAngles + kNumJoints) continue;
-    check(fmt::format("mean of observation {}", i), a.observation_mean[i], b.observation_mean[i]);
+    check(fmt::format("mean of observation {}", i), network.mean[i], ours.mean[i]);
   }
-  check("clip of observations", a.observation_clip, b.observation_clip);
-  check("action scale", policy.spec.action_scale_rad, ours.spec.action_scale_rad);
-  check("action clip", policy.spec.action_clip, ours.spec.action_clip);
+  check("clip of observations", network.clip, ours.clip);
+  check("action scale", spec.action_scale_rad, our_spec.action_scale_rad);
+  check("action clip", spec.action_clip, our_spec.action_clip);
 }
 
-std::vector<float> observation_variance(const InputScales& scales) {
-  std::vector<float> variance;
+/// As files have them.
+ObservationScales observation_scales(const InputScales& scales) {
+  ObservationScales file{{scales.mean.begin(), scales.mean.end()}, {}, scales.clip};
   for (const float d : scales.inverse_deviation) {
-    variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
+    file.variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
   }
-  return variance;
+  return file;
 }
 
 }  // namespace
@@ -54,7 +54,9 @@ void Training::go_on_from(PolicyFile policy) {
         "policy file",
         learner::wiring_text(network.encoder, network.actor_sees), learner::wiring_text({}, {})));
   }
-  require_scales(policy, policy_file(policy_spec(snapshot()), learner_.averaged()));
+  const NetworkParameters& p = policy.parameters;
+  require_scales(policy.spec, {p.observation_mean, p.observation_variance, p.observation_clip},
+                 policy_spec(snapshot()), observation_scales(task_.scales()));
   for (std::vector<float>* rows :
        {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
     const std::vector<float> joints = *rows;
@@ -67,6 +69,16 @@ void Training::go_on_from(PolicyFile policy) {
   }
   learner_.set_policy(tensors);
   origin_ = fmt::format("sandrunner-train, from the weights of policy '{}'", policy.spec.name);
+}
+
+// The policy imitates the networks of this file.
+void Training::imitate(const std::string& teacher_file) {
+  const TaskNetwork teacher = read_task_network(teacher_file, config_.task.policy.mode_gain);
+  require_scales(teacher.spec, teacher.scales, policy_spec(snapshot()),
+                 observation_scales(task_.scales()));
+  learner_.set_teacher(teacher.layout, teacher.parameters);
+  origin_ = fmt::format("sandrunner-train, imitating '{}' of {} transitions", teacher.spec.name,
+                        teacher.spec.provenance.at("transitions"));
 }
 
 PolicySpec Training::policy_spec(const Snapshot& snapshot) const {
@@ -110,11 +122,11 @@ PolicySpec Training::policy_spec(const Snapshot& snapshot) const {
 PolicyFile Training::policy_file(PolicySpec spec, const std::vector<float>& parameters) const {
   PolicyFile file;
   file.spec = std::move(spec);
-  const InputScales& scales = task_.scales();
   NetworkParameters& p = file.parameters;
+  const ObservationScales scales = observation_scales(task_.scales());
   p.observation_clip = scales.clip;
-  p.observation_mean.assign(scales.mean.begin(), scales.mean.end());
-  p.observation_variance = observation_variance(scales);
+  p.observation_mean = scales.mean;
+  p.observation_variance = scales.variance;
   const auto tensors = learner::policy_tensors(learner_.layout(), parameters);
   for (const NamedTensor& to : tensors_of(p)) {
     const auto from = std::ranges::find(tensors, to.name, &learner::PolicyTensor::name);
@@ -134,10 +146,7 @@ StudyModelFile Training::study_model(PolicySpec spec, const std::vector<float>& 
   StudyModelFile file;
   file.spec = std::move(spec);
   file.sizes = config_.learner.network;
-  const InputScales& scales = task_.scales();
-  file.observation_clip = scales.clip;
-  file.observation_mean.assign(scales.mean.begin(), scales.mean.end());
-  file.observation_variance = observation_variance(scales);
+  file.scales = observation_scales(task_.scales());
   set_trained(parameters, config_.task.policy.mode_gain, file);
   return file;
 }

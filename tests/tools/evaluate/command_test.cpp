@@ -24,9 +24,9 @@ class EvaluateCommandTest : public ProgramTest {
     file.spec.provenance = {
         {"config", "network.encoder = \"lstm\"\nnetwork.actor = \"" + actor + "\"\n"}};
     file.sizes.actor_sees = learner::parse_actor_inputs("actor", actor);
-    file.observation_mean = policy.parameters.observation_mean;
-    file.observation_variance = policy.parameters.observation_variance;
-    file.observation_clip = policy.parameters.observation_clip;
+    file.scales.mean = policy.parameters.observation_mean;
+    file.scales.variance = policy.parameters.observation_variance;
+    file.scales.clip = policy.parameters.observation_clip;
     const learner::ParameterLayout layout = train::model_layout(file.sizes);
     file.parameters = learner::initial_parameters(layout, 1, 0.5);
     train::write_study_model(folder_.path(name), file);

@@ -23,6 +23,7 @@ struct RolloutShape {
   int steps = 32;      ///< of a window; the length of back-propagation through time
   int privileged = 0;  ///< size of the critic's input
   int insight = 0;     ///< kInsightSize, if a network sees it
+  int teacher = 0;     ///< size of the encoding of the teacher that the policy imitates, if any
 };
 
 /// How a step left the episode. A terminated episode has no future reward; after a timeout the
@@ -79,6 +80,8 @@ struct BasicRollout {
         action(kNumJoints, shape.envs, shape.steps),
         mean(kNumJoints, shape.envs, shape.steps),
         symmetric_mean(kNumJoints, shape.envs, shape.steps),
+        teacher_mean(shape.teacher > 0 ? kNumJoints : 0, shape.envs, shape.steps),
+        teacher_encoding(shape.teacher, shape.envs, shape.steps),
         log_prob(shape.envs, shape.steps),
         value(shape.envs, shape.steps + 1),
         timeout_value(shape.envs, shape.steps),
@@ -112,6 +115,9 @@ struct BasicRollout {
   /// `mean` without what has long been different in the mirror (LearnerConfig::symmetry_steps):
   /// `mean` itself, if the policy is symmetric. Zero without a symmetry.
   VectorField<Scalar, kNumJoints> symmetric_mean;
+  /// What the teacher answers, and its encoding; no rows without one.
+  VectorField<Scalar, Eigen::Dynamic> teacher_mean;
+  VectorField<Scalar, Eigen::Dynamic> teacher_encoding;
   ValueField<Scalar> log_prob;
   ValueField<Scalar> value;
   /// Only for End::kTimeout: the critic's value of `final_privileged`. Written before the update.

@@ -16,6 +16,8 @@ void LossSums::add(const LossSums& other) {
   kl += other.kl;
   clipped += other.clipped;
   asymmetry += other.asymmetry;
+  imitation += other.imitation;
+  encoding += other.encoding;
   samples += other.samples;
 }
 
@@ -174,6 +176,9 @@ LossSums BlockPass<Scalar>::loss_and_gradient(const Weights<Scalar>& weights,
     run_heads(weights, rollout, t, steps, first_env, t);
     differentiate_loss(weights, rollout, t, steps, first_env, config, scale, samples, sums,
                        gradient);
+    if (rollout.shape.teacher > 0) {
+      differentiate_imitation(rollout, t, steps, first_env, config, samples, sums);
+    }
     critic_.backward(weights.critic(), critic_input_.leftCols(n), gradient);
     actor_.backward(weights.actor(), actor_input_.leftCols(n), gradient);
     estimator_.backward(weights.estimator(), encoding().middleCols(t * envs_, n), gradient);
@@ -199,6 +204,7 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
   const int n = steps * envs_;
   const Scalar inverse_samples = Scalar(1) / static_cast<Scalar>(samples);
   const auto clip = static_cast<Scalar>(config.clip);
+  const auto policy_factor = static_cast<Scalar>(config.policy_weight) * inverse_samples;
   const auto value_factor = static_cast<Scalar>(config.value_weight) * inverse_samples;
   const auto estimate_factor =
       static_cast<Scalar>(config.estimate_weight * 2.0 / kEstimateSize) * inverse_samples;
@@ -252,7 +258,7 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
     sums.clipped += is_clipped ? 1.0 : 0.0;
     sums.kl += static_cast<double>(kl_constant + static_cast<Scalar>(0.5) * shift_square);
     Scalar asymmetry = 0;
-    const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * inverse_samples;
+    const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * policy_factor;
     for (int k = 0; k < kActionSize; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const Scalar lopsided = (mean(k) - rollout.symmetric_mean(step)(k, env)) * inverse_old_std[i];
@@ -282,6 +288,27 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
   for (std::size_t k = 0; k < kActionSize; ++k) {
     gradient[layout_.log_std() + static_cast<std::ptrdiff_t>(k)] +=
         log_std_gradient[k] - entropy_gradient;
+  }
+}
+
+template <typename Scalar>
+void BlockPass<Scalar>::differentiate_imitation(const BasicRollout<Scalar>& rollout, int t,
+                                                int steps, int first_env, const LossConfig& config,
+                                                int samples, LossSums& sums) {
+  const int hidden = layout_.hidden();
+  const auto mean_factor =
+      static_cast<Scalar>(config.imitation_weight * 2.0 / kActionSize / samples);
+  const auto encoding_factor = static_cast<Scalar>(config.encoding_weight * 2.0 / hidden / samples);
+  for (int k = 0; k < steps; ++k) {
+    const Matrix<Scalar> off = actor_.output(steps * envs_).middleCols(k * envs_, envs_) -
+                               rollout.teacher_mean(t + k).middleCols(first_env, envs_);
+    const Matrix<Scalar> encoding_off =
+        encoding().middleCols((t + k) * envs_, envs_) -
+        rollout.teacher_encoding(t + k).middleCols(first_env, envs_);
+    sums.imitation += static_cast<double>(off.squaredNorm()) / kActionSize;
+    sums.encoding += static_cast<double>(encoding_off.squaredNorm()) / hidden;
+    actor_.output_gradient(steps * envs_).middleCols(k * envs_, envs_) += mean_factor * off;
+    output_gradient_.middleCols((t + k) * envs_, envs_) += encoding_factor * encoding_off;
   }
 }
 

@@ -17,9 +17,11 @@
 namespace sandrunner::learner {
 
 /// loss = mean over samples of
-///   -min(ratio A, clip(ratio, 1 - clip, 1 + clip) A) + value_weight (V - R)^2 / 2
+///   -policy_weight min(ratio A, clip(ratio, 1 - clip, 1 + clip) A) + value_weight (V - R)^2 / 2
 ///   + estimate_weight mean_8((estimate - target)^2) - entropy_weight entropy
 ///   + symmetry_weight |(mean - symmetric mean) / std of the policy that acted|^2 / 2
+///   + imitation_weight |mean - teacher's mean|^2 / 12
+///   + encoding_weight |h - teacher's h|^2 / size of h
 /// with the symmetric mean as Learner makes it: the mean of the policy that acted less what it
 /// differs from its mirror image by, averaged over LearnerConfig::symmetry_steps.
 struct LossConfig {
@@ -28,6 +30,9 @@ struct LossConfig {
   double estimate_weight = 1.0;
   double entropy_weight = 0.0;
   double symmetry_weight = 0.0;  ///< only with a symmetry
+  double policy_weight = 1.0;
+  double imitation_weight = 0.0;  ///< only with a teacher, as the next
+  double encoding_weight = 0.0;
 };
 
 /// A = (advantage - mean) inverse_std.
@@ -44,6 +49,8 @@ struct LossSums {
   double kl = 0.0;  ///< of the new policy from the one that acted, exact
   double clipped = 0.0;
   double asymmetry = 0.0;  ///< |(mean - symmetric mean) / std|^2 / 2
+  double imitation = 0.0;  ///< |mean - teacher's mean|^2 / 12
+  double encoding = 0.0;   ///< |h - teacher's h|^2 / size of h
   double samples = 0.0;
 
   void add(const LossSums& other);
@@ -109,6 +116,11 @@ class BlockPass {
                           int t, int steps, int first_env, const LossConfig& config,
                           const AdvantageScale& scale, int samples, LossSums& sums,
                           Scalar* gradient);
+
+  /// With a teacher, after `differentiate_loss`: adds to the gradients of the actor's output and of
+  /// the encoding.
+  void differentiate_imitation(const BasicRollout<Scalar>& rollout, int t, int steps, int first_env,
+                               const LossConfig& config, int samples, LossSums& sums);
 
   ParameterLayout layout_;
   int steps_;

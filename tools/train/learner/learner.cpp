@@ -95,6 +95,7 @@ void Learner::act_block(int block, int t, int worker) {
   acting_[static_cast<std::size_t>(worker)].act(weights_, rollout_, t, first,
                                                 memory_.middleCols(first, config_.block_envs));
   if (symmetry_) act_in_mirror(block, t, worker);
+  if (teacher_) ask_teacher(block, t, worker);
 
   const std::uint64_t step = counters_.steps + static_cast<std::uint64_t>(t);
   const Eigen::Array<float, kActionSize, 1> std_dev = rollout_.log_std.array().exp();
@@ -114,6 +115,46 @@ void Learner::act_block(int block, int t, int worker) {
     }
     rollout_.log_prob(t, env) = log_norm - 0.5f * square;
   }
+}
+
+void Learner::set_teacher(const ParameterLayout& layout, const std::vector<float>& parameters,
+                          const Kernels<float>& kernels) {
+  const auto widths = [](const ParameterLayout& l) {
+    std::vector<int> all = {l.hidden(), l.actor_inputs()};
+    for (const LayerView& layer : l.actor()) all.push_back(layer.outputs);
+    return join(all);
+  };
+  if (widths(layout) != widths(layout_)) {
+    throw InputError(fmt::format("teacher: found encoding and actor of sizes {}, expected {}",
+                                 widths(layout), widths(layout_)));
+  }
+  Teacher teacher{Weights<float>(layout),
+                  {},
+                  Matrix<float>::Zero(layout.memory(), rollout_.shape.envs),
+                  fnv1a({reinterpret_cast<const char*>(parameters.data()), 4 * parameters.size()})};
+  teacher.weights.set(parameters.data());
+  for (int worker = 0; worker < pool_.threads(); ++worker) {
+    teacher.passes.emplace_back(layout, 1, config_.block_envs, 1, kernels);
+  }
+  teacher_ = std::move(teacher);
+  for (std::size_t i = 0; i < layout_.actor().size(); ++i) {
+    const LayerView &from = layout.actor()[i], &to = layout_.actor()[i];
+    std::copy_n(parameters.begin() + from.weight, std::ptrdiff_t{from.inputs} * from.outputs,
+                parameters_.begin() + to.weight);
+    std::copy_n(parameters.begin() + from.bias, from.outputs, parameters_.begin() + to.bias);
+  }
+  averaged_ = parameters_;
+  begin_window();
+}
+
+void Learner::ask_teacher(int block, int t, int worker) {
+  const int first = block * config_.block_envs, envs = config_.block_envs;
+  BlockPass<float>& pass = teacher_->passes[static_cast<std::size_t>(worker)];
+  pass.answer(teacher_->weights, rollout_.observation(t).middleCols(first, envs),
+              rollout_.insight(t).middleCols(first, envs), &rollout_.reset(t, first),
+              teacher_->memory.middleCols(first, envs),
+              rollout_.teacher_mean(t).middleCols(first, envs));
+  rollout_.teacher_encoding(t).middleCols(first, envs) = pass.encoding();
 }
 
 void Learner::act_in_mirror(int block, int t, int worker) {
@@ -245,7 +286,9 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
 
   const double estimate_squares =
       std::accumulate(total.estimate_square.begin(), total.estimate_square.end(), 0.0);
-  if (!std::isfinite(norm + total.policy + total.value + estimate_squares + total.kl)) return false;
+  if (!std::isfinite(norm + total.policy + total.value + estimate_squares + total.kl +
+                     total.imitation))
+    return false;
   const double kl = total.kl / total.samples;
   for (std::size_t k = 0; k < kEstimateSize; ++k) {
     stats.estimate_rms[k] += total.estimate_square[k] / total.samples;
@@ -253,6 +296,8 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   stats.kl += kl;
   stats.clip_fraction += total.clipped / total.samples;
   if (symmetry_) stats.asymmetry += 2.0 * total.asymmetry / total.samples / kActionSize;
+  stats.imitation_rms += total.imitation / total.samples;
+  stats.encoding_rms += total.encoding / total.samples;
 
   counters_.learning_rate = adapted_learning_rate(counters_.learning_rate, kl, config_);
   const double scale = norm > config_.max_gradient_norm ? config_.max_gradient_norm / norm : 1.0;
@@ -302,6 +347,8 @@ UpdateStats Learner::update() {
   stats.kl /= done;
   stats.clip_fraction /= done;
   stats.asymmetry = std::sqrt(stats.asymmetry / done);
+  stats.imitation_rms = std::sqrt(stats.imitation_rms / done);
+  stats.encoding_rms = std::sqrt(stats.encoding_rms / done);
   stats.learning_rate = counters_.learning_rate;
 
   const int last = rollout_.shape.steps;
@@ -353,6 +400,11 @@ void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.put("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
   checkpoint.put("learner.mirror_memory", mirror_memory_.data(),
                  static_cast<std::size_t>(mirror_memory_.size()));
+  if (teacher_) {
+    checkpoint.put("learner.teacher", &teacher_->hash, 1);
+    checkpoint.put("learner.teacher_memory", teacher_->memory.data(),
+                   static_cast<std::size_t>(teacher_->memory.size()));
+  }
   checkpoint.put("learner.asymmetry", asymmetry_.data(),
                  static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.put("learner.reset", &rollout_.reset(0, 0),
@@ -381,6 +433,16 @@ void Learner::load(const Checkpoint& checkpoint) {
   checkpoint.get("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
   checkpoint.get("learner.mirror_memory", mirror_memory_.data(),
                  static_cast<std::size_t>(mirror_memory_.size()));
+  if (teacher_) {
+    std::uint64_t hash = 0;
+    checkpoint.get("learner.teacher", &hash, 1);
+    if (hash != teacher_->hash) {
+      throw InputError(fmt::format(
+          "{}: found another teacher than this; continue with the same one", checkpoint.source));
+    }
+    checkpoint.get("learner.teacher_memory", teacher_->memory.data(),
+                   static_cast<std::size_t>(teacher_->memory.size()));
+  }
   checkpoint.get("learner.asymmetry", asymmetry_.data(),
                  static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.get("learner.reset", &rollout_.reset(0, 0),

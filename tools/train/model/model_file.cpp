@@ -54,8 +54,8 @@ std::vector<std::size_t> shape_of(const learner::TensorView& view) {
 std::vector<NamedTensor> other_tensors(StudyModelFile& file, std::vector<float>& estimate_mean,
                                        std::vector<float>& estimate_variance) {
   std::vector<NamedTensor> tensors = {
-      {"observation.mean", {kObservationSize}, &file.observation_mean},
-      {"observation.variance", {kObservationSize}, &file.observation_variance},
+      {"observation.mean", {kObservationSize}, &file.scales.mean},
+      {"observation.variance", {kObservationSize}, &file.scales.variance},
       {"estimate.mean", {kEstimateSize}, &estimate_mean},
       {"estimate.variance", {kEstimateSize}, &estimate_variance},
       {"golden.observation", {kGoldenSteps, kObservationSize}, &file.golden.observation},
@@ -107,9 +107,9 @@ void make_golden(StudyModelFile& file) {
   ModelNetwork<double> network(file);
   for (int k = 0; k < kGoldenSteps; ++k) {
     for (std::size_t i = 0; i < kObservationSize; ++i) {
-      const double deviation = std::sqrt(static_cast<double>(file.observation_variance[i]));
+      const double deviation = std::sqrt(static_cast<double>(file.scales.variance[i]));
       file.golden.observation.push_back(
-          static_cast<float>(file.observation_mean[i] + deviation * uniform()));
+          static_cast<float>(file.scales.mean[i] + deviation * uniform()));
     }
     for (int i = 0; file.sizes.see_insight() && i < kInsightSize; ++i) {
       file.golden_insight.push_back(static_cast<float>(uniform()));
@@ -150,7 +150,7 @@ void check_golden(const std::string& path, const StudyModelFile& file) {
 
 StudyModelFile decode(const std::string& path, TensorFile content) {
   StudyModelFile file;
-  file.spec = read_spec(path, kFormat, content.metadata, file.observation_clip);
+  file.spec = read_spec(path, kFormat, content.metadata, file.scales.clip);
   file.sizes = sizes_of(path, file.spec);
   const ParameterLayout layout = model_layout(file.sizes);
   file.parameters.assign(static_cast<std::size_t>(layout.size()), 0.0f);
@@ -166,7 +166,7 @@ StudyModelFile decode(const std::string& path, TensorFile content) {
   if (!content.tensors.empty()) {
     fail_file(path, "unknown tensor '{}'", printable(content.tensors.begin()->first));
   }
-  require_variance(path, "observation.variance", file.observation_variance);
+  require_variance(path, "observation.variance", file.scales.variance);
   require_variance(path, "estimate.variance", estimate_variance);
   std::ranges::copy(estimate_mean, file.spec.estimate_mean.begin());
   std::ranges::copy(estimate_variance, file.spec.estimate_variance.begin());
@@ -210,7 +210,7 @@ void set_trained(const std::vector<float>& trained, const std::array<double, kNu
 void write_study_model(const std::string& path, StudyModelFile file) {
   make_golden(file);
   TensorFile content;
-  content.metadata = write_spec(kFormat, file.spec, file.observation_clip);
+  content.metadata = write_spec(kFormat, file.spec, file.scales.clip);
   const ParameterLayout layout = model_layout(file.sizes);
   for (const learner::TensorView& view : layout.tensors()) {
     if (view.offset >= end_of_policy(layout)) continue;
@@ -251,14 +251,18 @@ TaskNetwork read_task_network(const std::string& path,
   };
   if (is_study_model(path)) {
     StudyModelFile file = read_study_model(path);
-    return into_modes({file.spec, model_layout(file.sizes), file.parameters});
+    return into_modes({file.spec, file.scales, model_layout(file.sizes), file.parameters});
   }
   PolicyFile policy = read_policy_file(path);
   std::vector<learner::PolicyTensor> tensors;
   for (const NamedTensor& tensor : tensors_of(policy.parameters)) {
     tensors.push_back({tensor.name, {}, *tensor.values});
   }
-  TaskNetwork network{policy.spec, model_layout({}), {}};
+  const NetworkParameters& p = policy.parameters;
+  TaskNetwork network{policy.spec,
+                      {p.observation_mean, p.observation_variance, p.observation_clip},
+                      model_layout({}),
+                      {}};
   network.parameters.assign(static_cast<std::size_t>(network.layout.size()), 0.0f);
   set_policy_tensors(network.layout, tensors, network.parameters);
   return into_modes(std::move(network));

@@ -14,12 +14,17 @@
 
 namespace sandrunner::train {
 
+/// How observations enter: (x - mean) / sqrt(variance + 1e-8), limited to +-clip.
+struct ObservationScales {
+  std::vector<float> mean, variance;
+  float clip = 0.0f;
+};
+
 /// Content of a study model.
 struct StudyModelFile {
   PolicySpec spec;
   learner::NetworkSizes sizes;  ///< and the wiring
-  std::vector<float> observation_mean, observation_variance;
-  float observation_clip = 0.0f;
+  ObservationScales scales;
   std::vector<float> parameters;  ///< of model_layout(sizes); the actor answers in joints
   GoldenExample golden;
   std::vector<float> golden_insight;  ///< (kGoldenSteps, kInsightSize), if a network sees it
@@ -45,6 +50,7 @@ bool is_study_model(const std::string& path);
 /// A network as a Task runs it: it answers in modes.
 struct TaskNetwork {
   PolicySpec spec;
+  ObservationScales scales;
   learner::ParameterLayout layout;
   std::vector<float> parameters;
 };

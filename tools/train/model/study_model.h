@@ -22,15 +22,15 @@ class ModelNetwork {
       : layout_(model_layout(file.sizes)),
         weights_(layout_),
         pass_(layout_, 1, 1, 1),
-        mean_(file.observation_mean.begin(), file.observation_mean.end()),
-        clip_(static_cast<Scalar>(file.observation_clip)),
+        mean_(file.scales.mean.begin(), file.scales.mean.end()),
+        clip_(static_cast<Scalar>(file.scales.clip)),
         observation_(kObservationSize, 1),
         insight_(learner::kInsightSize, 1),
         action_(kNumJoints, 1),
         memory_(learner::Matrix<Scalar>::Zero(layout_.memory(), 1)) {
     const std::vector<Scalar> parameters(file.parameters.begin(), file.parameters.end());
     weights_.set(parameters.data());
-    for (const float variance : file.observation_variance) {
+    for (const float variance : file.scales.variance) {
       inverse_deviation_.push_back(1 / std::sqrt(static_cast<Scalar>(variance) + Scalar(1e-8)));
     }
   }

@@ -19,7 +19,7 @@ constexpr int kFirstEnv = 2;
 constexpr int kChunkSteps = 2;
 const RolloutShape kShape{5, 5, 9};
 constexpr int kSamples = kEnvs * 5;
-const LossConfig kLoss{0.2, 0.7, 1.3, 0.01, 0.3};
+const LossConfig kLoss{0.2, 0.7, 1.3, 0.01, 0.3, 0.8, 0.6, 0.4};
 const AdvantageScale kScale{0.1, 1.4};
 
 NetworkSizes sizes() { return {5, {7, 6}, {8, 7}, {6, 5}}; }
@@ -27,6 +27,7 @@ NetworkSizes sizes() { return {5, {7, 6}, {8, 7}, {6, 5}}; }
 RolloutShape shape_for(const NetworkSizes& sizes) {
   RolloutShape shape = kShape;
   shape.insight = sizes.see_insight() ? kInsightSize : 0;
+  shape.teacher = sizes.hidden;
   return shape;
 }
 
@@ -53,8 +54,9 @@ class Gradients {
     if (sums_out != nullptr) *sums_out = sums;
     double estimate = 0.0;
     for (const double square : sums.estimate_square) estimate += square / kEstimateSize;
-    return (sums.policy + config.value_weight * sums.value + config.estimate_weight * estimate +
-            config.symmetry_weight * sums.asymmetry) /
+    return (config.policy_weight * sums.policy + config.value_weight * sums.value +
+            config.estimate_weight * estimate + config.symmetry_weight * sums.asymmetry +
+            config.imitation_weight * sums.imitation + config.encoding_weight * sums.encoding) /
                kSamples -
            config.entropy_weight * entropy(parameters_.data() + layout_.log_std());
   }
@@ -197,8 +199,9 @@ TEST_F(GradientTest, FloatMatchesDouble) {
   BlockPass<float> pass(layout_, kShape.steps, kEnvs, kChunkSteps);
   Weights<float> weights(layout_);
   weights.set(parameters.data());
-  pass.loss_and_gradient(weights, random_rollout<float>(kShape, layout_.memory()), kFirstEnv, kLoss,
-                         kScale, kSamples, actual.data());
+  pass.loss_and_gradient(weights,
+                         random_rollout<float>(shape_for(layout_.sizes()), layout_.memory()),
+                         kFirstEnv, kLoss, kScale, kSamples, actual.data());
   for (const TensorView& tensor : layout_.tensors()) {
     double error_square = 0.0;
     double norm_square = 0.0;

@@ -49,6 +49,8 @@ BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int memory) {
     fill(rollout.mean(t), 0.05);
     fill(rollout.symmetric_mean(t), 0.3);
     fill(rollout.insight(t), 1.0);
+    fill(rollout.teacher_mean(t), 0.3);
+    fill(rollout.teacher_encoding(t), 0.3);
     for (int env = 0; env < shape.envs; ++env) {
       double log_prob = -0.5 * kActionSize * std::log(2.0 * std::numbers::pi);
       for (int k = 0; k < kActionSize; ++k) {

@@ -40,10 +40,10 @@ StudyModelFile random_file(const Wiring& wiring, std::vector<float>* trained = n
   file.sizes.encoder = learner::parse_encoder("encoder", wiring.encoder);
   file.sizes.actor_sees = learner::parse_actor_inputs("actor", wiring.actor);
   for (int i = 0; i < kObservationSize; ++i) {
-    file.observation_mean.push_back(0.1f * static_cast<float>(i % 3));
-    file.observation_variance.push_back(0.5f + 0.1f * static_cast<float>(i % 4));
+    file.scales.mean.push_back(0.1f * static_cast<float>(i % 3));
+    file.scales.variance.push_back(0.5f + 0.1f * static_cast<float>(i % 4));
   }
-  file.observation_clip = 6.0f;
+  file.scales.clip = 6.0f;
   const learner::ParameterLayout layout(file.sizes, 80);
   const std::vector<float> parameters = learner::initial_parameters(layout, 5, 0.5);
   if (trained != nullptr) *trained = parameters;
@@ -73,7 +73,7 @@ TEST_P(StudyModelTest, FileHoldsWeightsAndWiring) {
   EXPECT_EQ(read.parameters, file.parameters);
   EXPECT_EQ(learner::wiring_text(read.sizes.encoder, read.sizes.actor_sees),
             learner::wiring_text(file.sizes.encoder, file.sizes.actor_sees));
-  EXPECT_EQ(read.observation_mean, file.observation_mean);
+  EXPECT_EQ(read.scales.mean, file.scales.mean);
 }
 
 TEST_P(StudyModelTest, ChangedWeightFailsTheGoldenRun) {
@@ -109,7 +109,7 @@ TEST_P(StudyModelTest, AnswersInJointsWhatTheTrainingAnswersInModes) {
     for (int i = 0; i < kObservationSize; ++i) {
       raw[i] = std::sin(static_cast<float>(7 * step + i));
       normalised(i, 0) =
-          (raw[i] - file.observation_mean[i]) / std::sqrt(file.observation_variance[i] + 1e-8f);
+          (raw[i] - file.scales.mean[i]) / std::sqrt(file.scales.variance[i] + 1e-8f);
     }
     for (std::size_t i = 0; i < insight.size(); ++i) insight[i] = raw[i];
     const learner::Matrix<float> seen =

@@ -167,7 +167,30 @@ TEST_F(TrainCommandTest, UnknownWiringIsRefused) {
   expect_refused("a", {"--set", "network.encoder=gru"}, "network.encoder: found 'gru', expected");
   expect_refused("a", {"--set", "network.actor=\"estimate, sight\""},
                  "network.actor: found 'sight', expected some of encoding, estimate");
-  expect_refused("a", {"--set", "imitation.teacher=teacher.safetensors"}, "imitation.teacher");
+  expect_refused("a", {"--set", "imitation.teacher=teacher.safetensors"}, "teacher.safetensors");
+}
+
+TEST_F(TrainCommandTest, AStudentThatIsKilledResumesToTheWeightsOfAnUninterruptedRun) {
+  const std::string actor = "network.actor=\"encoding, proprioception\"";
+  ASSERT_EQ(run("teacher", {"--set", actor, "--set", "network.encoder=insight"}), 0);
+  std::vector<std::string> words = {
+      "--set", actor, "--set",
+      "imitation.teacher=" + folder_.path("teacher") + "/best.safetensors"};
+  ASSERT_EQ(run("whole", words), 0);
+  words.insert(words.end(), kOften.begin(), kOften.end());
+  CheckpointWatch watch(folder_.path("killed"));
+  ChildProcess child(training("killed", words));
+  EXPECT_TRUE(watch.wait_for(2));
+  child.signal(SIGKILL);
+  EXPECT_EQ(child.wait().code, 128 + SIGKILL) << "the run was over before the kill";
+  words.emplace_back("--resume");
+  ASSERT_EQ(run("killed", words), 0);
+  const auto model = [&](const std::string& out) {
+    return train::read_study_model(folder_.path(out) + "/policy.safetensors");
+  };
+  EXPECT_EQ(model("killed").parameters, model("whole").parameters);
+  EXPECT_NE(model("whole").spec.provenance.at("origin").find("imitating 'raibo'"),
+            std::string::npos);
 }
 
 TEST_F(TrainCommandTest, AnotherWiringEndsInAStudyModelThatIsNoPolicy) {
