@@ -10,8 +10,8 @@ import pathlib
 import re
 import sys
 
-# From the bottom up. A folder may include those of the lines below its own, not its siblings; "drivers/drives/*" are
-# all folders in drivers/drives.
+# From the bottom up. A folder may include those of the lines below its own, not its siblings;
+# "drivers/drives/*" are all folders in drivers/drives.
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
