@@ -71,9 +71,9 @@ struct HardwareConfig {
 
 /// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu],
 /// [hardware.emergency_stop]. Drives are named by the joints of `robot`, each exactly once. Throws
-/// InputError: a joint without a drive or with two, two drives with one identifier, an unknown
-/// protocol or model, a rate that does not divide the control rate, a drive whose range is below
-/// the limits of `gate` (torque, speed, positions, gains).
+/// InputError for a joint without a drive or with two, for two drives with one identifier, and for
+/// an unknown protocol or model; for a rate that does not divide the control rate; for a drive
+/// whose range is below the limits of `gate` (torque, speed, positions, gains).
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
 /// The keys of these tables, for the reference.
@@ -86,8 +86,8 @@ void fit_gate_to(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 
 /// Adapts the drives to the gate's own settings, which are read after that. A drive whose commands
 /// have a torque limit gets the joint's and enforces it itself, even if this computer fails. Throws
-/// InputError for a time-out that is not longer than the stall that the gate tolerates (drives
-/// would switch off without a fault), and for a speed fault above the speed that replies can
+/// InputError for a time-out that is not longer than the stall that the gate tolerates, as drives
+/// would switch off without a fault. Also for a speed fault above the speed that replies can
 /// report.
 void fit_drives_to(const GateConfig& gate, HardwareConfig& hardware);
 

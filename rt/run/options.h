@@ -44,7 +44,7 @@ struct Options {
   std::string record_dir;                ///< folder for run.mcap; empty: no recording
 };
 
-/// Parses the command line. Returns nothing if all is said (--help, --version, which print to
+/// Parses the command line. Returns nothing after --help and --version (which print to
 /// standard output). Throws InputError.
 std::optional<Options> parse_options(int argc, const char* const* argv);
 
