@@ -7,6 +7,8 @@
 
 #include <csignal>
 #include <filesystem>
+#include <sstream>
+#include <string>
 #include <string_view>
 
 #include "policy/policy_file.h"
@@ -217,12 +219,25 @@ TEST_F(TrainCommandTest, ASeedBelowZeroIsRefused) {
 TEST_F(TrainCommandTest, LinesOfProgressAreShortAndExplained) {
   const Ended ended = run_process(training("a", {}));
   EXPECT_EQ(ended.code, 0);
-  EXPECT_LE(ended.out.find('\n'), 100u) << ended.out;
+  std::istringstream lines(ended.out);
+  std::string hint, progress;
+  std::getline(lines, hint);
+  std::getline(lines, progress);
+  EXPECT_NE(hint.find("--explain"), std::string::npos) << ended.out;
+  EXPECT_LE(progress.size(), 100u) << ended.out;
   const Ended explained = run_process({SANDRUNNER_TRAIN_PROGRAM, "--explain"});
   EXPECT_EQ(explained.code, 0);
   for (const char* word : {"k/s", "Hz", "trot", "alive", "error", "cost", "fast", "late", "min"}) {
     EXPECT_NE(explained.out.find(word), std::string::npos) << word;
   }
+}
+
+TEST_F(TrainCommandTest, TheLastLineSaysHowToRunThePolicy) {
+  const Ended ended = run_process(training("a", {}));
+  const auto found = ended.out.find("run it with sandrunner --policy ");
+  ASSERT_NE(found, std::string::npos) << ended.out;
+  const auto path = ended.out.rfind(' ') + 1;
+  EXPECT_TRUE(std::filesystem::exists(ended.out.substr(path, ended.out.size() - path - 1)));
 }
 
 TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
