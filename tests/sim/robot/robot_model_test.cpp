@@ -466,6 +466,45 @@ TEST(RobotModelTest, APoseIsThreeNumbersOrTwelve) {
   }
 }
 
+// Figures of robots/go2_description of github.com/unitreerobotics/unitree_ros.
+TEST(RobotModelTest, Go2HasThePublishedFigures) {
+  const Robot robot = load_robot("go2");
+  const RobotModel<double>& m = robot.model;
+  EXPECT_EQ(robot.description.name, "go2");
+  EXPECT_NEAR(m.mass(), 15.019, 1e-9);
+  EXPECT_EQ(m.foot_radius_m, 0.022);
+  EXPECT_NEAR(robot.nominal_height_m, 0.334, 5e-4);
+  EXPECT_TRUE(robot.obeys_torque_speed_line);
+  for (int l = 0; l < kNumLegs; ++l) {
+    const LegModel<double>& leg = m.legs[l];
+    const double front = l < 2 ? 1.0 : -1.0, left = l % 2 == 0 ? 1.0 : -1.0;
+    EXPECT_EQ(leg.haa.x, front * 0.1934);
+    EXPECT_EQ(leg.haa.y, left * 0.0465);
+    EXPECT_EQ(leg.hfe.y, left * 0.0955);
+    EXPECT_EQ(leg.kfe.z, -0.213);
+    EXPECT_EQ(leg.foot.z, -0.213);
+    EXPECT_NEAR(leg.hip.mass + leg.thigh.mass + leg.shank.mass, 2.024, 1e-12);
+    EXPECT_LT(front * leg.hip.com.x, 0.0);
+    EXPECT_GT(left * leg.hip.com.y, 0.0);
+    EXPECT_LT(left * leg.thigh.com.y, 0.0);
+    const int haa = kJointsPerLeg * l, kfe = haa + 2;
+    EXPECT_EQ(m.torque_limit_nm[haa], 23.7);
+    EXPECT_EQ(m.torque_limit_nm[kfe], 45.43);
+    EXPECT_EQ(m.speed_limit_radps[haa], 30.1);
+    EXPECT_EQ(m.speed_limit_radps[kfe], 15.7);
+    EXPECT_EQ(m.lower_rad[haa + 1], front > 0.0 ? -1.5708 : -0.5236);
+    EXPECT_EQ(m.lower_rad[kfe], -2.7227);
+    EXPECT_NEAR(m.rotor_inertia[haa], 1.11842e-4 * 6.33 * 6.33, 1e-5);
+    EXPECT_NEAR(m.rotor_inertia[kfe], 1.11842e-4 * 12.13 * 12.13, 1e-5);
+    EXPECT_EQ(robot.lying_rad[haa], -0.3 * left);  // as the robot lies when it is switched on
+    // The knee is the hip's drive behind a gear of 1.917.
+    const TorqueSpeedLine& line = robot.torque_speed_line;
+    EXPECT_NEAR(line.stall_torque_nm[2] / line.stall_torque_nm[0], 1.917, 2e-3);
+    EXPECT_NEAR(line.no_load_speed_radps[0] / line.no_load_speed_radps[2], 1.917, 2e-3);
+    EXPECT_NEAR(robot.motor_constant_nmpsqrtw[2] / robot.motor_constant_nmpsqrtw[0], 1.917, 2e-3);
+  }
+}
+
 TEST(RobotModelTest, RefusesAPosePastAStop) {
   for (const std::string pose : {"nominal_rad", "lying_rad", "fold_rad"}) {
     const std::string map = shipped_map();
