@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <mutex>
 
+#include "estimator/cost_of_transport.h"
 #include "estimator/observation.h"
 #include "rt/base/worker_pool.h"
 #include "rt/core/command_shaping.h"
