@@ -72,7 +72,7 @@ def main():
     parser = argparse.ArgumentParser(prog='tools/evaluate/corners.py', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('policy', type=pathlib.Path)
-    parser.add_argument('--robot', type=pathlib.Path, help='robot file (default: that of Raibo)')
+    parser.add_argument('--robot', help='raibo, go2 or a robot file (default: raibo)')
     parser.add_argument('--bin', type=pathlib.Path, default=TREE / 'build/release/bin', help='folder of the programs')
     parser.add_argument('--runs', type=int, help='so many of them, drawn by chance (default: all 3,822)')
     options = parser.parse_args()

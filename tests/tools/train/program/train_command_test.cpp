@@ -278,6 +278,15 @@ TEST_F(TrainCommandTest, PolicyFileNamesTheRobotOfTheMapAndItsTorqueLimit) {
   EXPECT_EQ(policy("raibo").spec.torque_limit_nm, 63.45);
 }
 
+TEST_F(TrainCommandTest, ARobotThatShipsIsTrainedByItsName) {
+  ASSERT_EQ(run("go2", {"--set", "run.transitions=600", "--robot", "go2"}), 0);
+  const PolicySpec spec = policy("go2").spec;
+  EXPECT_EQ(spec.provenance.at("robot"), "go2");
+  EXPECT_EQ(spec.joint_names[0], "FL_hip_joint");
+  EXPECT_EQ(spec.torque_limit_nm, 45.43);
+  EXPECT_EQ(spec.kp_nmprad, 30.0);
+}
+
 TEST_F(TrainCommandTest, CheckpointOfAnotherRobotIsRefused) {
   const std::vector<std::string> brief = {"--set", "run.transitions=600"};
   ASSERT_EQ(run("r", brief), 0);
