@@ -31,9 +31,10 @@ LAYERS = [
     ["rt/telemetry/view"],
     ["rt/run"],
     ["rt"],
-    ["tools/bench/mujoco", "tools/evaluate", "tools/train/data", "tools/train/kernels"],
+    ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
-    ["tools/hil/emulated"],
+    ["tools/train/model"],
+    ["tools/evaluate", "tools/hil/emulated"],
     ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.

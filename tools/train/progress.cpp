@@ -73,6 +73,8 @@ constexpr Column kColumns[] = {
     {"action_std", [](R r) { return r.action_std; }},
     {"asymmetry", [](R r) { return r.asymmetry; }},
     {"explained_variance", [](R r) { return r.explained_variance; }},
+    {"imitation_rms", [](R r) { return r.imitation_rms; }},
+    {"encoding_rms", [](R r) { return r.encoding_rms; }},
 };
 
 // What is drawn together, columns by their names in curve.csv.
