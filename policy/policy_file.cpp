@@ -294,12 +294,12 @@ Policy load_policy_text(std::string_view content, const std::string& name) {
   return {std::move(file.spec), Network(file.parameters)};
 }
 
-std::string_view shipped_policy_text() noexcept {
-  return embedded_policy_file("raibo.safetensors");
+std::string_view shipped_policy_text(const std::string& robot) {
+  return embedded_policy_file(robot + ".safetensors");
 }
 
-Policy load_shipped_policy() {
-  return load_policy_text(shipped_policy_text(), "raibo.safetensors (built in)");
+Policy load_shipped_policy(const std::string& robot) {
+  return load_policy_text(shipped_policy_text(robot), robot + ".safetensors (built in)");
 }
 
 void write_policy_file(const std::string& path, const PolicyFile& file) {

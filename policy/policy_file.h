@@ -29,9 +29,10 @@ Policy load_policy(const std::string& path);
 /// The policy in the bytes of a file; `name` stands for it in errors.
 Policy load_policy_text(std::string_view content, const std::string& name);
 
-/// The policy that ships (policy/trained/raibo.safetensors), built into the program.
-Policy load_shipped_policy();
-std::string_view shipped_policy_text() noexcept;
+/// The policy that ships for a robot of this name (policy/trained), built into the program. Text:
+/// empty if none does.
+Policy load_shipped_policy(const std::string& robot = "raibo");
+std::string_view shipped_policy_text(const std::string& robot = "raibo");
 
 /// Checks `file` as read_policy_file would, then writes it; `path` is whole or untouched. Throws
 /// InputError.

@@ -59,8 +59,7 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
-  const sim::Robot robot =
-      options->robot_path.empty() ? sim::load_raibo() : sim::load_robot(options->robot_path);
+  const sim::Robot robot = sim::load_robot(options->robot);
   std::vector<Subject> policies = {load_subject(options->policy_path)};
   if (!options->against_path.empty()) policies.push_back(load_subject(options->against_path));
   for (const Subject& policy : policies) require_joints(spec_of(policy), robot.description);

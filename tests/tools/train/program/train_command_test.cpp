@@ -7,6 +7,8 @@
 
 #include <csignal>
 #include <filesystem>
+#include <sstream>
+#include <string>
 #include <string_view>
 
 #include "policy/policy_file.h"
@@ -259,12 +261,25 @@ TEST_F(TrainCommandTest, ASeedBelowZeroIsRefused) {
 TEST_F(TrainCommandTest, LinesOfProgressAreShortAndExplained) {
   const Ended ended = run_process(training("a", {}));
   EXPECT_EQ(ended.code, 0);
-  EXPECT_LE(ended.out.find('\n'), 100u) << ended.out;
+  std::istringstream lines(ended.out);
+  std::string hint, progress;
+  std::getline(lines, hint);
+  std::getline(lines, progress);
+  EXPECT_NE(hint.find("--explain"), std::string::npos) << ended.out;
+  EXPECT_LE(progress.size(), 100u) << ended.out;
   const Ended explained = run_process({SANDRUNNER_TRAIN_PROGRAM, "--explain"});
   EXPECT_EQ(explained.code, 0);
   for (const char* word : {"k/s", "Hz", "trot", "alive", "error", "cost", "fast", "late", "min"}) {
     EXPECT_NE(explained.out.find(word), std::string::npos) << word;
   }
+}
+
+TEST_F(TrainCommandTest, TheLastLineSaysHowToRunThePolicy) {
+  const Ended ended = run_process(training("a", {}));
+  const auto found = ended.out.find("run it with sandrunner --policy ");
+  ASSERT_NE(found, std::string::npos) << ended.out;
+  const auto path = ended.out.rfind(' ') + 1;
+  EXPECT_TRUE(std::filesystem::exists(ended.out.substr(path, ended.out.size() - path - 1)));
 }
 
 TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
@@ -303,6 +318,15 @@ TEST_F(TrainCommandTest, PolicyFileNamesTheRobotOfTheMapAndItsTorqueLimit) {
   ASSERT_EQ(run("raibo", brief), 0);
   EXPECT_EQ(policy("raibo").spec.name, "raibo");
   EXPECT_EQ(policy("raibo").spec.torque_limit_nm, 63.45);
+}
+
+TEST_F(TrainCommandTest, ARobotThatShipsIsTrainedByItsName) {
+  ASSERT_EQ(run("go2", {"--set", "run.transitions=600", "--robot", "go2"}), 0);
+  const PolicySpec spec = policy("go2").spec;
+  EXPECT_EQ(spec.provenance.at("robot"), "go2");
+  EXPECT_EQ(spec.joint_names[0], "FL_hip_joint");
+  EXPECT_EQ(spec.torque_limit_nm, 45.43);
+  EXPECT_EQ(spec.kp_nmprad, 30.0);
 }
 
 TEST_F(TrainCommandTest, CheckpointOfAnotherRobotIsRefused) {
