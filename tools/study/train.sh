@@ -19,7 +19,7 @@ if [ $# -lt 2 ]; then
 fi
 out=$1 seed=$2
 shift 2
-[ $# -gt 0 ] || set -- ours env-rigid env-linear env-quasistatic oracle-h oracle-o teacher-gm teacher-rigid \
+[ $# -gt 0 ] || set -- ours env-rigid env-linear env-quasistatic tcn oracle-h oracle-o teacher-gm teacher-rigid \
   pl-gm pl-rigid
 for name in "$@"; do
   if [ ! -f "$here/trainings/$name.toml" ]; then

@@ -39,6 +39,7 @@ TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListed) {
       {"env-rigid", {{"ground.rigid_envs", "64"}, {"ground.patchy_envs", "0"}}},
       {"env-quasistatic", {{"ground.inertial_high", "0.0"}}},  // the low end is 0 anyway
       {"env-linear", {{"ground.yielding", "\"linear\""}}},
+      {"tcn", {{"network.encoder", "\"tcn\""}}},
       {"oracle-h", {{"network.actor", "\"encoding, estimate, terrain\""}}},
       {"oracle-o", {{"network.actor", "\"estimate, proprioception, terrain\""}}},
       {"teacher-gm",

@@ -53,6 +53,8 @@ template <typename Scalar>
 typename BlockPass<Scalar>::Encoder BlockPass<Scalar>::make_encoder(
     const ParameterLayout& layout, int steps, int envs, const Kernels<Scalar>& kernels) {
   switch (layout.sizes().encoder) {
+    case EncoderKind::kTcn:
+      return Tcn<Scalar>(layout, steps, envs, kernels);
     case EncoderKind::kInsight:
       return InsightEncoder<Scalar>(layout, steps, envs, kernels);
     case EncoderKind::kLstm:

@@ -12,6 +12,7 @@
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/mlp.h"
 #include "tools/train/learner/parameters.h"
+#include "tools/train/learner/tcn.h"
 #include "tools/train/learner/weights.h"
 
 namespace sandrunner::learner {
@@ -97,7 +98,7 @@ class BlockPass {
                              int samples, Scalar* gradient);
 
  private:
-  using Encoder = std::variant<Lstm<Scalar>, InsightEncoder<Scalar>>;
+  using Encoder = std::variant<Lstm<Scalar>, Tcn<Scalar>, InsightEncoder<Scalar>>;
   static Encoder make_encoder(const ParameterLayout& layout, int steps, int envs,
                               const Kernels<Scalar>& kernels);
 

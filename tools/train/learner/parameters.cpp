@@ -31,12 +31,33 @@ int ParameterLayout::actor_inputs() const {
          (sees.proprioception ? kProprioceptionSize : 0) + (sees.terrain ? kTerrainSize : 0);
 }
 
+int ParameterLayout::memory() const {
+  switch (sizes_.encoder) {
+    case EncoderKind::kTcn:
+      return kTcnPast * kProprioceptionSize + 1;
+    case EncoderKind::kInsight:
+      return 0;
+    case EncoderKind::kLstm:
+      break;
+  }
+  return 2 * sizes_.hidden;
+}
+
 void ParameterLayout::add_encoder() {
   const int hidden = sizes_.hidden;
   switch (sizes_.encoder) {
     case EncoderKind::kLstm:
       encoder_ = add("encoder", 4 * hidden, kProprioceptionSize + 1 + hidden);
       break;
+    case EncoderKind::kTcn: {
+      int inputs = kProprioceptionSize;
+      for (std::size_t i = 0; i < kTcnDilations.size(); ++i) {
+        add_layer("encoder", kTcnTaps * inputs, sizes_.channels, encoder_layers_);
+        inputs = sizes_.channels;
+      }
+      add_layer("encoder", inputs, hidden, encoder_layers_);
+      break;
+    }
     case EncoderKind::kInsight:
       encoder_layers_ = add_mlp("encoder", kInsightSize, sizes_.insight, hidden);
       break;
@@ -56,14 +77,19 @@ std::vector<LayerView> ParameterLayout::add_mlp(const std::string& name, int inp
   widths.push_back(outputs);
   std::vector<LayerView> layers;
   for (const int width : widths) {
-    const std::string prefix = name + "." + std::to_string(layers.size());
-    LayerView layer{inputs, width, 0, 0};
-    layer.weight = add(prefix + ".weight", width, inputs);
-    layer.bias = add(prefix + ".bias", width, 1);
-    layers.push_back(layer);
+    add_layer(name, inputs, width, layers);
     inputs = width;
   }
   return layers;
+}
+
+void ParameterLayout::add_layer(const std::string& name, int inputs, int outputs,
+                                std::vector<LayerView>& layers) {
+  const std::string prefix = name + "." + std::to_string(layers.size());
+  LayerView layer{inputs, outputs, 0, 0};
+  layer.weight = add(prefix + ".weight", outputs, inputs);
+  layer.bias = add(prefix + ".bias", outputs, 1);
+  layers.push_back(layer);
 }
 
 std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64_t seed,

@@ -31,6 +31,8 @@ struct NetworkSizes {
   ActorInputs actor_sees = {};
   std::vector<int> insight = {72};  ///< hidden layers of EncoderKind::kInsight
 
+  int channels = 40;  ///< of each layer of EncoderKind::kTcn
+
   /// Networks as a policy file holds them, which a robot can run.
   bool are_a_robots() const {
     return encoder == EncoderKind::kLstm && actor_sees.encoding && actor_sees.estimate &&
@@ -66,8 +68,9 @@ class ParameterLayout {
   const NetworkSizes& sizes() const { return sizes_; }
   int hidden() const { return sizes_.hidden; }
   int privileged() const { return privileged_; }
-  /// Rows of what the encoder remembers from one step to the next: h and c of an LSTM.
-  int memory() const { return sizes_.encoder == EncoderKind::kLstm ? 2 * sizes_.hidden : 0; }
+  /// Rows of what the encoder remembers from one step to the next: h and c of an LSTM, past
+  /// observations and the number of those that count of a TCN.
+  int memory() const;
   /// Rows of what the actor sees.
   int actor_inputs() const;
 
@@ -87,6 +90,7 @@ class ParameterLayout {
   std::ptrdiff_t add(std::string name, int rows, int cols);
   std::vector<LayerView> add_mlp(const std::string& name, int inputs,
                                  const std::vector<int>& hidden, int outputs);
+  void add_layer(const std::string& name, int inputs, int outputs, std::vector<LayerView>& layers);
 
   NetworkSizes sizes_;
   int privileged_;

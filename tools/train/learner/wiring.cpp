@@ -16,8 +16,8 @@ struct EncoderName {
   const char* name;
   EncoderKind kind;
 };
-constexpr EncoderName kEncoders[] = {{"lstm", EncoderKind::kLstm},
-                                     {"insight", EncoderKind::kInsight}};
+constexpr EncoderName kEncoders[] = {
+    {"lstm", EncoderKind::kLstm}, {"tcn", EncoderKind::kTcn}, {"insight", EncoderKind::kInsight}};
 
 struct PartName {
   const char* name;

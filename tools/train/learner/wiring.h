@@ -3,13 +3,22 @@
 // a study needs.
 #pragma once
 
+#include <array>
 #include <string>
 
 namespace sandrunner::learner {
 
+/// Of the three layers of EncoderKind::kTcn: taps of each, and steps between them.
+inline constexpr int kTcnTaps = 5;
+inline constexpr std::array<int, 3> kTcnDilations = {1, 3, 9};
+/// Steps before the present one that it sees.
+inline constexpr int kTcnPast =
+    (kTcnTaps - 1) * (kTcnDilations[0] + kTcnDilations[1] + kTcnDilations[2]);
+
 /// How the observations become the encoding, which estimator and actor see.
 enum class EncoderKind {
   kLstm,     ///< recurrent, of the proprioception
+  kTcn,      ///< convolutions over time, of the proprioception
   kInsight,  ///< a teacher's: an MLP of what a robot cannot measure (BasicRollout::insight)
 };
 

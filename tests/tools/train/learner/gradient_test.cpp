@@ -129,6 +129,7 @@ NetworkSizes wired(const Wiring& wiring) {
   networks.encoder = wiring.encoder;
   networks.actor_sees = wiring.actor;
   networks.insight = {6};
+  networks.channels = 4;
   return networks;
 }
 
@@ -140,6 +141,7 @@ class WiringGradientTest : public testing::TestWithParam<Wiring>, protected Grad
 INSTANTIATE_TEST_SUITE_P(
     Study, WiringGradientTest,
     testing::Values(Wiring{"robot", EncoderKind::kLstm, {true, true, false, false}},
+                    Wiring{"tcn", EncoderKind::kTcn, {true, true, false, false}},
                     Wiring{"oracle_h", EncoderKind::kLstm, {true, true, false, true}},
                     Wiring{"oracle_o", EncoderKind::kLstm, {false, true, true, true}},
                     Wiring{"teacher", EncoderKind::kInsight, {true, false, true, false}},

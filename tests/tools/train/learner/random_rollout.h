@@ -39,6 +39,12 @@ BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int memory) {
     }
   };
   fill(rollout.initial_memory(0), 0.5);
+  // If it ends in the number of observations that count, a TCN's: few, some and all.
+  if (memory == kTcnPast * kProprioceptionSize + 1) {
+    for (int env = 0; env < shape.envs; ++env) {
+      rollout.initial_memory(0)(memory - 1, env) = static_cast<Scalar>((env % 3) * kTcnPast / 2);
+    }
+  }
   for (int k = 0; k < kActionSize; ++k) {
     rollout.log_std(k) = static_cast<Scalar>(static_cast<float>(-0.4 + 0.1 * normal()));
   }

@@ -59,6 +59,7 @@ class StudyModelTest : public testing::TestWithParam<Wiring> {
 
 INSTANTIATE_TEST_SUITE_P(Wirings, StudyModelTest,
                          testing::Values(Wiring{"oracle_h", "lstm", "encoding, estimate, terrain"},
+                                         Wiring{"tcn", "tcn", "encoding, estimate"},
                                          Wiring{"oracle_o", "lstm",
                                                 "estimate, proprioception, terrain"},
                                          Wiring{"teacher", "insight", "encoding, proprioception"},
