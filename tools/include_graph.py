@@ -35,7 +35,7 @@ LAYERS = [
     ["tools/train/learner", "tools/train/task"],
     ["tools/train/model"],
     ["tools/evaluate", "tools/hil/emulated"],
-    ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
+    ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
 NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/operator/", "rt/realtime/", "rt/report/", "rt/telemetry/")

@@ -33,11 +33,14 @@ template <typename Runner>
 class PackRun {
  public:
   PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, Runner& policy,
-          const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count)
+          const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count,
+          const StepObserver& observe, std::size_t first)
       : robot_(robot),
         policy_(policy),
         facts_(facts),
         trials_(trials),
+        observe_(observe),
+        first_(first),
         batch_(static_cast<int>(settings.width), foot, sim::StepSettings{}, settings.width),
         lanes_(static_cast<std::size_t>(count)) {
     sim::RobotModel<double> model = robot.model;
@@ -138,8 +141,12 @@ class PackRun {
     lane.memory = policy_.state();
     // What reaches the drives in this period: this answer, or, later than that, the one before.
     const JointArray<double> target_rad = trial.a_step_late() ? lane.answer_rad : answer.target_rad;
-    lane.recorder.begin_period(state, sim::ground_truth(robot_.model, state, *trial.terrain),
-                               answer.estimate, asked, lane.target_rad, target_rad,
+    const StateEstimate truth = sim::ground_truth(robot_.model, state, *trial.terrain);
+    if (observe_) {
+      observe_(first_ + static_cast<std::size_t>(i),
+               {state, truth, answer.estimate, torque_of(lane, state), lane.memory});
+    }
+    lane.recorder.begin_period(state, truth, answer.estimate, asked, lane.target_rad, target_rad,
                                policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);
     for (int j = 0; j < kNumJoints; ++j) {
       lane.drive.target_before[j] = static_cast<float>(lane.target_rad[j]);
@@ -148,6 +155,18 @@ class PackRun {
     lane.target_rad = target_rad;
     lane.answer_rad = answer.target_rad;
     batch_.set_drive(i, lane.drive);
+  }
+
+  JointArray<double> torque_of(const Lane& lane, const sim::RobotState<float>& state) const {
+    const sim::BatchDrive<float>& drive = lane.drive;
+    JointArray<double> torque_nm{};
+    for (int j = 0; j < kNumJoints; ++j) {
+      torque_nm[j] = sim::drive_torque<float>(
+          state.rigid.q[j], state.rigid.qd[j], static_cast<float>(lane.target_rad[j]), 0.0f,
+          drive.kp, drive.kd, 0.0f, static_cast<float>(facts_.torque_limit_nm[j]),
+          drive.stall_torque_nm, drive.inverse_no_load_speed);
+    }
+    return torque_nm;
   }
 
   static std::array<float, kObservationSize> observe(const Trial& trial, std::uint64_t step,
@@ -205,6 +224,8 @@ class PackRun {
   Runner& policy_;
   const RobotFacts& facts_;
   const Trial* trials_;
+  const StepObserver& observe_;
+  std::size_t first_;  // place of this pack's first trial among all
   sim::Batch batch_;
   std::vector<Lane> lanes_;
 };
@@ -248,7 +269,8 @@ RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
 std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootProfile<double>& foot,
                                      const Subject& subject, const std::vector<Trial>& trials,
                                      const RunnerSettings& settings,
-                                     const std::function<void(std::size_t)>& progress) {
+                                     const std::function<void(std::size_t)>& progress,
+                                     const StepObserver& observe) {
   const auto width = static_cast<std::size_t>(settings.width);
   const RobotFacts facts = robot_facts(robot, spec_of(subject));
   std::vector<TrialFigures> figures(trials.size());
@@ -263,7 +285,7 @@ std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootPro
     std::visit(
         [&](auto& runner) {
           PackRun(robot, foot, runner, settings, facts, trials.data() + first,
-                  static_cast<int>(count))
+                  static_cast<int>(count), observe, first)
               .run(figures.data() + first);
         },
         subjects[static_cast<std::size_t>(worker)]);
