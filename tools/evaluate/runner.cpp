@@ -108,6 +108,11 @@ class PackRun {
     bool met = false;                // the place where it is disturbed
   };
 
+  static const NetworkState* memory_of([[maybe_unused]] const Lane& lane) {
+    if constexpr (std::is_same_v<Runner, Policy>) return &lane.memory;
+    return nullptr;
+  }
+
   static bool finished(const Trial& trial, const TrialRecorder& recorder) {
     if (recorder.time_s() < trial.duration_s) return false;
     if (!trial.has_track() || recorder.time_s() >= trial.longest_s) return true;
@@ -144,7 +149,7 @@ class PackRun {
     const StateEstimate truth = sim::ground_truth(robot_.model, state, *trial.terrain);
     if (observe_) {
       observe_(first_ + static_cast<std::size_t>(i),
-               {state, truth, answer.estimate, torque_of(lane, state), lane.memory});
+               {state, truth, answer.estimate, torque_of(lane, state), memory_of(lane)});
     }
     lane.recorder.begin_period(state, truth, answer.estimate, asked, lane.target_rad, target_rad,
                                policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);
@@ -164,7 +169,8 @@ class PackRun {
       torque_nm[j] = sim::drive_torque<float>(
           state.rigid.q[j], state.rigid.qd[j], static_cast<float>(lane.target_rad[j]), 0.0f,
           drive.kp, drive.kd, 0.0f, static_cast<float>(facts_.torque_limit_nm[j]),
-          drive.stall_torque_nm, drive.inverse_no_load_speed);
+          drive.line.stall_torque_nm[j % kJointsPerLeg],
+          drive.line.inverse_no_load_speed[j % kJointsPerLeg]);
     }
     return torque_nm;
   }

@@ -38,7 +38,7 @@ struct ObservedStep {
   const StateEstimate& truth;
   const StateEstimate& estimate;
   const JointArray<double>& torque_nm;  ///< of the drives, under the targets until this step
-  const NetworkState& memory;           ///< after the step
+  const NetworkState* memory;           ///< after the step; null for a study model
 };
 /// `trial`: its place in the list. Called by several threads, for one trial by one of them.
 using StepObserver = std::function<void(std::size_t trial, const ObservedStep& step)>;

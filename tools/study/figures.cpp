@@ -70,8 +70,7 @@ plot::Chart torque_chart(const Controller& controller, const Measured& measured,
 StudyFigure torque_figure(const Evidence& evidence) {
   StudyFigure figure{"fig2f",
                      "the run nearest to 1.0 m/s of each controller; \"Ours used lower peak "
-                     "torques than the other "
-                     "controllers\"; the values are not printed",
+                     "torques than the other controllers\"; the values are not printed",
                      "Extension is positive for HFE and KFE. One second at 100 Hz, first seed.",
                      {}};
   figure.page.title = "Torques of the right legs at about 1 m/s on dry sand (Fig. 2 F)";
@@ -188,10 +187,8 @@ std::vector<StudyFigure> beach_figures(const Evidence& evidence) {
       "success overall: Ours 100 %, PL/Env-GM 72.5 %, Env-Rigid 50 %, PL/Env-Rigid 37.5 %, "
       "Env-Linear 17.5 %; cost and clearance are not printed",
       "C: a dot is a successful run, the curve a e^(bx) + cx + d (the paper prints b twice). E: "
-      "the "
-      "line is the mean over feet and successful runs, the caps are the least and the greatest "
-      "foot "
-      "of any run. Lines are medians over seeds.",
+      "the line is the mean over feet and successful runs, the caps are the least and the "
+      "greatest foot of any run. Lines are medians over seeds.",
       {}};
   figure.page.title = "Dry sand (Fig. 2 C, D, E)";
   figure.page.width_px = 1240;

@@ -107,8 +107,8 @@ std::vector<StudyFigure> ground_figures(const Evidence& evidence) {
                                  1.0, true, "speed_mps", "speed_mps"}));
   }
   StudyFigure turns{"turns",
-                    "0.92 rad/s on dry sand, \"in all terrains\" around 0.94 rad/s; the command is "
-                    "not printed",
+                    "0.92 rad/s on dry sand, \"in all terrains\" around 0.94 rad/s; the command "
+                    "is not printed",
                     "10 s on the spot, as many runs each way; caps: least and greatest run.",
                     {}};
   turns.page.title = "Yaw rate at a command of 1 rad/s";
@@ -124,11 +124,9 @@ std::vector<StudyFigure> ground_figures(const Evidence& evidence) {
 std::vector<StudyFigure> mattress_figures(const Evidence& evidence) {
   StudyFigure figure{"fig3h",
                      "Ours turns at 0.71 rad/s, and at 1.54 rad/s for 2 rad/s; PL/Env-Rigid never "
-                     "makes half a turn; "
-                     "rates and costs of turning are not printed",
+                     "makes half a turn; rates and costs of turning are not printed",
                      "As many runs each way; the paper has five. Success: more than half a turn "
-                     "in 10 s without "
-                     "a contact of base or thigh.",
+                     "in 10 s without a contact of base or thigh.",
                      {}};
   figure.page.title = "Air mattress at a command of 1 rad/s (Fig. 3 H)";
   figure.page.width_px = 1240;
@@ -148,8 +146,8 @@ std::vector<StudyFigure> mattress_figures(const Evidence& evidence) {
 std::vector<StudyFigure> foam_figures(const Evidence& evidence) {
   StudyFigure figure{"s8",
                      "\"could stably traverse over it with a command at 0.5 m/s\"; no numbers",
-                     "Run 0 of the first seed. The foam begins at 2 m. It is an overdamped spring; "
-                     "no foam was measured.",
+                     "Run 0 of the first seed. The foam begins at 2 m. It is an overdamped "
+                     "spring; no foam was measured.",
                      {}};
   figure.page.title = "From hard ground onto memory foam at 0.5 m/s (fig. S8)";
   figure.page.width_px = 1240;

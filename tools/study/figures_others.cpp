@@ -64,12 +64,10 @@ std::map<std::string, std::vector<double>> read_curve(const std::string& path) {
 std::vector<StudyFigure> hidden_state_figures(const Evidence& evidence) {
   StudyFigure figure{
       "fig3f",
-      "\"embedded hidden states distributed distinctly for different terrains\"; no "
-      "numbers",
+      "\"embedded hidden states distributed distinctly for different terrains\"; no numbers",
       "Exact t-SNE of up to 2,000 states of the first seed at 1 m/s, from 8 runs of 10 s on each "
-      "ground, perplexity 30, "
-      "started from the principal components. Left: by ground. Right: by the phase of "
-      "the left front foot. The numbers below the picture can fail; it cannot.",
+      "ground, perplexity 30, started from the principal components. Left: by ground. Right: by "
+      "the phase of the left front foot. The numbers below the picture can fail; it cannot.",
       {}};
   figure.page.title = "Hidden states of Ours (Fig. 3 F)";
   figure.page.width_px = 1240;
@@ -144,7 +142,7 @@ std::vector<StudyFigure> learning_figures(const std::string& folder,
                                           const std::vector<std::string>& models) {
   constexpr Column kColumns[] = {
       {"battery_alive", "Share of the battery alive", ""},
-      {"battery_error", "Velocity error of the battery", "m/s"},
+      {"battery_error", "Velocity error of the battery, relative", ""},
       {"battery_cost_of_transport", "Cost of transport of the battery", ""}};
   StudyFigure figure{"curves",
                      "not printed",

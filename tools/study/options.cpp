@@ -21,8 +21,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   std::vector<std::string> only = all;
   CLI::App app{
       "Runs the paper's experiments on trained controllers and writes one page: tables and "
-      "figures, "
-      "the paper's numbers next to ours, and a verdict for each claim.",
+      "figures, the paper's numbers next to ours, and a verdict for each claim.",
       "sandrunner-study"};
   app.add_option("--from", o.from, "folder with NAME-SEED.safetensors")
       ->type_name("DIR")

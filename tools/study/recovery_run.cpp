@@ -143,8 +143,7 @@ StudyFigure recovery_curves(const RecoveryRun& run) {
 
 std::string recovery_page(RecoveryRun run) {
   run.record.scene.note = fmt::format(
-      "The left front foot meets loose sand at {:.2f} s: half of the stiffness from {} "
-      "to {} m.",
+      "The left front foot meets loose sand at {:.2f} s: half of the stiffness from {} to {} m.",
       run.met_s, kStripFrom_m, kStripTo_m);
   return run_page(std::move(run.record), kMostBytes);
 }

@@ -36,74 +36,70 @@ p.note { font-size: 13px; color: #4a525b; margin: 2px 0; }
 )";
 
 constexpr std::string_view kIntroduction =
-    "<p>The experiments of Choi et al., \"Learning quadrupedal locomotion on deformable terrain\", "
-    "Science Robotics 8 (2023), repeated in simulation with controllers that were trained by this "
-    "project. Each claim of the paper has a rule that was written down before any other controller "
-    "than Ours was evaluated, and a verdict that follows from the rule. A negative result is a "
-    "result.</p>\n";
+    R"(
+<p>The experiments of Choi et al., "Learning quadrupedal locomotion on deformable terrain",
+Science Robotics 8 (2023), repeated in simulation with controllers that were trained by this
+project. Each claim of the paper has a rule that was written down before any other controller than
+Ours was evaluated, and a verdict that follows from the rule. A negative result is a result.</p>
+)";
 
 constexpr std::string_view kFairness =
-    "<p>A comparison with a controller that cannot walk says nothing. Each controller runs on "
-    "level "
-    "ground of the kind on which it was trained: hard ground, springs of 10 kN/m with a damping "
-    "ratio of 0.5, dry sand without inertia, or dry sand. With fewer than 15 of 16 runs alive, "
-    "claims about it are not judged.</p>\n";
+    R"(
+<p>A comparison with a controller that cannot walk says nothing. Each controller runs on level
+ground of the kind on which it was trained: hard ground, springs of 10 kN/m with a damping ratio
+of 0.5, dry sand without inertia, or dry sand. With fewer than 15 of 16 runs alive, claims about
+it are not judged.</p>
+)";
 
 constexpr std::string_view kBeach =
-    "<p>Commands of 0.5 to 4.0 m/s over 5 m after 1 m, as in the paper, which has five runs each. "
-    "A "
-    "deterministic simulator would answer that all runs succeed or none, so each run has a beach "
-    "of "
-    "its own, the same for all controllers. Average and top are the greatest of runs 0 to 4, as "
-    "many "
-    "as the paper has, over all commands, of successful runs: no contact of base or thigh and no "
-    "joint beyond its limit. With several seeds: median [least, greatest].</p>\n";
+    R"(
+<p>Commands of 0.5 to 4.0 m/s over 5 m after 1 m, as in the paper, which has five runs each. A
+deterministic simulator would answer that all runs succeed or none, so each run has a beach of its
+own, the same for all controllers. Average and top are the greatest of runs 0 to 4, as many as the
+paper has, over all commands, of successful runs: no contact of base or thigh and no joint beyond
+its limit. With several seeds: median [least, greatest].</p>
+)";
 
 constexpr std::string_view kGround =
-    "<p>The contact model against experiments that others published; the paper has no such "
-    "chapter. "
-    "The beads' density and packing are those of the experiment. One number is fitted, the stress "
-    "per depth, which is the depth-proportional part of the force that Katsuragi and Durian found "
-    "(1,040 N/m per kg of their ball); inertia and the dependence on speed, size and density are "
-    "prediction. Plates and drag use the preset <code>dry-sand</code> as it is. The values that "
-    "the "
-    "sources give as laws were computed from them; the area of the dragged plate, which only "
-    "enters "
-    "its last digit, is taken as 16 mm times the depth.</p>\n";
+    R"(
+<p>The contact model against experiments that others published; the paper has no such chapter. The
+beads' density and packing are those of the experiment. One number is fitted, the stress per
+depth, which is the depth-proportional part of the force that Katsuragi and Durian found (1,040
+N/m per kg of their ball); inertia and the dependence on speed, size and density are prediction.
+Plates and drag use the preset <code>dry-sand</code> as it is. The values that the sources give as
+laws were computed from them; the area of the dragged plate, which only enters its last digit, is
+taken as 16 mm times the depth.</p>
+)";
 
 constexpr std::string_view kGroundResult =
-    "<p>The depths of the ball agree within 17 %. Its stopping times are 28 to 34 % long but fall "
-    "with the speed as measured. Its size and the height of the drop have the measured exponents "
-    "within 5 %. The density of the ball has not: our depth grows about as the density, theirs as "
-    "its square root. Under a plate our dry sand lies between loose and close poppy seeds. At "
-    "depth "
-    "it is half as stiff as Bekker's dry sand, which was measured with larger plates.</p>\n";
+    R"(
+<p>The depths of the ball agree within 17 %. Its stopping times are 28 to 34 % long but fall with
+the speed as measured. Its size and the height of the drop have the measured exponents within 5 %.
+The density of the ball has not: our depth grows about as the density, theirs as its square root.
+Under a plate our dry sand lies between loose and close poppy seeds. At depth it is half as stiff
+as Bekker's dry sand, which was measured with larger plates.</p>
+)";
 
-constexpr std::string_view kLimits =
-    "<ul>"
-    "<li>The test sand is of the family on which Ours was trained, and Env-Rigid and Env-Linear "
-    "are "
-    "judged on the trainer's ground. The paper's beach was one that no controller had seen. Ours "
-    "winning here shows that training on a ground helps on that ground, which is weaker than the "
-    "paper's claim.</li>"
-    "<li>Sand piles in front of a dragged foot are not in the model, so the bell of Fig. 2 D can't "
-    "be "
-    "expected.</li>"
-    "<li>The inertia of our sand hardly matters to a runner, and the training of Ours draws it "
-    "between none and 1.3 times the usual. So a failure of Env-Quasistatic can't be expected "
-    "either.</li>"
-    "<li>Grass is a soil here, the track is a spring, mattress and foam are springs with the right "
-    "features. No such ground was measured.</li>"
-    "<li>The motor constant, the reward (eq. S17), the randomisation (table S3), the student's "
-    "encoder, the ranges of Env-Linear and the lengths of the trainings are not printed in the "
-    "part "
-    "of the paper that is public; ours are choices.</li>"
-    "<li>Slopes, pits, several points of contact, damage, heat, the rope and oscillations of the "
-    "hardware are not simulated.</li>"
-    "<li>The paper trains for about 50 hours, here a training has 60 million transitions. "
-    "Differences "
-    "that need long training may not have appeared.</li>"
-    "</ul>\n";
+constexpr std::string_view kLimits = R"(<ul>
+<li>The test sand is of the family on which Ours was trained, and Env-Rigid and Env-Linear are
+judged on the trainer's ground. The paper's beach was one that no controller had seen. Ours
+winning here shows that training on a ground helps on that ground, which is weaker than the
+paper's claim.</li>
+<li>Sand piles in front of a dragged foot are not in the model, so the bell of Fig. 2 D can't be
+expected.</li>
+<li>The inertia of our sand hardly matters to a runner, and the training of Ours draws it between
+none and 1.3 times the usual. So a failure of Env-Quasistatic can't be expected either.</li>
+<li>Grass is a soil here, the track is a spring, mattress and foam are springs with the right
+features. No such ground was measured.</li>
+<li>The motor constant, the reward (eq. S17), the randomisation (table S3), the student's encoder,
+the ranges of Env-Linear and the lengths of the other trainings are not in the paper's main text;
+ours are choices.</li>
+<li>Slopes, pits, several points of contact, damage, heat, the rope and oscillations of the
+hardware are not simulated.</li>
+<li>The paper trains for about 50 hours, here a training has 60 million transitions. Differences
+that need long training may not have appeared.</li>
+</ul>
+)";
 
 /// The page as it grows, and the folder of its pictures.
 class Page {
@@ -142,8 +138,7 @@ class Page {
       }
     }
     html_ += fmt::format(
-        "<p class=\"note\">Run: {}. Not run: {}. {} runs each, unless it says "
-        "otherwise.</p>\n",
+        "<p class=\"note\">Run: {}. Not run: {}. {} runs each, unless it says otherwise.</p>\n",
         run.empty() ? "none" : run, missing.empty() ? "none" : missing, runs_);
     return !run.empty();
   }
@@ -172,8 +167,7 @@ void add_recovery(const Options& options, const std::vector<Model>& models, Page
   page.picture("fig2a", "Recovery from loose sand, seen from the right");
   page.add(
       fmt::format("<p class=\"note\">Start {} of seed {}: the left front foot touches down on "
-                  "loose sand at 0 s "
-                  "(Fig. 2 A, B; the paper's times). The whole run in 3D: <a "
+                  "loose sand at 0 s (Fig. 2 A, B; the paper's times). The whole run in 3D: <a "
                   "href=\"recovery.html\">recovery.html</a>.</p>\n",
                   run->seed, ours->seed));
   page.figure(recovery_curves(*run));
@@ -244,7 +238,8 @@ void write_report(const Options& options, const std::vector<Model>& models,
   write_file(options.out + "/report.html",
              fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
                          "<title>The paper's experiments in simulation</title>\n"
-                         "<style>{}</style></head><body>\n{}</body></html>\n",
+                         "<style>{}</style></head><body>\n"
+                         "{}</body></html>\n",
                          kStyle, page.html()));
 }
 

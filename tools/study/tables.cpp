@@ -261,8 +261,8 @@ std::string foam_table(const Evidence& evidence) {
 std::string contact_table(const Evidence& evidence) {
   if (!evidence.contact) {
     return fmt::format(
-        "<p>{}: <code>--contact FILE</code> reads what <code>sandrunner-bench "
-        "contact --json FILE</code> wrote.</p>\n",
+        "<p>{}: <code>--contact FILE</code> reads what <code>sandrunner-bench contact --json "
+        "FILE</code> wrote.</p>\n",
         kNotRun);
   }
   const ContactBench& bench = *evidence.contact;

@@ -56,8 +56,8 @@ INSTANTIATE_TEST_SUITE_P(Terrain, EveryPresetTest,
                          testing::Combine(testing::Values("raibo", "go2"),
                                           testing::ValuesIn(sim::terrain_preset_names())),
                          [](const auto& param_info) {
-                           const auto& [robot, preset] = param_info.param;
-                           std::string name = robot + "_" + preset;
+                           std::string name = std::get<0>(param_info.param);
+                           name += "_" + std::get<1>(param_info.param);
                            std::erase(name, '-');
                            return name;
                          });
