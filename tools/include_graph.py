@@ -18,7 +18,7 @@ LAYERS = [
     ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/drives"],
     ["drivers/drives/*"],
-    ["drivers/robot"],
+    ["drivers/robot", "drivers/unitree"],
     ["drivers/check"],
     ["sim/lanes"],
     ["sim/robot"],
