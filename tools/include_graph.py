@@ -15,7 +15,7 @@ import sys
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
-    ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
+    ["rt/dds", "rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/drives"],
     ["drivers/drives/*"],
     ["drivers/robot", "drivers/unitree"],
