@@ -46,7 +46,8 @@ constexpr int kLastWords_ms = 2000;
 int check(const Options& options) {
   const ProcessConfig config = read_config(options, nullptr);
   if (!config.hardware) {
-    throw InputError(fmt::format("check: {}: found no table [hardware]", options.hardware_path));
+    throw InputError(fmt::format("check: {}: found hardware.kind \"unitree\", expected \"can\"",
+                                 options.hardware_path));
   }
   if (options.check.plan) {
     const std::vector<PlannedBus> plan = plan_buses(*config.hardware);
@@ -124,6 +125,7 @@ int run(const Options& options) {
   }
   warn_of(config, policy.runner);
   if (!options.out_dir.empty()) prepare_folder(options.out_dir, "--out");
+  if (config.driver) config.driver->fork_processes();
   flush_denormals_to_zero();
   SignalWatch signals;
   Operators operators(options, config, command, !policy.runner.is_none());
