@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/robot/hardware_fit.h"
 #include "rt/base/errors.h"
 #include "rt/run/robot_drivers.h"
 
