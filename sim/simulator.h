@@ -101,6 +101,7 @@ class Simulator final : public RobotIo {
   SimulatorConfig config_;
   FootProfile<double> foot_;
   Terrain<double> terrain_;
+  DriveLine<double> line_;
   RobotStepper<double> stepper_;
   SimulatorState state_;
   StepReport<double> report_;

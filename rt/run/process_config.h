@@ -34,8 +34,8 @@ struct ProcessConfig {
   std::shared_ptr<RobotDriver> driver;     ///< of a real robot; null: there is no such table
   bool view_drive = false;                 ///< pages of --view that have the key may command
   int view_port = 8765;                    ///< of --view; 0: one that is free
-  double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
-  std::string effective;        ///< TOML of every setting with the value in effect
+  LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
+  std::string effective;               ///< TOML of every setting with the value in effect
 };
 
 /// What the controller takes from a robot: posture, gains, limits. Walk's gains are the policy's.

@@ -36,12 +36,10 @@ class PackRun {
     model.torque_limit_nm = facts.torque_limit_nm;
     const PolicySpec& spec = policy.spec();
     sim::BatchDrive<float> drive;
-    const sim::TorqueSpeedLine& line = robot.torque_speed_line;
     drive.kp = static_cast<float>(spec.kp_nmprad);
     drive.kd = static_cast<float>(spec.kd_nmsprad);
-    drive.stall_torque_nm =
-        settings.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
-    drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+    drive.heat_factor = heat_factors<float>(robot.motor_constant_nmpsqrtw);
+    if (settings.torque_speed_line) drive.line = sim::drive_line<float>(robot.torque_speed_line);
     for (int i = 0; i < batch_.size(); ++i) {
       // Lanes without a trial of their own idle far above the ground.
       const Trial& trial = trials_[std::min(i, count - 1)];
@@ -207,7 +205,7 @@ RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
   RobotFacts facts;
   facts.mass_kg = robot.model.mass();
   facts.torque_limit_nm = robot.model.torque_limit_nm;
-  facts.motor_constant = robot.motor_constant_nmpsqrtw;
+  facts.motor_constant = robot.motor_constant_nmpsqrtw[0];
   if (policy.torque_limit_nm > 0.0) {
     for (double& limit : facts.torque_limit_nm) limit = std::min(limit, policy.torque_limit_nm);
   }

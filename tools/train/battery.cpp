@@ -32,6 +32,7 @@ TaskConfig without_randomness(TaskConfig c) {
   c.robot = {};
   c.robot.latency_s = training.latency_s;
   c.robot.torque_speed_line = training.torque_speed_line;
+  c.robot.rotor_inertia_low = c.robot.rotor_inertia_high = 1.0;
   c.noise = {};
   return c;
 }
@@ -256,7 +257,7 @@ BatteryFigures Battery::figures() const {
     const double speed_mps = std::hypot(s.velocity[0], s.velocity[1]) / steady;
     if (speed_mps < 0.05) continue;  // as in sandrunner-evaluate
     const double power =
-        (s.power + s.torque_squared / square(robot_.motor_constant_nmpsqrtw)) / steady;
+        (s.power + s.torque_squared / square(robot_.motor_constant_nmpsqrtw[0])) / steady;
     cost_at[static_cast<std::size_t>(speed)].add(power / (weight_n * speed_mps));
   }
   BatteryFigures f;

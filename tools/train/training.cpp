@@ -47,6 +47,7 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   hash = learner::fnv1a(bytes(robot.model), hash);
   hash = learner::fnv1a(bytes(robot.nominal_rad), hash);
   hash = learner::fnv1a(bytes(robot.torque_speed_line), hash);
+  hash = learner::fnv1a(bytes(robot.motor_constant_nmpsqrtw), hash);
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 

@@ -49,14 +49,15 @@ TEST(ProcessConfigTest, SettingsReachSimulatorControllerAndGate) {
                           "controller.gate.joints_fault_ticks=9", "summary.motor_constant=2.5"});
   EXPECT_EQ(config.simulator.sensor_delay_ticks, 5);
   EXPECT_EQ(config.simulator.noise.joint_velocity_radps, 0.25);
-  EXPECT_EQ(config.simulator.torque_speed_line.stall_torque_nm, 99.0);
-  EXPECT_EQ(config.simulator.torque_speed_line.no_load_speed_radps, 28.1);
+  EXPECT_EQ(config.simulator.torque_speed_line.stall_torque_nm,
+            (LegJoints<double>{99.0, 99.0, 99.0}));
+  EXPECT_EQ(config.simulator.torque_speed_line.no_load_speed_radps[2], 28.1);
   EXPECT_EQ(config.controller.walk.latency_ticks, 20u);
   EXPECT_EQ(config.controller.walk.kd_nmsprad, 0.7);
   EXPECT_EQ(config.controller.damping.kd_nmsprad, 3.0);
   EXPECT_EQ(config.controller.gate.tilt_fault_deg, 50.0);
   EXPECT_EQ(config.controller.gate.joints_fault_ticks, 9u);
-  EXPECT_EQ(config.motor_constant, 2.5);
+  EXPECT_EQ(config.motor_constant[2], 2.5);
 }
 
 TEST(ProcessConfigTest, PolicyGivesTheDefaultsOfTheWalk) {

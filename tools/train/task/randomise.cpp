@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/cost_of_transport.h"
 #include "rt/core/command_shaping.h"
 #include "sim/lanes/random.h"
 #include "sim/step/actuator.h"
@@ -185,23 +186,48 @@ void Task::new_robot(int env, Env& e) {
     leg.foot = leg.foot + sim::Vec3<double>{uniform(env, e, -d, d), uniform(env, e, -d, d),
                                             uniform(env, e, -d, d)};
   }
+  new_joints(env, e, m);
   batch_.set_model(env, sim::convert_model<float>(m));
   sim::BatchDrive<float>& drive = e.drive;
   drive.kp = static_cast<float>(config_.policy.kp_nmprad * spread(r.kp_spread));
   drive.kd = static_cast<float>(config_.policy.kd_nmsprad * spread(r.kd_spread));
   drive.torque_scale = static_cast<float>(spread(r.torque_spread));
-  const sim::TorqueSpeedLine& line = robot_.torque_speed_line;
-  drive.stall_torque_nm = r.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
-  drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+  drive.line = {};
+  if (r.torque_speed_line) drive.line = sim::drive_line<float>(robot_.torque_speed_line);
+  drive.heat_factor = heat_factors<float>(robot_.motor_constant_nmpsqrtw);
   const double latency_s = r.latency_s[static_cast<std::size_t>(3.0 * uniform(env, e))];
-  drive.switch_tick = static_cast<float>(std::round(latency_s * kSimulationHz));
+  set_latency(e, latency_s);
   const double offset = config_.noise.joint_offset_rad;
   for (float& o : e.sensors.joint_offset_rad) {
     o = static_cast<float>(uniform(env, e, -offset, offset));
   }
   e.noise_level = static_cast<float>(uniform(env, e, 0.0, config_.noise.level_high));
   e.robot_features = {static_cast<float>(5.0 * (base_factor - 1.0)),
-                      drive.switch_tick / kStepsPerAction - 1.0f};
+                      static_cast<float>(e.latency_ticks) / kStepsPerAction - 1.0f};
+}
+
+// Friction and rotors: nothing is drawn where nothing differs, so that the other draws stay.
+void Task::new_joints(int env, Env& e, sim::RobotModel<double>& m) const {
+  const RobotSettings& r = config_.robot;
+  const bool rubs = *std::ranges::max_element(m.friction_nm) > 0.0;
+  if (rubs && r.friction_spread > 0.0) {
+    const double factor = uniform(env, e, 1.0 - r.friction_spread, 1.0 + r.friction_spread);
+    for (double& friction_nm : m.friction_nm) friction_nm *= factor;
+  }
+  if (r.rotor_inertia_low == r.rotor_inertia_high) return;
+  for (int kind = 0; kind < kJointsPerLeg; ++kind) {
+    const double factor =
+        log_between(r.rotor_inertia_low, r.rotor_inertia_high, uniform(env, e), 1.0);
+    for (int l = 0; l < kNumLegs; ++l) m.rotor_inertia[kJointsPerLeg * l + kind] *= factor;
+  }
+}
+
+// A delay of more than a policy step makes all actions a step late.
+void Task::set_latency(Env& e, double latency_s) {
+  e.latency_ticks = static_cast<std::int32_t>(std::round(latency_s * kSimulationHz));
+  const std::int32_t within =
+      e.latency_ticks > kStepsPerAction ? e.latency_ticks - kStepsPerAction : e.latency_ticks;
+  e.drive.switch_tick = static_cast<float>(within);
 }
 
 void Task::hard_reset(int env, Env& e, double nominal_share) {
@@ -229,7 +255,8 @@ void Task::hard_reset(int env, Env& e, double nominal_share) {
   for (int j = 0; j < kNumJoints; ++j) {
     x.q[j] = static_cast<float>(robot_.nominal_rad[j] +
                                 off * uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
-    e.drive.target_before[j] = e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]);
+    e.drive.target_before[j] = e.drive.target[j] = e.newest_target[j] =
+        static_cast<float>(robot_.nominal_rad[j]);
   }
   const auto draw = [&](double width) {
     return static_cast<float>(uniform(env, e, -width, width));
@@ -269,7 +296,7 @@ void Task::begin_trial(int env, const Trial& trial) {
   e.target = trial.command;
   e.stand_steps_left = static_cast<std::int32_t>(kPolicyHz * trial.stand_s);
   e.command_steps_left = std::numeric_limits<std::int32_t>::max();
-  e.drive.switch_tick = static_cast<float>(std::round(trial.latency_s * kSimulationHz));
+  set_latency(e, trial.latency_s);
 }
 
 // The robot goes on as it is, perhaps on other ground.

@@ -115,6 +115,8 @@ class Task {
     // For the critic: of each patch of ground, and of the robot.
     std::array<std::array<float, kGroundFeatures>, sim::kMaxRegions> ground_features{};
     std::array<float, 2> robot_features{};
+    std::int32_t latency_ticks = 0;     // of the action, in steps of the simulation
+    JointArray<float> newest_target{};  // of the latest action, rad
     sim::BatchDrive<float> drive;
     sim::Terrain<float> terrain;
   };
@@ -135,6 +137,8 @@ class Task {
                                   std::array<float, kGroundFeatures>& features) const;
   void new_ground(int env, Env& e, float x_m);
   void new_robot(int env, Env& e);
+  void new_joints(int env, Env& e, sim::RobotModel<double>& model) const;
+  static void set_latency(Env& e, double latency_s);
   void hard_reset(int env, Env& e, double nominal_share);
   void soft_reset(int env, Env& e, float x_m);
   bool push(int env, Env& e, sim::RobotState<float>& state) const;

@@ -116,12 +116,15 @@ inline double spring_damping_nspm(double stiffness_npm, double ratio, double rob
 
 /// How robots differ from the one in the robot's file.
 struct RobotSettings {
-  double base_mass_spread = 0;         ///< relative
-  double link_mass_spread = 0;         ///< relative
-  double foot_position_m = 0;          ///< largest deviation, each axis
-  double kp_spread = 0;                ///< relative
-  double kd_spread = 0;                ///< relative
-  double torque_spread = 0;            ///< of delivered over commanded torque, relative
+  double base_mass_spread = 0;    ///< relative
+  double link_mass_spread = 0;    ///< relative
+  double foot_position_m = 0;     ///< largest deviation, each axis
+  double kp_spread = 0;           ///< relative
+  double kd_spread = 0;           ///< relative
+  double torque_spread = 0;       ///< of delivered over commanded torque, relative
+  double friction_spread = 0;     ///< of the joints' dry friction, relative
+  double rotor_inertia_low = 0;   ///< least factor of a rotor's inertia
+  double rotor_inertia_high = 0;  ///< largest factor; HAA, HFE and KFE have factors of their own
   std::array<double, 3> base_com_m{};  ///< largest deviation of the base's centre of mass, x, y, z
   std::array<double, 3> latency_s{};   ///< delays of the action, rounded to steps of the simulation
   bool torque_speed_line = false;      ///< whether drives lose torque towards their top speed
