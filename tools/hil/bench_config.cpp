@@ -19,7 +19,7 @@ ProcessConfig read_bench_config(const std::string& hardware_path, const std::str
   for (const std::string& assignment : assignments) tree.set(assignment);
   const Policy policy = load_shipped_policy();
   ProcessConfig config = read_process_config(tree, &policy.spec());
-  if (!config.hardware) {
+  if (!config.driver) {
     throw InputError(fmt::format("{}: found no table [hardware]", hardware_path));
   }
   return config;

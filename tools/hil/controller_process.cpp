@@ -5,10 +5,14 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "rt/base/errors.h"
 
@@ -54,6 +58,29 @@ std::optional<int> ControllerProcess::ended() noexcept {
     result_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   return result_;
+}
+
+pid_t child_of(pid_t process) {
+  pid_t child = 0;
+  std::ifstream(fmt::format("/proc/{0}/task/{0}/children", process)) >> child;
+  return child;
+}
+
+void stop_thread(pid_t process, const std::string& name) {
+  for (const auto& task :
+       std::filesystem::directory_iterator(fmt::format("/proc/{}/task", process))) {
+    std::string found;
+    std::getline(std::ifstream(task.path() / "comm"), found);
+    if (found != name) continue;
+    const pid_t thread = std::stoi(task.path().filename());
+    if (ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) == 0 &&
+        ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) == 0) {
+      return;
+    }
+    throw InputError(
+        fmt::format("controller: its thread {} cannot be stopped ({})", name, strerror(errno)));
+  }
+  throw InputError(fmt::format("controller: found no thread {}", name));
 }
 
 }  // namespace sandrunner::hil

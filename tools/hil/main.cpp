@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rt/base/command_line.h"
@@ -22,6 +23,7 @@
 #include "tools/hil/bench.h"
 #include "tools/hil/bench_config.h"
 #include "tools/hil/run_controller.h"
+#include "tools/hil/unitree_bench.h"
 
 namespace sandrunner::hil {
 namespace {
@@ -47,16 +49,34 @@ struct Arguments {
   RunPlace place;
 };
 
+int play_unitree(const Arguments& a, const ProcessConfig& config) {
+  std::vector<TimedUnitreeFault> faults;
+  for (const std::string& text : a.faults) {
+    faults.push_back(read_unitree_fault(text, config.robot.description));
+  }
+  UnitreeBench bench(config, std::move(faults), a.walk_s);
+  become_real_time();
+  to_standard_error(
+      fmt::format("sandrunner-hil: the robot is there, in domain {} on {}; Ctrl-C "
+                  "ends it\n",
+                  config.unitree->domain, config.unitree->interface));
+  const UnitreeReport report = bench.play([] { return interrupted == 0; });
+  if (!a.out.empty()) write_file(a.out, unitree_report_json(report));
+  fmt::print("{}", unitree_report_lines(report));
+  return kExitOk;
+}
+
 int play(const Arguments& a) {
   const ProcessConfig config =
       read_bench_config(a.hardware, a.terrain, a.config_files, a.assignments);
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  std::signal(SIGTERM, [](int) { interrupted = 1; });
+  if (config.unitree) return play_unitree(a, config);
   std::vector<TimedFault> faults;
   for (const std::string& text : a.faults) {
     faults.push_back(read_fault(text, *config.hardware, config.robot.description));
   }
   Bench bench(config, a.imu, std::move(faults), a.walk_s);
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  std::signal(SIGTERM, [](int) { interrupted = 1; });
   become_real_time();
   to_standard_error("sandrunner-hil: twelve drives and the IMU are there; Ctrl-C ends them\n");
   const BenchReport report = bench.play([] { return interrupted == 0; });
@@ -94,9 +114,9 @@ int play_runs(const Arguments& a) {
 int run(int argc, char** argv) {
   Arguments a;
   CLI::App app(
-      "Emulates a robot for a controller that runs elsewhere: twelve CAN drives and a serial IMU, "
-      "in "
-      "real time. Reads the controller's own files.",
+      "Emulates a robot for a controller that runs elsewhere, in real time: twelve CAN drives and "
+      "a "
+      "serial IMU, or a Unitree robot over DDS. Reads the controller's own files.",
       "sandrunner-hil");
   app.option_defaults()->always_capture_default();
   app.add_option("--hardware", a.hardware, "hardware file, the same as the controller's")
@@ -138,7 +158,8 @@ int run(int argc, char** argv) {
   runs->add_option("--set", p.assignments, "one setting, for both; may be repeated")
       ->allow_extra_args(false);
   runs->add_option("--only", a.only, "these runs only")->delimiter(',');
-  app.footer("Kinds of faults:\n" + fault_kinds_help() +
+  app.footer("Kinds of faults:\n" + fault_kinds_help() + "Of a Unitree robot, without +S:\n" +
+             unitree_fault_kinds_help() +
              "Example:\n  sandrunner-hil --hardware moteus.toml --set hardware.imu.device=/tmp/imu "
              "--fault \"8 silent LF_KFE\"");
   if (!parse_command_line(app, argc, argv)) return kExitOk;
