@@ -30,7 +30,9 @@ struct ControllerSigns {
 /// shake it: the wire damps for a moment and writes no more.
 class CommandWatch {
  public:
-  static constexpr std::int64_t kCommandTimeout_ns = 50'000'000;
+  /// The message after the one that follows a command this old comes 2 ms later: no command holds
+  /// for longer than 50 ms.
+  static constexpr std::int64_t kCommandTimeout_ns = 48'000'000;
   static constexpr std::int64_t kDamped_ns = 2'000'000'000;
   static constexpr std::int64_t kForeignDamped_ns = 10'000'000;
   static constexpr std::int64_t kOff_ns = 20'000'000;  ///< some messages, as one may be lost

@@ -66,13 +66,12 @@ bool RobotLink::wait(std::int64_t until_ns) {
 }
 
 bool RobotLink::poll() {
-  bool is_new = false;
   const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
-  take(state_reader_, [&](const void* data, const dds_sample_info_t&) {
-    is_new = states_.take(*static_cast<const LowState*>(data), now_ns) || is_new;
+  const long long states = take(state_reader_, [&](const void* data, const dds_sample_info_t&) {
+    states_.take(*static_cast<const LowState*>(data), now_ns);
   });
   take(command_reader_, [&](const void*, const dds_sample_info_t&) { ++foreign_; });
-  return is_new;
+  return states > 0;
 }
 
 bool RobotLink::wrong_state_type() const {

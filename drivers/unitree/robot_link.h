@@ -28,9 +28,9 @@ class RobotLink {
   RobotLink& operator=(const RobotLink&) = delete;
 
   /// Takes what arrives until `until_ns`, CLOCK_MONOTONIC; returns earlier if something did. True:
-  /// there is a new state.
+  /// a state did, be it a new one or not.
   bool wait(std::int64_t until_ns);
-  /// Takes what has arrived. True: there is a new state.
+  /// Takes what has arrived. True: a state has.
   bool poll();
 
   StateWatch& states() noexcept { return states_; }

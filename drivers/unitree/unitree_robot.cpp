@@ -48,7 +48,10 @@ std::uint64_t UnitreeRobot::faults_of(int j) const noexcept {
 
 void UnitreeRobot::take_state(std::uint64_t tick, SensorFrame& frame) noexcept {
   const unitree::WireReport& report = memory_.report.read();
-  if (started_ && report.counters.taken == newest_.counters.taken) return;
+  if (started_ && report.counters.taken == newest_.counters.taken) {
+    newest_.counters = report.counters;
+    return;
+  }
   const std::int64_t age_ns =
       std::max<std::int64_t>(clock_ns(CLOCK_MONOTONIC) - report.sampled_ns, 0);
   const auto ago = static_cast<std::uint64_t>(age_ns / kControlPeriod_ns);
@@ -92,12 +95,14 @@ void UnitreeRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
 
 void UnitreeRobot::write(const SafeCommand& command) noexcept {
   enabled_ticks_ = command.enabled() ? enabled_ticks_ + 1 : 0;
-  // A joint whose values are not trusted gets no torque while states come. Once none come, its
-  // motor, which has its own encoder, may still hear.
+  // A joint whose values are not trusted gets no torque while states come: its encoder may be
+  // wrong. Once none come, or where no joint is trusted, it is the network, and the motors, which
+  // damp by their own encoders, may still hear.
   const bool states_come = tick_ - state_tick_ <= kStatesStopped_ticks;
+  const bool encoder = states_come && command.blind_joints() != kAllJoints;
   memory_.command.write({.joints = command.joints(),
                          .enabled = command.enabled() ? std::uint64_t{1} : 0,
-                         .blind_joints = states_come ? command.blind_joints() : 0,
+                         .blind_joints = encoder ? command.blind_joints() : 0,
                          .written_ns = clock_ns(CLOCK_MONOTONIC)});
 }
 

@@ -50,6 +50,7 @@ class UnitreeBench {
   /// Plays as long as `more` says so, which is asked in every fifth cycle. `controller`: whom to
   /// kill, 0: nobody.
   UnitreeReport play(const std::function<bool()>& more, pid_t controller = 0);
+  bool all_faults_made() const noexcept { return made_ == script_.size(); }
 
  private:
   struct Drive {
