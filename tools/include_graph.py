@@ -10,15 +10,15 @@ import pathlib
 import re
 import sys
 
-# From the bottom up. A folder may include those of the lines below its own, not its siblings; "drivers/drives/*" are
-# all folders in drivers/drives.
+# From the bottom up. A folder may include those of the lines below its own, not its siblings;
+# "drivers/drives/*" are all folders in drivers/drives.
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
-    ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
+    ["rt/dds", "rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/drives"],
     ["drivers/drives/*"],
-    ["drivers/robot"],
+    ["drivers/robot", "drivers/unitree"],
     ["drivers/check"],
     ["sim/lanes"],
     ["sim/robot"],
@@ -31,9 +31,10 @@ LAYERS = [
     ["rt/telemetry/view"],
     ["rt/run"],
     ["rt"],
-    ["tools/bench/mujoco", "tools/evaluate", "tools/train/data", "tools/train/kernels"],
+    ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
-    ["tools/hil/emulated"],
+    ["tools/train/model"],
+    ["tools/evaluate", "tools/hil/emulated"],
     ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.

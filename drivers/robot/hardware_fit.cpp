@@ -31,7 +31,9 @@ void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
   gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
-  gate.speed_fault_radps = std::min(gate.speed_fault_radps, reportable_speed_radps(h));
+  for (double& fault_radps : gate.speed_fault_radps) {
+    fault_radps = std::min(fault_radps, reportable_speed_radps(h));
+  }
   gate.hanging = h.hanging;
 }
 
@@ -46,11 +48,12 @@ void fit_drives_to(const GateConfig& gate, HardwareConfig& h) {
                     h.drive_timeout_s, stall_s));
   }
   const double reportable_radps = reportable_speed_radps(h);
-  if (gate.speed_fault_radps > reportable_radps) {
+  const double highest_radps = *std::ranges::max_element(gate.speed_fault_radps);
+  if (highest_radps > reportable_radps) {
     throw InputError(
         fmt::format("controller.gate.speed_fault_radps: {} rad/s is more than the drives' replies "
                     "can report, {:.1f}; it would never be a fault",
-                    gate.speed_fault_radps, reportable_radps));
+                    highest_radps, reportable_radps));
   }
   for (int j = 0; j < kNumJoints; ++j) {
     DriveConfig& drive = h.drives[j];

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "drivers/robot/hardware_fit.h"
+#include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/run/robot_drivers.h"
 
@@ -17,7 +18,7 @@ struct RobotKey {
   std::string robot = "raibo";
 };
 constexpr Setting<RobotKey> kRobot[] = {
-    {"robot", &RobotKey::robot, "raibo, or the file of another robot (--robot)."},
+    {"robot", &RobotKey::robot, "raibo, go2, or the file of another robot (--robot)."},
 };
 constexpr Setting<ProcessConfig> kView[] = {
     {"drive", &ProcessConfig::view_drive,
@@ -29,7 +30,7 @@ constexpr Setting<RecordingLimits> kRecording[] = {
     {"limit_s", &RecordingLimits::time_s, 0.1, 1e9, "Longest recording."},
 };
 constexpr Setting<ProcessConfig> kSummary[] = {
-    {"motor_constant", &ProcessConfig::motor_constant, 1e-3, 1e3,
+    {"motor_constant", repeated<1>(&ProcessConfig::motor_constant), 1e-3, 1e3,
      "k_m of the cost of transport, N m/sqrt(W) at the joint.", kFromRobotFile},
 };
 
@@ -37,7 +38,9 @@ constexpr const char* kFromPolicy = "from the policy file";
 
 /// Ends of ranges that the robot's file gives: no setting gives a drive more than that.
 struct Ranges {
-  double kp_nmprad, kd_nmsprad, speed_fault_radps, power_w;
+  double kp_nmprad, kd_nmsprad;
+  LegJoints<double> speed_fault_radps;
+  double power_w;
   bool recorded = false;  ///< what was run once may be read that no run is to have any more
 
   double least(double value) const noexcept { return recorded ? 0.0 : value; }
@@ -157,21 +160,27 @@ std::vector<Setting<GateConfig>> gate_settings(const Ranges& r) {
       rows.back().fallback = kFromRobotFile;
       rows.back().range = range;
     };
-    from_robot(&GateConfig::speed_fault_radps, r.speed_fault_radps,
-               "0 to limits.speed_fault_radps of the robot file");
     from_robot(&GateConfig::power_limit_w, r.power_w, "0 to limits.power_w of the robot file");
   }
   for (const auto& threshold : kGateTickThresholds) add(threshold);
+  for (const auto& t : kGateJointThresholds) {
+    if (t.key == nullptr) continue;
+    static_assert(std::size(kGateJointThresholds) == 2, "speed_fault_radps alone has a setting");
+    rows.emplace_back(t.key, repeated<1>(t.value), t.least,
+                      *std::ranges::max_element(r.speed_fault_radps), t.meaning, kFromRobotFile,
+                      "0 to limits.speed_fault_radps of the robot file");
+  }
   return rows;
 }
 
 Ranges ranges_of(const sim::Robot& robot, bool recorded) {
   // A recording's thresholds are held to what is compiled in alone.
-  const double speed_fault_radps = gate_threshold(&GateConfig::speed_fault_radps).ceiling;
+  LegJoints<double> speed_fault_radps = robot.speed_fault_radps;
+  if (recorded) speed_fault_radps.fill(gate_threshold(&GateConfig::speed_fault_radps).ceiling);
   const double power_w = gate_threshold(&GateConfig::power_limit_w).ceiling;
   return {.kp_nmprad = robot.kp_limit_nmprad,
           .kd_nmsprad = robot.kd_limit_nmsprad,
-          .speed_fault_radps = recorded ? speed_fault_radps : robot.speed_fault_radps,
+          .speed_fault_radps = speed_fault_radps,
           .power_w = recorded ? power_w : robot.power_limit_w,
           .recorded = recorded};
 }
@@ -184,7 +193,7 @@ struct ControllerDefaults {
 
 ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec* spec,
                                        std::uint64_t operator_hold_ticks,
-                                       const HardwareConfig* hardware) {
+                                       const ProcessConfig& process) {
   ControllerConfig c = controller_config(robot);
   if (spec) {
     c.walk.kp_nmprad = spec->kp_nmprad;
@@ -193,7 +202,8 @@ ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec
     c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;
   }
   c.shaping.operator_hold_ticks = operator_hold_ticks;
-  if (hardware) fit_gate_to(*hardware, c.gate);
+  if (process.hardware) fit_gate_to(*process.hardware, c.gate);
+  if (process.unitree) fit_gate_to(*process.unitree, c.gate);
   return {c};
 }
 
@@ -215,6 +225,10 @@ ControllerConfig read_controller(ConfigTree& config, const ControllerDefaults& d
   lower(lowered.speed_limit_radps, c.gate.speed_limit_radps);
   lower(lowered.torque_limit_nm, c.gate.torque_limit_nm);
   read_settings(config, "controller.gate", gate_settings(ranges), c.gate);
+  for (int j = 0; j < kJointsPerLeg; ++j) {  // no joint may be faster than its own
+    double& fault_radps = c.gate.speed_fault_radps[j];
+    fault_radps = std::min(fault_radps, ranges.speed_fault_radps[j]);
+  }
   // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
   const CommandEnvelope &trained = defaults.config.shaping.envelope, &set = c.shaping.envelope;
   const auto at_most = [](double& value, double a, double b) {
@@ -230,7 +244,7 @@ sim::Robot read_robot(ConfigTree& config, const sim::Robot* recorded) {
   RobotKey key;
   read_settings(config, "", kRobot, key);
   if (recorded) return *recorded;
-  return key.robot == RobotKey().robot ? sim::load_raibo() : sim::load_robot(key.robot);
+  return sim::load_robot(key.robot);
 }
 
 /// Throws InputError for a policy whose joints are not the robot's, or whose gains its drives are
@@ -279,16 +293,17 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   if (spec) fit_robot_to(*spec, p.robot);
   p.dds = read_dds_config(config);
   read_settings(config, "view", kView, p);
-  if (config.has("hardware")) {
+  if (config.has("hardware") && is_unitree(config)) {
+    p.unitree = read_unitree_config(config);
+  } else if (config.has("hardware")) {
     p.hardware = read_hardware_config(config, p.robot.description, controller_config(p.robot).gate);
   }
   // Who commands from afar may be lost on the way: the robot then slows down and stands.
   const std::uint64_t hold_ticks = p.dds.enabled || p.view_drive ? p.dds.stale_ticks() : 0;
-  const ControllerDefaults defaults =
-      controller_defaults(p.robot, spec, hold_ticks, p.hardware ? &*p.hardware : nullptr);
+  const ControllerDefaults defaults = controller_defaults(p.robot, spec, hold_ticks, p);
   p.controller = read_controller(config, defaults, ranges_of(p.robot, robot != nullptr));
   if (p.hardware) fit_drives_to(p.controller.gate, *p.hardware);
-  p.driver = read_robot_driver(config, p);
+  p.driver = make_robot_driver(p);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   read_settings(config, "recording", kRecording, p.recording);
@@ -297,6 +312,11 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   config.reject_unknown();
   p.effective = config.effective();
   return p;
+}
+
+std::string shipped_policy_for(ConfigTree& config) {
+  const std::string name = read_robot(config, nullptr).description.name;
+  return shipped_policy_text(name).empty() ? RobotKey().robot : name;
 }
 
 std::vector<SettingLine> process_settings() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/robot/hardware_config.h"
+#include "drivers/unitree/unitree_config.h"
 #include "policy/policy.h"
 #include "rt/base/config_tree.h"
 #include "rt/base/settings.h"
@@ -28,12 +29,13 @@ struct ProcessConfig {
   RealtimeConfig realtime;
   RecordingLimits recording;
   DdsConfig dds;
-  std::optional<HardwareConfig> hardware;     ///< if there is a table [hardware]
-  std::shared_ptr<const RobotDriver> driver;  ///< of a real robot; null: no table of one
-  bool view_drive = false;                    ///< pages of --view that have the key may command
-  int view_port = 8765;                       ///< of --view; 0: one that is free
-  double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
-  std::string effective;        ///< TOML of every setting with the value in effect
+  std::optional<HardwareConfig> hardware;  ///< if there is a table [hardware] of kind "can" ...
+  std::optional<UnitreeConfig> unitree;    ///< ... of kind "unitree"
+  std::shared_ptr<RobotDriver> driver;     ///< of a real robot; null: there is no such table
+  bool view_drive = false;                 ///< pages of --view that have the key may command
+  int view_port = 8765;                    ///< of --view; 0: one that is free
+  LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
+  std::string effective;               ///< TOML of every setting with the value in effect
 };
 
 /// What the controller takes from a robot: posture, gains, limits. Walk's gains are the policy's.
@@ -45,6 +47,10 @@ ControllerConfig controller_config(const sim::Robot& robot);
 /// that no run may have any more. Throws InputError.
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
                                   const sim::Robot* robot = nullptr);
+
+/// Name of the robot whose shipped policy a run with these settings takes: the robot that the key
+/// "robot" names, or Raibo for one that no policy ships for. Throws InputError.
+std::string shipped_policy_for(ConfigTree& config);
 
 /// The keys that are read here and in no other folder, for the reference.
 std::vector<SettingLine> process_settings();

@@ -85,8 +85,7 @@ std::vector<Ran> Lab::run(const Model& model, const std::vector<evaluate::Trial>
   const auto observe = [&](std::size_t i, const evaluate::ObservedStep& step) {
     runs[i].samples.push_back(sample_of(step, *trials[i].terrain, foot_radius_m));
     if (!with_hidden) return;
-    HiddenState& h = runs[i].hidden.emplace_back();
-    std::copy_n(step.hidden.begin(), std::min(h.size(), step.hidden.size()), h.begin());
+    runs[i].hidden.push_back(step.memory->h);
     Estimate& e = runs[i].estimate.emplace_back();
     e[0] = static_cast<float>(step.estimate.body_height_m);
     for (int k = 0; k < 3; ++k) e[1 + k] = static_cast<float>(step.estimate.velocity_mps[k]);

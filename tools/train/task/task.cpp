@@ -70,10 +70,13 @@ void Task::set_targets(int env, const float* modes) {
   e.action_2 = e.action_1;
   e.action_1 = e.action;
   e.drive.target_before = e.drive.target;
+  const bool a_step_late = e.latency_ticks > kStepsPerAction;
   joints_from_modes(config_.policy.mode_gain, modes, 1, e.action.data());
   for (int j = 0; j < kNumJoints; ++j) {
     e.action[j] = std::clamp(e.action[j], -clip, clip);
-    e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]) + scale * e.action[j];
+    const float target = static_cast<float>(robot_.nominal_rad[j]) + scale * e.action[j];
+    e.drive.target[j] = a_step_late ? e.newest_target[j] : target;
+    e.newest_target[j] = target;
   }
   batch_.set_drive(env, e.drive);
 }
