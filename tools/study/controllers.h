@@ -9,11 +9,18 @@
 
 namespace sandrunner::study {
 
+/// What the files of a controller are.
+enum class ModelKind {
+  kPolicy,
+  kStudyModel,  ///< other networks, which see what sensors measure
+  kSeesGround,  ///< networks that see the ground too: no experiment of this folder can run them
+};
+
 struct Controller {
   const char* key;   ///< of its files and in results.json
   const char* name;  ///< the paper's
   plot::Style style;
-  bool is_policy;  ///< its files are policy files; others cannot be run yet
+  ModelKind kind;
 };
 
 /// All of them, in the order of the tables.

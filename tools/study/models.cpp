@@ -23,12 +23,14 @@ constexpr const char* kExpected = "NAME-SEED.safetensors, such as ours-1.safeten
 struct FileName {
   const Controller* controller = nullptr;
   int seed = 0;
+  std::string path = {};
 };
 
 FileName read_name(const std::filesystem::path& path) {
   const std::string stem = path.stem().string();
   const std::size_t dash = stem.rfind('-');
   FileName name;
+  name.path = path.string();
   if (dash != std::string::npos) {
     const char* const end = stem.data() + stem.size();
     const auto [at, error] = std::from_chars(stem.data() + dash + 1, end, name.seed);
@@ -71,26 +73,31 @@ std::vector<Model> load_models(const std::string& folder, const std::vector<int>
     throw InputError(
         fmt::format("--from: found no folder '{}', expected one with {}", folder, kExpected));
   }
-  std::vector<Model> models;
+  std::vector<FileName> names;
   for (const auto& file : files) {
     if (file.path().extension() != ".safetensors") continue;
     const FileName name = read_name(file.path());
-    if (!name.controller->is_policy) continue;
+    if (name.controller->kind == ModelKind::kSeesGround) continue;
     if (!seeds.empty() && std::find(seeds.begin(), seeds.end(), name.seed) == seeds.end()) continue;
-    const std::string path = file.path().string();
-    const std::string bytes = read_input_file(path, "a policy");
-    Policy policy = load_policy_text(bytes, path);
-    require_joints(policy.spec(), robot.description);
-    models.push_back({name.controller, name.seed, std::move(policy), hash_of(bytes)});
+    names.push_back(name);
+  }
+  // The controllers lie in one array, in the order of the tables.
+  std::sort(names.begin(), names.end(), [](const FileName& a, const FileName& b) {
+    return std::tuple(a.controller, a.seed) < std::tuple(b.controller, b.seed);
+  });
+  std::vector<Model> models;
+  for (const FileName& name : names) {
+    const std::string bytes = read_input_file(name.path, "a policy or a study model");
+    evaluate::Subject subject = name.controller->kind == ModelKind::kPolicy
+                                    ? load_policy_text(bytes, name.path)
+                                    : evaluate::load_subject(name.path);
+    require_joints(evaluate::spec_of(subject), robot.description);
+    models.push_back({name.controller, name.seed, std::move(subject), hash_of(bytes)});
   }
   if (models.empty()) {
     throw InputError(
         fmt::format("--from: found no trained controller in '{}', expected {}", folder, kExpected));
   }
-  // The controllers lie in one array, in the order of the tables.
-  std::sort(models.begin(), models.end(), [](const Model& a, const Model& b) {
-    return std::tuple(a.controller, a.seed) < std::tuple(b.controller, b.seed);
-  });
   return models;
 }
 

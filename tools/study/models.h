@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "policy/policy.h"
 #include "sim/robot/robot_model.h"
+#include "tools/evaluate/runner.h"
 #include "tools/study/controllers.h"
 
 namespace sandrunner::study {
@@ -16,7 +16,7 @@ namespace sandrunner::study {
 struct Model {
   const Controller* controller;
   int seed;
-  Policy policy;
+  evaluate::Subject subject;
   std::uint64_t hash;  ///< of its file
 };
 
@@ -27,8 +27,9 @@ std::string model_name(const Model& model);
 std::uint64_t hash_of(std::string_view bytes);
 
 /// The models of `folder` with these seeds (none: all seeds), by controller, then seed. Those of
-/// controllers that cannot be run yet are left out. Throws InputError if there is none, if a file's
-/// name is not that of a controller with a seed, or if a file is no policy for `robot`.
+/// controllers that see more than sensors measure are left out. Throws InputError if there is none,
+/// if a file's name is not that of a controller with a seed, or if a file is neither a policy nor a
+/// study model for `robot`.
 std::vector<Model> load_models(const std::string& folder, const std::vector<int>& seeds,
                                const sim::Robot& robot);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <utility>
+#include <variant>
 
 #include "rt/core/floating_point.h"
 #include "rt/report/side_view.h"
@@ -25,10 +26,12 @@ constexpr double kTimes_s[] = {0.0, 0.27, 0.37, 0.62, 0.78};  // the paper's
 constexpr int kStarts = 16;
 constexpr std::size_t kMostBytes = 3'000'000;
 
+const Policy& policy_of(const Model& model) { return std::get<Policy>(model.subject); }
+
 RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, "dry-sand");
-  ProcessConfig config = read_process_config(tree, &model.policy.spec(), &lab.robot());
+  ProcessConfig config = read_process_config(tree, &policy_of(model).spec(), &lab.robot());
   sim::TerrainDescription& ground = config.simulator.terrain;
   const sim::GroundParameters sand = ground.patches[0].ground;
   sim::GroundParameters loose = sand;
@@ -37,7 +40,7 @@ RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
   ground.patches.push_back({kStripFrom_m, loose});
   ground.patches.push_back({kStripTo_m, sand});
   config.simulator.seed = static_cast<std::uint64_t>(seed);
-  PolicyRunner policy(model.policy);
+  PolicyRunner policy(policy_of(model));
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command("2.5,0,0");
   RunScript script(command, {.walk_s = 5.0, .start_walking = true}, true);
@@ -46,7 +49,7 @@ RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
                           .start = Mode::kWalk,
                           .policy = policy,
                           .op = script},
-                         {.scene = scene_of(config, model.policy.spec().name)})
+                         {.scene = scene_of(config, policy_of(model).spec().name)})
       .record;
 }
 

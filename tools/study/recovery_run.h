@@ -20,6 +20,7 @@ struct RecoveryRun {
 /// At 2.5 m/s over a strip of half the stiffness from 5.0 to 5.3 m: the first of the starts 0 to 15
 /// in which the left front foot alone of the front feet stands on the strip. Nothing: there is
 /// none.
+/// `model`: a policy file.
 std::optional<RecoveryRun> find_recovery_run(const Lab& lab, const Model& model);
 
 /// The robot from its side at the paper's times after the touchdown, to a PNG.

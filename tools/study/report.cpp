@@ -188,7 +188,7 @@ void add_experiments(const Options& options, const std::vector<Model>& models,
     page.add(foam_table(evidence));
   }
   page.section("E7, E8: Simulated grounds and attribution (Fig. 4)");
-  page.add("<p class=\"faint\">not run: they need controllers that are no policy files.</p>\n");
+  page.add("<p class=\"faint\">not run: this program does not run them.</p>\n");
   page.section("E9: Estimator (section S4)");
   page.figures(estimator_figures(evidence));
   page.section("E10: The peer's contact model (fig. S12)");

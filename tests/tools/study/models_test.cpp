@@ -44,10 +44,17 @@ TEST_F(ModelsTest, AreInTheOrderOfTheTablesAndOfTheSeeds) {
   EXPECT_EQ(load({10, 1}), (Names{"ours-10", "env-rigid-1", "env-linear-1"}));
 }
 
-TEST_F(ModelsTest, OfControllersThatCannotBeRunYetAreLeftOut) {
+TEST_F(ModelsTest, OfControllersThatSeeTheGroundAreLeftOut) {
   put("ours-1.safetensors");
-  write_file(folder_.path("tcn-1.safetensors"), "something else");
+  write_file(folder_.path("oracle-h-1.safetensors"), "something else");
   EXPECT_EQ(load(), Names{"ours-1"});
+}
+
+TEST_F(ModelsTest, ThatAreStudyModelsAreRead) {
+  put("tcn-1.safetensors");  // a reader of study models takes a policy too
+  EXPECT_EQ(load(), Names{"tcn-1"});
+  write_file(folder_.path("pl-gm-1.safetensors"), "something else");
+  EXPECT_NE(refusal().find("pl-gm-1.safetensors"), std::string::npos) << refusal();
 }
 
 TEST_F(ModelsTest, RefuseAnUnknownNameAndAnEmptyFolder) {
