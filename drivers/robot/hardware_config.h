@@ -73,9 +73,9 @@ struct HardwareConfig {
 
 /// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu],
 /// [hardware.emergency_stop]. Drives are named by the joints of `robot`, each exactly once. Throws
-/// InputError: a joint without a drive or with two, two drives with one identifier, an unknown
-/// protocol or model, a rate that does not divide the control rate, a drive whose range is below
-/// the limits of `gate` (torque, speed, positions, gains).
+/// InputError for a joint without a drive or with two, for two drives with one identifier, and for
+/// an unknown protocol or model; for a rate that does not divide the control rate; for a drive
+/// whose range is below the limits of `gate` (torque, speed, positions, gains).
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
 /// The keys of these tables, for the reference.

@@ -16,8 +16,8 @@ void fit_gate_to(const HardwareConfig& hardware, GateConfig& gate) noexcept;
 
 /// Adapts the drives to the gate's own settings, which are read after that. A drive whose commands
 /// have a torque limit gets the joint's and enforces it itself, even if this computer fails. Throws
-/// InputError for a time-out that is not longer than the stall that the gate tolerates (drives
-/// would switch off without a fault), and for a speed fault above the speed that replies can
+/// InputError for a time-out that is not longer than the stall that the gate tolerates, as
+/// drives would switch off without a fault. Also for a speed fault above the speed that replies can
 /// report.
 void fit_drives_to(const GateConfig& gate, HardwareConfig& hardware);
 

@@ -89,7 +89,7 @@ struct SensorFrame {
   std::uint64_t tick = 0;
   JointState joints;
   ImuSample imu;
-  std::uint64_t emergency_stop = 0;  ///< 1: somebody presses it
+  std::uint64_t emergency_stop = 0;  ///< 1: pressed
   std::uint64_t drives_cut = 0;      ///< 1: RobotIo::cut_drives was called
   /// Joints whose drive another program commands, or which answers more often than it is asked: bit
   /// j for joint j.

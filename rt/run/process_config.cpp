@@ -7,6 +7,7 @@
 #include <array>
 
 #include "drivers/robot/hardware_fit.h"
+#include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/run/robot_drivers.h"
 
@@ -311,6 +312,11 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   config.reject_unknown();
   p.effective = config.effective();
   return p;
+}
+
+std::string shipped_policy_for(ConfigTree& config) {
+  const std::string name = read_robot(config, nullptr).description.name;
+  return shipped_policy_text(name).empty() ? RobotKey().robot : name;
 }
 
 std::vector<SettingLine> process_settings() {

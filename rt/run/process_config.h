@@ -48,6 +48,10 @@ ControllerConfig controller_config(const sim::Robot& robot);
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
                                   const sim::Robot* robot = nullptr);
 
+/// Name of the robot whose shipped policy a run with these settings takes: the robot that the key
+/// "robot" names, or Raibo for one that no policy ships for. Throws InputError.
+std::string shipped_policy_for(ConfigTree& config);
+
 /// The keys that are read here and in no other folder, for the reference.
 std::vector<SettingLine> process_settings();
 

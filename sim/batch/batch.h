@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many robots at once: packs of 8 or 16 robots in SIMD lanes (or one at a time), each with its own
 // inertia, ground, drives and delay. A robot's trajectory has the same bits at every width, in
-// every lane, beside any neighbours.
+// every lane, next to any neighbours.
 #pragma once
 
 #include <cstddef>

@@ -109,7 +109,7 @@ Robot load_raibo();
 /// Loads a quadruped of this topology. `map_path` is the name of a robot that ships, "raibo" or
 /// "go2", or the path of a TOML file that names the links and joints of
 /// the URDF and gives what a URDF cannot (sim/robot/README.md); a relative `urdf` in it is looked
-/// up beside the map. Throws InputError, one line, for anything that is not such a robot.
+/// up next to the robot file. Throws InputError, one line, for anything that is not such a robot.
 Robot load_robot(const std::string& map_path);
 
 /// As load_robot, from texts; `map_name` and `urdf_name` appear in errors.

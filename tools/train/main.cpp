@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <thread>
 
@@ -21,6 +22,14 @@ namespace sandrunner::train {
 namespace {
 
 std::atomic<bool> interrupted{false};
+
+// Where the policy is, and how to go on.
+void print_end(const std::string& out) {
+  std::string policy = out + "/best.safetensors";
+  if (!std::filesystem::exists(policy)) policy = out + "/policy.safetensors";
+  fmt::print("wrote {}: run it with sandrunner --policy {}\n", out, policy);
+  if (interrupted) fmt::print("interrupted: go on with the same command and --resume\n");
+}
 
 int run(int argc, char** argv) {
   TrainingOptions options;
@@ -92,7 +101,10 @@ int run(int argc, char** argv) {
   if (resume) training.resume();
   prepare_folder(options.out, "--out");
   if (!resume) training.start();
+  fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
+  std::fflush(stdout);
   training.run(interrupted);
+  print_end(options.out);
   return kExitOk;
 }
 

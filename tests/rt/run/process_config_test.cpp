@@ -60,6 +60,33 @@ TEST(ProcessConfigTest, SettingsReachSimulatorControllerAndGate) {
   EXPECT_EQ(config.motor_constant[2], 2.5);
 }
 
+TEST(ProcessConfigTest, ARobotThatShipsIsGivenByItsName) {
+  const ProcessConfig go2 = config_of("rigid", {"robot=go2"});
+  EXPECT_EQ(go2.robot.description.name, "go2");
+  EXPECT_EQ(go2.controller.gate.continuous_torque_nm, go2.robot.continuous_torque_nm);
+  EXPECT_EQ(go2.controller.gate.speed_fault_radps, go2.robot.speed_fault_radps);
+  EXPECT_EQ(go2.motor_constant, go2.robot.motor_constant_nmpsqrtw);
+}
+
+TEST(ProcessConfigTest, TheRobotsFileSaysWhetherDrivesObeyTheirTorqueSpeedLine) {
+  const auto stall_nm = [](const std::vector<std::string>& assignments) {
+    return config_of("rigid", assignments).simulator.torque_speed_line.stall_torque_nm;
+  };
+  EXPECT_EQ(stall_nm({}), (LegJoints<double>{}));
+  EXPECT_EQ(stall_nm({"robot=go2"}), (LegJoints<double>{36.7, 36.7, 70.4}));
+  EXPECT_EQ(stall_nm({"robot=go2", "sim.torque_speed_line=false"}), (LegJoints<double>{}));
+}
+
+TEST(ProcessConfigTest, ASettingLowersTheSpeedFaultOfEachJointButRaisesNone) {
+  const auto fault_radps = [](const std::string& value) {
+    return config_of("rigid", {"robot=go2", "controller.gate.speed_fault_radps=" + value})
+        .controller.gate.speed_fault_radps;
+  };
+  EXPECT_EQ(fault_radps("20"), (LegJoints<double>{20.0, 20.0, 20.0}));
+  EXPECT_EQ(fault_radps("30"), (LegJoints<double>{30.0, 30.0, 24.0}));
+  EXPECT_EQ(fault_radps("[40, 35, 22]"), (LegJoints<double>{40.0, 35.0, 22.0}));
+}
+
 TEST(ProcessConfigTest, PolicyGivesTheDefaultsOfTheWalk) {
   PolicySpec spec = random_policy_file().spec;
   spec.kp_nmprad = 41.0;

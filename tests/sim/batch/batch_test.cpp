@@ -88,6 +88,7 @@ RobotModel<float> random_model(Draw& draw) {
     scale(leg.shank);
     leg.foot = leg.foot + draw.vector(0.01);
   }
+  m.friction_nm.fill(std::fmax(draw(-0.4, 0.4), 0.0));  // half of them have none
   return convert_model<float>(m);
 }
 

@@ -473,7 +473,7 @@ TEST(RobotModelTest, Go2HasThePublishedFigures) {
   EXPECT_EQ(robot.description.name, "go2");
   EXPECT_NEAR(m.mass(), 15.019, 1e-9);
   EXPECT_EQ(m.foot_radius_m, 0.022);
-  EXPECT_NEAR(robot.nominal_height_m, 0.334, 5e-4);
+  EXPECT_NEAR(robot.nominal_height_m, 0.335, 5e-4);
   EXPECT_TRUE(robot.obeys_torque_speed_line);
   for (int l = 0; l < kNumLegs; ++l) {
     const LegModel<double>& leg = m.legs[l];

@@ -84,8 +84,31 @@ void Task::approach_target(Env& e) const {
   }
 }
 
+TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor) {
+  const auto f = [](double value) { return static_cast<float>(value); };
+  const float friction = f(3.0 * (p.friction - 0.75));
+  switch (p.kind) {
+    case sim::GroundKind::kLinear:
+      return {0.0f, f(std::log10(p.stiffness_npm / 10e3)), f(4.0 * (factor - 0.55)), friction};
+    case sim::GroundKind::kRigid:
+      return {1.0f, 2.0f, 2.0f, friction, f(2.0 * (factor - 0.65)), f(100.0 * p.roughness_m)};
+    case sim::GroundKind::kGranular:
+      break;
+  }
+  return {0.0f,
+          f(std::log10(p.sigma_flat_npm3 / 3e6)),
+          f(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
+          friction,
+          f(2.0 * (factor - 0.65)),
+          f(100.0 * p.roughness_m),
+          f((p.recruitment - 2.0) / 0.3),
+          f((p.cone_angle_rad / kDegree_rad - 60.0) / 4.0),
+          f((p.stroke_stiffness_npm - 225.0) / 175.0),
+          f((p.stroke_damping_nspm - 2.0) / 2.0)};
+}
+
 sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
-                                      std::array<float, kGroundFeatures>& features) const {
+                                      TerrainFeatures& features) const {
   const GroundSettings& g = config_.ground;
   sim::GroundParameters p;
   p.friction = uniform(env, e, g.friction_low, g.friction_high);
@@ -106,12 +129,7 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     }
     const double ratio = uniform(env, e, g.spring_damping_ratio_low, g.spring_damping_ratio_high);
     p.damping_nspm = spring_damping_nspm(p.stiffness_npm, ratio, robot_.model.mass());
-    features = {0.0f,
-                static_cast<float>(std::log10(p.stiffness_npm / 10e3)),
-                static_cast<float>(4.0 * (ratio - 0.55)),
-                static_cast<float>(3.0 * (p.friction - 0.75)),
-                0.0f,
-                0.0f};
+    features = terrain_features(p, ratio);
     return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
   } else {
     const double open = curriculum_.ground;
@@ -133,12 +151,7 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     p.stroke_stiffness_npm = uniform(env, e, g.stroke_stiffness_low, g.stroke_stiffness_high);
     p.stroke_damping_nspm = uniform(env, e, g.stroke_damping_low, g.stroke_damping_high);
   }
-  features = {rigid ? 1.0f : 0.0f,
-              rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),
-              rigid ? 2.0f : static_cast<float>(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
-              static_cast<float>(3.0 * (p.friction - 0.75)),
-              static_cast<float>(2.0 * (inertial - 0.65)),
-              static_cast<float>(100.0 * p.roughness_m)};
+  features = terrain_features(p, inertial);
   return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
 }
 
@@ -292,6 +305,7 @@ void Task::begin_trial(int env, const Trial& trial) {
   hard_reset(env, e, trial.nominal_start ? 1.0 : 0.0);
   e.terrain = *trial.terrain;
   batch_.set_terrain(env, e.terrain);
+  e.ground_features[0] = trial.features;
   e.command = {};
   e.target = trial.command;
   e.stand_steps_left = static_cast<std::int32_t>(kPolicyHz * trial.stand_s);

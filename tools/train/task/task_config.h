@@ -59,8 +59,8 @@ struct CommandSettings {
   double change_s = 0;              ///< mean time between commands
   double ramp_share = 0;  ///< of the changes that come as ramps, after a draw not forward ...
   double forward_ramp_share = 0;  ///< ... and forward; the others come at once
-  double start_stand_s = 0;      ///< longest time that a start in the nominal pose is told to stand
-  double acceleration_mps2 = 0;  ///< of a ramp, and of the command after a start, of vx and of vy
+  double start_stand_s = 0;       ///< longest command to stand after a start in the nominal pose
+  double acceleration_mps2 = 0;   ///< of a ramp, and of the command after a start, of vx and of vy
   double yaw_acceleration_radps2 = 0;  ///< likewise
   double centripetal_mps2 = 0;         ///< limit of speed times yaw rate
   double gate_kernel = 0;  ///< least velocity kernel, 0 to 1, at which the top speed rises

@@ -13,12 +13,12 @@
 namespace sandrunner::train {
 namespace {
 
-constexpr int kEnvs = 64;
+constexpr int kWalkers = 64;
 
 std::vector<sim::BatchRobot<float>> robots_of(const Task& task) {
   learner::Checkpoint checkpoint;
   task.save(checkpoint);
-  std::vector<sim::BatchRobot<float>> robots(kEnvs);
+  std::vector<sim::BatchRobot<float>> robots(kWalkers);
   checkpoint.get("task.robots", robots.data(), robots.size());
   return robots;
 }
@@ -27,7 +27,7 @@ TEST(JointsTest, OfGo2HaveFrictionAndRotorsOfTheirOwn) {
   flush_denormals_to_zero();
   const sim::Robot go2 = sim::load_robot("go2");
   const TaskConfig config = shipped_task_config(go2);
-  const auto robots = robots_of(Task(config, go2, {kEnvs, kEnvs}, 1));
+  const auto robots = robots_of(Task(config, go2, {kWalkers, kWalkers}, 1));
   const auto extremes = [&](auto figure) {
     const auto [least, most] = std::ranges::minmax_element(robots, {}, figure);
     return std::pair{figure(*least), figure(*most)};
@@ -52,7 +52,8 @@ TEST(JointsTest, OfGo2HaveFrictionAndRotorsOfTheirOwn) {
 TEST(JointsTest, OfARobotWithoutFrictionHaveNone) {
   flush_denormals_to_zero();
   const sim::Robot raibo = sim::load_raibo();
-  for (const auto& robot : robots_of(Task(shipped_task_config(raibo), raibo, {kEnvs, kEnvs}, 1))) {
+  for (const auto& robot :
+       robots_of(Task(shipped_task_config(raibo), raibo, {kWalkers, kWalkers}, 1))) {
     EXPECT_EQ(robot.model.friction_nm, (JointArray<float>{}));
     EXPECT_EQ(robot.model.rotor_inertia[0], static_cast<float>(raibo.model.rotor_inertia[0]));
   }
@@ -65,8 +66,8 @@ std::pair<int, float> arrival(double latency_s) {
   const sim::Robot raibo = sim::load_raibo();
   TaskConfig config = shipped_task_config(raibo);
   config.robot.latency_s.fill(latency_s);
-  Task task(config, raibo, {kEnvs, kEnvs}, 1);
-  learner::Rollout rollout({kEnvs, 3, Task::privileged_size()}, 1);
+  Task task(config, raibo, {kWalkers, kWalkers}, 1);
+  learner::Rollout rollout({kWalkers, 3, Task::privileged_size()}, 1);
   task.observe(0, 0, rollout);
   for (int t = 0; t < 3; ++t) {
     rollout.action(t).setOnes();
