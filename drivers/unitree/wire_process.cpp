@@ -60,7 +60,7 @@ class Wire {
   bool may_go_on() const { return controller_is_there() && !memory_.ended; }
 
   bool become_real_time() {
-    mlockall(MCL_CURRENT | MCL_FUTURE);
+    mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
     const sched_param priority{.sched_priority = kPriority};
     const bool obtained = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
     memory_.real_time = obtained;
