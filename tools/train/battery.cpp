@@ -279,6 +279,20 @@ BatteryFigures Battery::figures() const {
   return f;
 }
 
+std::vector<Battery::Survival> Battery::survival() const {
+  std::vector<Survival> all;
+  for (const Ground& ground : grounds_) {
+    Survival of_ground{ground.name, {}};
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      const Run& run = runs_[i];
+      if (run.trial.terrain != &ground.terrain || run.speed < 0 || sums_[i].fell) continue;
+      ++of_ground.alive[static_cast<std::size_t>(run.speed)];
+    }
+    all.push_back(of_ground);
+  }
+  return all;
+}
+
 std::vector<std::string> Battery::grounds() const {
   std::vector<std::string> names;
   for (const Ground& ground : grounds_) names.push_back(ground.name);

@@ -74,6 +74,13 @@ class Battery {
   /// Runs the policy with these parameters of the layout. Not from within a task of the pool.
   BatteryFigures run(const std::vector<float>& parameters);
 
+  /// After `run`, of each ground: how many of the forward runs, slowest first, did not fall.
+  struct Survival {
+    std::string ground;
+    std::array<int, kForwardSpeeds> alive{};
+  };
+  std::vector<Survival> survival() const;
+
   /// The names of the grounds.
   std::vector<std::string> grounds() const;
 

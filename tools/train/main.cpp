@@ -24,17 +24,43 @@ namespace {
 std::atomic<bool> interrupted{false};
 
 // Where the policy is, and how to go on.
-void print_end(const std::string& out) {
+void print_end(const std::string& out, bool are_a_robots) {
   std::string policy = out + "/best.safetensors";
   if (!std::filesystem::exists(policy)) policy = out + "/policy.safetensors";
-  fmt::print("wrote {}: run it with sandrunner --policy {}\n", out, policy);
+  if (are_a_robots) {
+    fmt::print("wrote {}: run it with sandrunner --policy {}\n", out, policy);
+  } else {
+    fmt::print("wrote {}: no robot runs {}, a study model\n", out, policy);
+  }
   if (interrupted) fmt::print("interrupted: go on with the same command and --resume\n");
+}
+
+// The battery of these settings, with the networks of a file.
+void judge(const TrainConfig& config, const sim::Robot& robot, const std::string& file,
+           int threads) {
+  const TaskNetwork network = read_task_network(file, config.task.policy.mode_gain);
+  require_joints(network.spec, robot.description);
+  WorkerPool pool(threads);
+  Battery battery(config.battery, config.task, config.learner.block_envs, robot, network.layout,
+                  pool);
+  const BatteryFigures figures = battery.run(network.parameters);
+  fmt::print("{}\n{:<14}", Progress::summary(figures), "alive at, m/s");
+  for (const double share : config.battery.forward_share) {
+    fmt::print(" {:>7.2f}", share * config.task.command.speed_max_mps);
+  }
+  for (const Battery::Survival& row : battery.survival()) {
+    fmt::print("\n{:<14}", row.ground);
+    for (const int alive : row.alive) {
+      fmt::print(" {:>7}", fmt::format("{}/{}", alive, config.battery.runs));
+    }
+  }
+  fmt::print("\n");
 }
 
 int run(int argc, char** argv) {
   TrainingOptions options;
   options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  std::string config_file, from_file, robot_name = "raibo";
+  std::string config_file, from_file, judged_file, robot_name = "raibo";
   std::vector<std::string> assignments;
   bool resume = false, explain = false;
   CLI::App app{"Trains a policy from random weights on randomised deformable ground.",
@@ -69,6 +95,9 @@ int run(int argc, char** argv) {
                  "policy file to go on from instead of random weights: for other ground or another "
                  "robot")
       ->type_name("FILE");
+  app.add_option("--judge", judged_file,
+                 "run the battery of these settings with a policy file or study model, and end")
+      ->type_name("FILE");
   app.add_flag("--explain", explain, "say what the lines of progress mean, and end");
   app.footer(
       "Examples:\n"
@@ -79,7 +108,8 @@ int run(int argc, char** argv) {
     fmt::print("{}", Progress::explanation());
     return kExitOk;
   }
-  if (options.out.empty()) throw InputError("--out: found none, expected a folder");
+  if (judged_file.empty() && options.out.empty())
+    throw InputError("--out: found none, expected a folder");
   if (resume && !from_file.empty()) {
     throw InputError("--from: expected without --resume, which has weights of its own");
   }
@@ -90,6 +120,10 @@ int run(int argc, char** argv) {
   for (const std::string& assignment : assignments) tree.set(assignment);
   const TrainConfig config = read_train_config(tree);
   check_robot(config.task, robot);
+  if (!judged_file.empty()) {
+    judge(config, robot, judged_file, options.threads);
+    return kExitOk;
+  }
   if (!resume && std::filesystem::exists(Training::checkpoint_path(options.out))) {
     throw InputError(
         fmt::format("--out: '{}' holds a training; give --resume or another folder", options.out));
@@ -104,7 +138,7 @@ int run(int argc, char** argv) {
   fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
   std::fflush(stdout);
   training.run(interrupted);
-  print_end(options.out);
+  print_end(options.out, config.learner.network.are_a_robots());
   return kExitOk;
 }
 

@@ -28,7 +28,7 @@ Tcn<Scalar>::Tcn(const ParameterLayout& layout, int steps, int envs, const Kerne
       steps_(steps),
       envs_(envs),
       history_(kProprioceptionSize, (kTcnPast + steps) * envs),
-      starts_(static_cast<std::size_t>((steps + 1) * envs)),
+      starts_(envs, steps + 1),
       output_(layout.hidden(), steps * envs),
       dense_gradient_(layout.hidden(), steps * envs) {
   std::vector<int> times;
@@ -60,10 +60,10 @@ void Tcn<Scalar>::find_starts(const ConstMatrixRef<Scalar>& memory, const std::u
                               std::ptrdiff_t reset_stride) {
   for (int env = 0; env < envs_; ++env) {
     int start = -static_cast<int>(memory(kTcnPast * kProprioceptionSize, env));
-    starts_[static_cast<std::size_t>(env)] = start;
+    starts_(env, 0) = start;
     for (int t = 0; t < steps_; ++t) {
       if (reset[t * reset_stride + env] != 0) start = t;
-      starts_[static_cast<std::size_t>((t + 1) * envs_ + env)] = start;
+      starts_(env, t + 1) = start;
     }
   }
 }
@@ -144,7 +144,7 @@ void Tcn<Scalar>::remember(MatrixRef<Scalar> memory) const {
         history_.middleCols((steps_ + past) * envs_, envs_);
   }
   for (int env = 0; env < envs_; ++env) {
-    const int age = steps_ - starts_[static_cast<std::size_t>(steps_ * envs_ + env)];
+    const int age = steps_ - starts_(env, steps_);
     memory(kTcnPast * kProprioceptionSize, env) = static_cast<Scalar>(std::min(age, kTcnPast));
   }
 }

@@ -53,8 +53,7 @@ class Tcn {
                    std::ptrdiff_t reset_stride);
   /// Whether a tap of an environment at `time` reads what lies behind a reset.
   bool is_cut(int time, int dilation, int tap, int env) const {
-    return time - dilation * tap <
-           starts_[static_cast<std::size_t>((time < 0 ? 0 : time + 1) * envs_ + env)];
+    return time - dilation * tap < starts_(env, time < 0 ? 0 : time + 1);
   }
   void gather(const Matrix<Scalar>& below, Convolution& layer) const;
   void scatter(const Convolution& layer, Convolution& below) const;
@@ -64,8 +63,8 @@ class Tcn {
   int steps_;
   int envs_;
   Matrix<Scalar> history_;  // observations from 52 steps before the window on
-  // For each environment, the first step that counts: of all before the window, then of each step.
-  std::vector<int> starts_;
+  // The first step that counts for each environment (row): before the window, then in each step.
+  Matrix<int> starts_;
   std::array<Convolution, kTcnDilations.size()> convolutions_;
   Matrix<Scalar> output_;
   Matrix<Scalar> dense_gradient_;

@@ -28,7 +28,7 @@ class TcnTest : public testing::Test {
       : layout_(tcn_sizes(), 1),
         weights_(layout_),
         observation_(kObservationSize, kTcnSteps * kTcnEnvs),
-        reset_(static_cast<std::size_t>(kTcnSteps * kTcnEnvs)) {
+        reset_(Matrix<std::uint8_t>::Zero(kTcnEnvs, kTcnSteps)) {
     weights_.set(initial_parameters(layout_, 3, 0.5).data());
     NormalSource normal(5);
     for (Eigen::Index i = 0; i < observation_.size(); ++i) {
@@ -36,7 +36,7 @@ class TcnTest : public testing::Test {
     }
   }
 
-  void set_reset(int step, int env) { reset_[static_cast<std::size_t>(step * kTcnEnvs + env)] = 1; }
+  void set_reset(int step, int env) { reset_(env, step) = 1; }
 
   /// In windows of `steps`, the last of which need not be full.
   Matrix<float> encodings(int steps, const Kernels<float>& kernels = best_kernels<float>()) const {
@@ -48,8 +48,7 @@ class TcnTest : public testing::Test {
         tcn.set_input(t, observation_.middleCols((first + t) * kTcnEnvs, kTcnEnvs),
                       Matrix<float>(0, kTcnEnvs));
       }
-      tcn.forward(weights_.encoder(), memory, &reset_[static_cast<std::size_t>(first * kTcnEnvs)],
-                  kTcnEnvs);
+      tcn.forward(weights_.encoder(), memory, &reset_(0, first), kTcnEnvs);
       all.middleCols(first * kTcnEnvs, steps * kTcnEnvs) = tcn.output();
       tcn.remember(memory);
     }
@@ -63,7 +62,7 @@ class TcnTest : public testing::Test {
       tcn.set_input(t, observation_.middleCols((kTcnSteps - count + t) * kTcnEnvs, kTcnEnvs),
                     Matrix<float>(0, kTcnEnvs));
     }
-    const std::vector<std::uint8_t> none(static_cast<std::size_t>(count * kTcnEnvs));
+    const Matrix<std::uint8_t> none = Matrix<std::uint8_t>::Zero(kTcnEnvs, count);
     tcn.forward(weights_.encoder(), Matrix<float>::Zero(layout_.memory(), kTcnEnvs), none.data(),
                 kTcnEnvs);
     return tcn.output().rightCols(kTcnEnvs);
@@ -72,7 +71,7 @@ class TcnTest : public testing::Test {
   ParameterLayout layout_;
   Weights<float> weights_;
   Matrix<float> observation_;
-  std::vector<std::uint8_t> reset_;
+  Matrix<std::uint8_t> reset_;  // an environment a row
 };
 
 TEST_F(TcnTest, StepsOneByOneAreWindowsBitForBitWithResets) {

@@ -195,6 +195,25 @@ TEST_F(TrainCommandTest, AStudentThatIsKilledResumesToTheWeightsOfAnUninterrupte
             std::string::npos);
 }
 
+TEST_F(TrainCommandTest, JudgeRunsTheBatteryWithAPolicyThatStandsOnHardGround) {
+  const std::string path = folder_.path("standing.safetensors");
+  ASSERT_EQ(run("a", {}), 0);
+  PolicyFile standing = policy("a");
+  for (float& weight : standing.parameters.actor.back().weight) weight = 0.0f;
+  for (float& bias : standing.parameters.actor.back().bias) bias = 0.0f;
+  standing.golden = make_golden_example(standing.parameters);
+  write_policy_file(path, standing);
+  const Ended ended = run_process({SANDRUNNER_TRAIN_PROGRAM, "--judge", path, "--set",
+                                   "battery.runs=2", "--set", "battery.duration_s=1", "--set",
+                                   "ground.rigid_envs=64", "--set", "ground.patchy_envs=0", "--set",
+                                   "policy.kp_nmprad=150", "--set", "policy.kd_nmsprad=3"});
+  EXPECT_EQ(ended.code, 0) << ended;
+  EXPECT_NE(ended.out.find("alive 1.000, error"), std::string::npos) << ended;
+  EXPECT_NE(ended.out.find("\nrigid              2/2     2/2     2/2     2/2     2/2\n"),
+            std::string::npos)
+      << ended;
+}
+
 TEST_F(TrainCommandTest, AnotherWiringEndsInAStudyModelThatIsNoPolicy) {
   ASSERT_EQ(run("a", {"--set", "network.actor=\"encoding, estimate, terrain\""}), 0);
   const train::StudyModelFile model =
