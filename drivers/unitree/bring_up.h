@@ -31,7 +31,7 @@ struct StateFigures {
   double rate_hz = 0.0, longest_gap_s = 0.0, tick_rate_hz = 0.0;
 };
 
-/// States are listened to for so long, s, after the first; and the first is waited for.
+/// How long to listen to states after the first, and to wait for the first, s.
 inline constexpr double kListen_s = 0.5, kFirstState_s = 3.0;
 
 /// Listens to states, for kListen_s since the first one. No state: `counters.taken` is 0.

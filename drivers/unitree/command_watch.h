@@ -26,8 +26,8 @@ struct ControllerSigns {
 /// Decides what the wire sends, whatever becomes of the controller. A controller that is silent for
 /// kCommandTimeout_ns, that cut the drives or that is gone leaves its robot damped for kDamped_ns,
 /// then off; a robot that was off stays off. Then nothing is sent any more, even if the controller
-/// comes back. Where another program commands the robot, two programs that write in turn would
-/// shake it: the wire damps for a moment and writes no more.
+/// comes back. Where another program commands the robot, two programs that write alternately
+/// would shake it: the wire damps for a moment and writes no more.
 class CommandWatch {
  public:
   /// The message after the one that follows a command this old comes 2 ms later: no command holds

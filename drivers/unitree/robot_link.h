@@ -37,7 +37,7 @@ class RobotLink {
   MotionSwitcher& switcher() noexcept { return *switcher_; }
   /// Commands that other programs sent to this robot.
   std::uint64_t foreign_commands() const noexcept { return foreign_; }
-  /// Somebody publishes states, or reads commands, of another type under the name of ours.
+  /// Another program publishes states, or reads commands, of another type under the name of ours.
   bool wrong_state_type() const;
   bool wrong_command_type() const;
 

@@ -23,7 +23,7 @@ struct UnitreeConfig {
   int tick_hz = 1000;              ///< of the clock in its states
   int low_battery_percent = 10;    ///< less is a fault
   bool need_remote = true;         ///< a remote that is off or lost is an emergency stop
-  bool release_sport_mode = true;  ///< false: somebody else has switched it off
+  bool release_sport_mode = true;  ///< false: another program has switched it off
 };
 
 /// Whether the table [hardware] in `config` is of kind "unitree".
