@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <sys/types.h>
+
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -45,6 +47,9 @@ struct WireMemory {
   std::atomic<bool> gave_up{false};  ///< the controller is not followed any more
   std::atomic<std::uint64_t> foreign_commands{0}, sent{0}, not_sent{0};
   std::atomic<bool> real_time{false};  ///< it got a real-time priority
+  std::atomic<bool> powered{false};    ///< its last command lets motors give torque
+  std::atomic<pid_t> sender{0};        ///< the process that sends; of the guard
+  std::atomic<bool> guarding{false};   ///< that process died, and the guard damps; of the guard
   std::array<char, 1000> error{};      ///< written before `phase` becomes kFailed
 
   std::atomic<bool> start{false};  // of the controller
@@ -56,6 +61,6 @@ static_assert(std::is_trivially_copyable_v<WireReport>);
 // Or they would need a lock, which is not shared.
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 static_assert(std::atomic<WirePhase>::is_always_lock_free);
-static_assert(std::atomic<bool>::is_always_lock_free);
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
 
 }  // namespace sandrunner::unitree

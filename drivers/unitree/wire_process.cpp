@@ -34,10 +34,26 @@ void pause_ms(long milliseconds) {
   nanosleep(&pause, nullptr);
 }
 
+/// Whether the process of a pidfd has not ended.
+bool runs(int process) noexcept {
+  pollfd file{.fd = process, .events = POLLIN, .revents = 0};
+  return poll(&file, 1, 0) == 0;
+}
+
+// glibc 2.36 declares pidfd_open for C only.
+int open_process(pid_t pid) noexcept { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
+
+bool become_real_time() {
+  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
+  const sched_param priority{.sched_priority = kPriority};
+  return sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
+}
+
 /// The wire, in its process.
 class Wire {
  public:
-  Wire(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory, pid_t controller)
+  /// `controller`: a pidfd.
+  Wire(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory, int controller)
       : config_(config), robot_(robot), memory_(memory), controller_(controller) {}
 
   void run() {
@@ -46,7 +62,8 @@ class Wire {
       pause_ms(5);
     }
     memory_.phase = WirePhase::kStarting;
-    RobotLink link(config_, become_real_time() ? kReceivePriority : 0);
+    memory_.real_time = become_real_time();
+    RobotLink link(config_, memory_.real_time ? kReceivePriority : 0);
     bring_up(link, config_, robot_, [this] { return may_go_on(); });
     if (!may_go_on()) return;
     foreign_before_ = link.foreign_commands();
@@ -56,16 +73,8 @@ class Wire {
   }
 
  private:
-  bool controller_is_there() const { return getppid() == controller_; }
+  bool controller_is_there() const { return runs(controller_) && getppid() == guard_; }
   bool may_go_on() const { return controller_is_there() && !memory_.ended; }
-
-  bool become_real_time() {
-    mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
-    const sched_param priority{.sched_priority = kPriority};
-    const bool obtained = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
-    memory_.real_time = obtained;
-    return obtained;
-  }
 
   void report(RobotLink& link) {
     const StateWatch& states = link.states();
@@ -139,6 +148,7 @@ class Wire {
         break;
     }
     link.send(message_);
+    memory_.powered = message_.motor_cmd[0].mode != kMotorOff;
     memory_.sent = link.sent();
     memory_.not_sent = link.not_sent();
   }
@@ -146,7 +156,8 @@ class Wire {
   const UnitreeConfig& config_;
   const RobotFigures& robot_;
   WireMemory& memory_;
-  const pid_t controller_;
+  const int controller_;
+  const pid_t guard_ = getppid();
   CommandWatch watch_;
   LowCmd message_;
   std::uint64_t foreign_before_ = 0;
@@ -160,13 +171,8 @@ void note_error(WireMemory& memory, const std::string& error) {
 
 /// The wire's whole life; never returns.
 [[noreturn]] void live(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory,
-                       pid_t controller) {
+                       int controller) {
   prctl(PR_SET_NAME, "sandrunner-wire");
-  // A terminal's signals are for the controller: it lets the robot down, for which it needs us.
-  setpgid(0, 0);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGPIPE}) {
-    signal(number, SIG_IGN);
-  }
   try {
     Wire(config, robot, memory, controller).run();
     if (memory.phase != WirePhase::kFailed) memory.phase = WirePhase::kEnded;
@@ -174,6 +180,57 @@ void note_error(WireMemory& memory, const std::string& error) {
     note_error(memory, error.what());
   } catch (const std::exception& error) {
     note_error(memory, fmt::format("hardware.unitree: {}", error.what()));
+  }
+  _exit(0);
+}
+
+/// Damps a robot whose wire is gone, then switches it off.
+void take_over(const UnitreeConfig& config, const RobotFigures& robot) {
+  RobotLink link(config, become_real_time() ? kReceivePriority : 0);
+  link.open_commands();
+  LowCmd message;
+  const auto send_for = [&](std::int64_t time_ns) {
+    const std::int64_t end_ns = clock_ns(CLOCK_MONOTONIC) + time_ns;
+    while (clock_ns(CLOCK_MONOTONIC) < end_ns) {
+      link.send(message);
+      pause_ms(2);
+    }
+  };
+  encode_damping(static_cast<std::uint8_t>(config.motor_mode), robot.damping_kd_nmsprad, message);
+  for (int i = 0; i < kConnect_s * 100 && !link.commands_are_read(); ++i) send_for(10'000'000);
+  send_for(CommandWatch::kDamped_ns);
+  encode_off(message);
+  send_for(CommandWatch::kOff_ns);
+}
+
+/// The guard's whole life; never returns.
+[[noreturn]] void guard(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory,
+                        pid_t controller) {
+  prctl(PR_SET_NAME, "sandrunner-guard");
+  // A terminal's signals are for the controller: it lets the robot down, for which it needs us.
+  setpgid(0, 0);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGPIPE}) {
+    signal(number, SIG_IGN);
+  }
+  const int process = open_process(controller);
+  if (process < 0 || getppid() != controller) _exit(0);
+  const pid_t sender = fork();
+  if (sender == 0) live(config, robot, memory, process);
+  if (sender < 0) {
+    note_error(memory, "hardware.unitree: no process can be started");
+    _exit(0);
+  }
+  memory.sender = sender;
+  int status = 0;
+  while (waitpid(sender, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) && memory.powered) {
+    memory.guarding = true;
+    try {
+      take_over(config, robot);
+    } catch (const InputError&) {
+      // The network is gone: nothing can be sent any more.
+    }
   }
   _exit(0);
 }
@@ -190,30 +247,31 @@ WireProcess::WireProcess(const UnitreeConfig& config, const RobotFigures& robot)
   memory_ = new (shared) WireMemory;
   const pid_t controller = getpid();
   pid_ = fork();
-  if (pid_ == 0) live(config, robot, *memory_, controller);
+  if (pid_ == 0) guard(config, robot, *memory_, controller);
   if (pid_ < 0) {
     const int error = errno;
     munmap(shared, sizeof(WireMemory));
     throw InputError(
         fmt::format("hardware.unitree: no process can be started ({})", std::strerror(error)));
   }
-  // glibc 2.36 declares pidfd_open for C only.
-  process_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+  process_ = open_process(pid_);
 }
 
 WireProcess::~WireProcess() {
   memory_->ended = true;
-  for (int i = 0; i < 200 && runs(); ++i) pause_ms(5);
-  if (runs()) kill(pid_, SIGKILL);
-  waitpid(pid_, nullptr, 0);
+  for (int i = 0; i < 200 && runs() && !memory_->guarding; ++i) pause_ms(5);
+  if (!memory_->guarding) {
+    if (runs()) {
+      kill(memory_->sender, SIGKILL);
+      kill(pid_, SIGKILL);
+    }
+    waitpid(pid_, nullptr, 0);
+  }
   close(process_);
   munmap(memory_, sizeof(WireMemory));
 }
 
-bool WireProcess::runs() const noexcept {
-  pollfd file{.fd = process_, .events = POLLIN, .revents = 0};
-  return poll(&file, 1, 0) == 0;
-}
+bool WireProcess::runs() const noexcept { return unitree::runs(process_); }
 
 void WireProcess::connect() {
   memory_->start = true;

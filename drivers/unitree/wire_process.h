@@ -14,13 +14,15 @@ namespace sandrunner::unitree {
 /// The process that owns the wire to a robot: it alone is in the robot's DDS domain. It sends the
 /// newest command 500 times a second, and what CommandWatch says where the controller falls silent,
 /// ends or is killed. So a controller that does not run any more leaves a damped robot, whatever
-/// the robot itself does when commands stop. Example: wire_process_test.cpp.
+/// the robot itself does when commands stop. It is the child of a second process, the guard, which
+/// does nothing but wait, and damps the robot where the first one is killed or crashes. Example:
+/// wire_process_test.cpp.
 class WireProcess {
  public:
-  /// Forks it; it does nothing yet. To be called while this process has one thread. Throws
+  /// Forks them; they do nothing yet. To be called while this process has one thread. Throws
   /// InputError.
   WireProcess(const UnitreeConfig& config, const RobotFigures& robot);
-  /// Ends it; waits for that, or kills it after a second.
+  /// Ends them; waits for that, or kills them after a second. A guard that damps goes on alone.
   ~WireProcess();
   WireProcess(const WireProcess&) = delete;
   WireProcess& operator=(const WireProcess&) = delete;
@@ -29,13 +31,12 @@ class WireProcess {
   void connect();
   WireMemory& memory() noexcept { return *memory_; }
   const WireMemory& memory() const noexcept { return *memory_; }
-  pid_t pid() const noexcept { return pid_; }
-  /// Whether it still runs.
+  /// Whether they still run.
   bool runs() const noexcept;
 
  private:
   WireMemory* memory_ = nullptr;
-  pid_t pid_ = 0;
+  pid_t pid_ = 0;     // of the guard
   int process_ = -1;  // pidfd: readable once it has ended
 };
 

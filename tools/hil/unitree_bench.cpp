@@ -205,7 +205,7 @@ void UnitreeBench::signal_controller(UnitreeFaultKind kind) const {
   if (kind == Kind::kStop) kill(controller_, SIGSTOP);
   if (kind == Kind::kHang) stop_thread(controller_, "control");
   if (kind == Kind::kWireKill) {
-    if (const pid_t wire = child_of(controller_); wire > 0) kill(wire, SIGKILL);
+    if (const pid_t wire = child_of(child_of(controller_)); wire > 0) kill(wire, SIGKILL);
   }
 }
 

@@ -23,6 +23,7 @@ namespace {
 constexpr const char* kDamping = "damping, then off";
 constexpr const char* kWalksOn = "walks on; counted";
 constexpr const char* kWire = "the wire damps, then off";
+constexpr const char* kGuard = "the wire's guard damps, then off";
 constexpr const char* kNotStarted = "nothing is commanded";
 constexpr const char* kStale = "joints_stale";
 constexpr const char* kForeign = "ANOTHER PROGRAM COMMANDS THE ROBOT";
@@ -31,6 +32,8 @@ constexpr auto kNone = NamedJoints::kNone, kOne = NamedJoints::kOne, kAll = Name
 // Joint values are a fault when they are 10 ms old; the state before was up to 2 ms old when the
 // fault began, and a command takes up to 2 ms to the wire and 2 ms to the robot's next look.
 constexpr double kStale_s = 0.016, kAtOnce_s = 0.008, kWire_s = 0.052;
+// The guard joins the domain first.
+constexpr double kGuard_s = 0.1;
 
 constexpr auto kRuns = std::to_array<UnitreeRun>({
     {"gap-4", "states are missing for 4 ms", "1 gap 4", "", kNone, "", kWalksOn, 0, 0.0},
@@ -100,10 +103,10 @@ constexpr auto kRuns = std::to_array<UnitreeRun>({
      "the control thread hangs", kWire, 1, kWire_s},
     {"hang-damps", "the same; the firmware damps after 100 ms", "1 hang", "", kNone,
      "the control thread hangs", kWire, 1, kWire_s, "start firmware-damps"},
-    {"wire-kill", "SIGKILL to the wire's process; the firmware holds commands", "1 wire-kill",
-     kStale, kAll, "", "the last command holds until the robot is switched off", 1, 0.0},
+    {"wire-kill", "SIGKILL to the wire; the firmware holds commands", "1 wire-kill", kStale, kAll,
+     "", kGuard, 1, kGuard_s},
     {"wire-kill-damps", "the same; the firmware damps after 100 ms", "1 wire-kill", kStale, kAll,
-     "", "the firmware damps", 1, 0.11, "start firmware-damps"},
+     "", kGuard, 1, kGuard_s, "start firmware-damps"},
     {"walks", "nothing", "", "", kNone, "", "walks", 0, 0.0},
 });
 

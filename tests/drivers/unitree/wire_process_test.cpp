@@ -4,6 +4,7 @@
 #include "drivers/unitree/wire_process.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -27,13 +28,18 @@ namespace {
 
 using hil::UnitreePeer;
 
-constexpr int kDomain = 71;
 constexpr double kKp = 31.0, kDampingKd = 2.5;
 
+/// Another domain in each test: the wire of the one before may still damp its robot.
 UnitreeConfig config_of_test() {
+  static int tests = 0;
+  static const testing::TestInfo* last = nullptr;
+  const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
+  if (test != last) ++tests;
+  last = test;
   UnitreeConfig config;
   config.interface = "lo";
-  config.domain = kDomain;
+  config.domain = 60 + (getpid() + tests) % 150;
   return config;
 }
 
@@ -65,6 +71,7 @@ struct Heard {
 struct Shared {
   std::atomic<int> told{0};     ///< 0: nothing yet, 1: ready, 2: refused
   std::atomic<int> wish{0};     ///< what it is to do next
+  std::atomic<pid_t> wire{0};   ///< the process that sends
   std::array<char, 1000> said;  ///< why it was refused
 };
 enum Wish : int { kCommand, kCut, kEnd };
@@ -85,6 +92,8 @@ class WireProcessTest : public testing::Test {
 
   /// Starts the controller with its wire, before this process has threads, then the robot's end.
   void start(const UnitreeConfig& config = config_of_test(), bool wrong_type = false) {
+    const sched_param priority{.sched_priority = 60};
+    sched_setscheduler(0, SCHED_FIFO, &priority);  // if it may: on a busy computer it matters
     controller_ = fork();
     if (controller_ == 0) control(config);
     robot_ = std::make_unique<UnitreePeer>(config_of_test(), wrong_type);
@@ -132,9 +141,9 @@ class WireProcessTest : public testing::Test {
     }
     return longest_s;
   }
-  /// Does `fault` to a robot that is followed; expects damping within 52 ms, then off after 2 s,
+  /// Does `fault` to a robot that is followed; expects damping in time, then off after 2 s,
   /// then nothing. What this computer held up the robot by counts for nothing.
-  void expect_damping_after(const std::function<void()>& fault) {
+  void expect_damping_after(const std::function<void()>& fault, double within_s = 0.052) {
     ASSERT_TRUE(ready());
     ASSERT_TRUE(play([&] { return first_after(0.0, Kind::kFollowed) > 0.0; }));
     play_for(0.2);
@@ -143,10 +152,10 @@ class WireProcessTest : public testing::Test {
     play_for(2.5);
     const double damped_s = first_after(fault_s, Kind::kDamped);
     ASSERT_GT(damped_s, 0.0);
-    EXPECT_LE(damped_s - fault_s, 0.052 + 0.002 + held_up_s(fault_s));
+    EXPECT_LE(damped_s - fault_s, within_s + 0.002 + held_up_s(fault_s));
     EXPECT_EQ(first_after(damped_s, Kind::kFollowed), -1.0);
     const double off_s = first_after(fault_s, Kind::kOff);
-    EXPECT_NEAR(off_s - damped_s, 2.0, 0.05 + held_up_s(fault_s));
+    EXPECT_NEAR(off_s - damped_s, 2.0, 0.1 + held_up_s(fault_s));
     const double end_s = last_heard_s();
     EXPECT_LE(end_s - off_s, 0.03 + held_up_s(fault_s));
     EXPECT_GT(now_s() - end_s, 0.2);
@@ -172,6 +181,7 @@ class WireProcessTest : public testing::Test {
       shared_->told = 2;
       while (true) pause();
     }
+    shared_->wire = wire.memory().sender.load();
     shared_->told = 1;
     WireCommand command;
     command.enabled = 1;
@@ -239,6 +249,12 @@ TEST_F(WireProcessTest, AControllerThatCrashesEndsInDampingThenOff) {
 TEST_F(WireProcessTest, CutDrivesEndInDampingThenOff) {
   start();
   expect_damping_after([&] { shared_->wish = kCut; });
+}
+
+TEST_F(WireProcessTest, AKilledWireEndsInDampingByItsGuard) {
+  start();
+  // A participant of its own joins the domain first.
+  expect_damping_after([&] { kill(shared_->wire, SIGKILL); }, 0.4);
 }
 
 TEST_F(WireProcessTest, AnEndedControllerLeavesTheMotorsOff) {

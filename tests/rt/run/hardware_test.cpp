@@ -98,6 +98,16 @@ TEST_F(HardwareTest, ARobotOfAnotherKindHasADryRunToo) {
   EXPECT_THAT(output(), HasSubstr("motor_cmd[ 4]  LF_HFE         q   0.5598\n"));
 }
 
+TEST_F(HardwareTest, CheckOfARobotOfAnotherKindHasNoOptions) {
+  write_file(folder_.path("hardware.toml"), read_file(SANDRUNNER_UNITREE_EXAMPLE));
+  for (const char* const option : {"--plan", "--move", "--nudge", "--zero lying"}) {
+    expect_refused(std::string("check hardware.toml ") + option,
+                   "found hardware.kind \"unitree\", expected \"can\" with --plan");
+  }
+  expect_refused("check hardware.toml --set hardware.unitree.interface=nosuch0",
+                 "DDS: domain 0 on interface nosuch0");
+}
+
 TEST_F(HardwareTest, TheGateWaitsForStatesThatCome500TimesASecond) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, "dry-sand");
