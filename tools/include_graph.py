@@ -35,6 +35,7 @@ LAYERS = [
     ["tools/train/learner", "tools/train/task"],
     ["tools/hil/emulated"],
     ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
+    ["tools/python"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
 NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/operator/", "rt/realtime/", "rt/report/", "rt/telemetry/")
