@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Policy files and ONNX files: out, in, and the same answers."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -48,6 +49,16 @@ class Files(unittest.TestCase):
         self.assertEqual(file.spec, built_in.spec)
         for name, tensor in file.tensors.items():
             np.testing.assert_array_equal(tensor, built_in.tensors[name])
+
+    def test_the_file_is_a_safetensors_file(self):
+        # As the format says: 8 bytes of header length, a JSON header, the data.
+        content = SHIPPED.read_bytes()
+        size = int.from_bytes(content[:8], "little")
+        header = json.loads(content[8 : 8 + size])
+        for name, tensor in read_policy(SHIPPED).tensors.items():
+            begin, end = header[name]["data_offsets"]
+            values = np.frombuffer(content[8 + size + begin : 8 + size + end], "<f4").reshape(header[name]["shape"])
+            np.testing.assert_array_equal(values, tensor)
 
     def test_a_network_that_answers_in_joints_comes_back_with_its_weights(self):
         envs = VectorEnv(num_envs=64)

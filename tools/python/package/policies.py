@@ -72,6 +72,8 @@ def write_policy(
     for ours in [*(f"encoder.{part}" for part in _ENCODER), "observation.mean", "observation.variance"]:
         renamed[ours] = ours
     tensors = {renamed[key]: _plain(key, value) for key, value in state_dict.items() if key in renamed}
+    if provenance is not None and not isinstance(provenance, Mapping):
+        raise ValueError(f"provenance: found {_check.shown(provenance)}, expected texts by name")
     texts = {"origin": "sandrunner in Python"} | dict(provenance or {})
     for key, value in texts.items():
         if not isinstance(key, str) or not isinstance(value, str):
