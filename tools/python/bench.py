@@ -16,7 +16,7 @@ LEAST = 0.95
 
 def ratio(envs: int, threads: int, rounds: int, steps: int) -> float:
     python = VectorEnv(num_envs=envs, threads=threads)
-    loop = _native.TaskLoop(python._native, block_envs=64, threads=threads, seed=1)
+    loop = _native.TaskLoop(python._native, seed=1)
     actions = (0.3 * np.random.default_rng(0).standard_normal((envs, 12))).astype(np.float32)
     seconds: tuple[list[float], list[float]] = ([], [])
     for _ in range(rounds):

@@ -54,7 +54,9 @@ py::array_t<T, py::array::c_style> checked_array(const char* name, const py::obj
                                  shape_text(array.shape(), dimensions),
                                  shape_text(shape.data(), shape.size())));
   }
-  return py::array_t<T, py::array::c_style>::ensure(array);
+  auto rows = py::array_t<T, py::array::c_style>::ensure(array);
+  if (!rows) throw InputError(fmt::format("{}: found no memory to put its rows together", name));
+  return rows;
 }
 
 /// Rows of numbers that live as long as `owner` does, which they keep alive.

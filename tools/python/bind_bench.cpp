@@ -12,11 +12,11 @@ namespace {
 /// Environments as those given at their start, stepped in C++ alone.
 class TaskLoop {
  public:
-  TaskLoop(const Environments& like, int block_envs, int threads, std::uint64_t seed)
+  TaskLoop(const Environments& like, std::uint64_t seed)
       : envs_(like.envs()),
-        block_envs_(block_envs),
+        block_envs_(like.block_envs()),
         window_(like.window_steps()),
-        pool_(threads),
+        pool_(like.threads()),
         task_(like.config(), like.robot(), {envs_, block_envs}, seed),
         rollout_({.envs = envs_, .steps = 1, .privileged = train::Task::privileged_size()}, 1) {}
 
@@ -50,8 +50,7 @@ class TaskLoop {
 
 void bind_bench(py::module_& module) {
   py::class_<TaskLoop>(module, "TaskLoop")
-      .def(py::init<const Environments&, int, int, std::uint64_t>(), py::arg("like"),
-           py::arg("block_envs"), py::arg("threads"), py::arg("seed"))
+      .def(py::init<const Environments&, std::uint64_t>(), py::arg("like"), py::arg("seed"))
       .def("run", &TaskLoop::run, py::arg("actions"), py::arg("steps"));
 }
 

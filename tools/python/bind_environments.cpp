@@ -10,8 +10,6 @@
 namespace sandrunner::python {
 namespace {
 
-using Ptr = std::unique_ptr<Environments>;
-
 /// Views of all arrays that a step writes, by name.
 py::dict arrays(py::object self) {
   auto& e = self.cast<Environments&>();

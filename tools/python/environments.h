@@ -60,6 +60,8 @@ class Environments {
   const train::Task& task() const { return task_; }
   const train::WindowStats& window() const { return stats_; }
   int envs() const { return envs_; }
+  int block_envs() const { return block_envs_; }
+  int threads() const { return pool_.threads(); }
   int window_steps() const { return window_; }
   const std::string& effective_settings() const { return effective_; }
 
