@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The network's activations as branch-free scalar functions: a loop that applies one to an array
-// vectorises, and every element gets the same bits whatever the vector width and the compiler,
-// because each operation is written out (std::fma where fused) and none comes from the mathematics
-// library.
+// The network's activations as branch-free scalar functions, so that a loop over an array
+// vectorises. Every element gets the same bits whatever the vector width and the compiler: each
+// operation is written out (std::fma where fused), and none comes from the mathematics library.
 #pragma once
 
 #include <cmath>

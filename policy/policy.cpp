@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "policy/text.h"
 
@@ -21,26 +20,18 @@ void require_joints(const PolicySpec& spec, const RobotDescription& robot) {
   }
 }
 
-Policy::Policy(PolicySpec spec, Network network)
-    : spec_(std::move(spec)), network_(std::move(network)) {
-  for (int i = 0; i < kEstimateSize; ++i) {
-    estimate_deviation_[i] = std::sqrt(static_cast<double>(spec_.estimate_variance[i]));
-  }
-}
-
-PolicyStep Policy::step(const std::array<float, kObservationSize>& observation) noexcept {
-  NetworkOutput output;
-  network_.step(observation, state_, output);
-
+PolicyStep policy_step(const PolicySpec& spec, const std::array<float, kNumJoints>& action,
+                       const std::array<float, kEstimateSize>& estimate_raw) noexcept {
   PolicyStep result;
   const double limit =
-      spec_.action_clip > 0.0 ? spec_.action_clip : std::numeric_limits<double>::infinity();
+      spec.action_clip > 0.0 ? spec.action_clip : std::numeric_limits<double>::infinity();
   for (int i = 0; i < kNumJoints; ++i) {
-    const double action = std::clamp(static_cast<double>(output.action[i]), -limit, limit);
-    result.target_rad[i] = spec_.nominal_position_rad[i] + spec_.action_scale_rad * action;
+    const double limited = std::clamp(static_cast<double>(action[i]), -limit, limit);
+    result.target_rad[i] = spec.nominal_position_rad[i] + spec.action_scale_rad * limited;
   }
   const auto physical = [&](int i) {
-    return output.estimate_raw[i] * estimate_deviation_[i] + spec_.estimate_mean[i];
+    return estimate_raw[i] * std::sqrt(static_cast<double>(spec.estimate_variance[i])) +
+           spec.estimate_mean[i];
   };
   result.estimate.body_height_m = physical(0);
   for (int i = 0; i < 3; ++i) result.estimate.velocity_mps[i] = physical(1 + i);

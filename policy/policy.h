@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "policy/network.h"
 #include "rt/core/command_shaping.h"
@@ -47,18 +48,26 @@ struct PolicyStep {
   StateEstimate estimate;
 };
 
+/// The step that a network's answer means. Real-time safe.
+PolicyStep policy_step(const PolicySpec& spec, const std::array<float, kNumJoints>& action,
+                       const std::array<float, kEstimateSize>& estimate_raw) noexcept;
+
 /// A policy that runs: network, its state, and the units around it. `load_policy` (policy_file.h)
 /// makes one.
 class Policy {
  public:
-  Policy(PolicySpec spec, Network network);
+  Policy(PolicySpec spec, Network network) : spec_(std::move(spec)), network_(std::move(network)) {}
 
   /// Clears the memory of the network, as before its first step.
   void reset() noexcept { state_ = {}; }
 
   /// One step at kPolicyHz. `observation` is raw; estimator/observation.h builds it. Real-time
   /// safe. NaN in, NaN out, until reset().
-  PolicyStep step(const std::array<float, kObservationSize>& observation) noexcept;
+  PolicyStep step(const std::array<float, kObservationSize>& observation) noexcept {
+    NetworkOutput output;
+    network_.step(observation, state_, output);
+    return policy_step(spec_, output.action, output.estimate_raw);
+  }
 
   /// Brings the network's weights into the core's caches, ahead of a step. Real-time safe.
   void touch_weights() const noexcept { network_.touch_weights(); }
@@ -71,7 +80,6 @@ class Policy {
 
  private:
   PolicySpec spec_;
-  std::array<double, kEstimateSize> estimate_deviation_;
   Network network_;
   NetworkState state_;
 };

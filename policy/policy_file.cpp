@@ -141,76 +141,6 @@ class Metadata {
   std::map<std::string, std::string> values_;
 };
 
-PolicySpec read_spec(const std::string& path, const std::map<std::string, std::string>& metadata,
-                     float& observation_clip) {
-  Metadata values(path, metadata);
-  if (!values.contains("sandrunner.format")) {
-    fail_file(path,
-              "not a policy file: metadata key 'sandrunner.format' is missing "
-              "('sandrunner-policy import' takes bare weights)");
-  }
-  values.expect("sandrunner.format", kFormatVersion);
-  values.expect("sandrunner.policy_hz", std::to_string(kPolicyHz));
-  values.expect("sandrunner.control_hz", std::to_string(kControlHz));
-  PolicySpec spec;
-  spec.name = values.text("sandrunner.name");
-  spec.joint_names = values.joint_names("sandrunner.joint_names");
-  spec.nominal_position_rad = values.joint_numbers("sandrunner.nominal_position_rad");
-  spec.action_scale_rad = values.positive("sandrunner.action_scale_rad");
-  if (values.contains("sandrunner.action_clip")) {
-    spec.action_clip = values.not_negative("sandrunner.action_clip");
-  }
-  spec.kp_nmprad = values.not_negative("sandrunner.kp_nmprad");
-  spec.kd_nmsprad = values.not_negative("sandrunner.kd_nmsprad");
-  spec.torque_limit_nm = values.positive("sandrunner.torque_limit_nm");
-  spec.yaw_command_clip_mps2 = values.positive("sandrunner.yaw_command_clip_mps2");
-  const double clip = values.positive("sandrunner.observation_clip");
-  if (clip > kLargestObservationClip) {
-    fail_file(path, "metadata 'sandrunner.observation_clip' is {}, expected at most {}", clip,
-              kLargestObservationClip);
-  }
-  observation_clip = static_cast<float>(clip);
-  spec.has_envelope =
-      std::any_of(std::begin(kEnvelopeKeys), std::end(kEnvelopeKeys),
-                  [&](const EnvelopeKey& key) { return values.contains(key.name); });
-  if (spec.has_envelope) {
-    for (const EnvelopeKey& key : kEnvelopeKeys) {
-      spec.envelope.*key.value = values.from_zero_to(key.name, kLargestInEnvelope);
-    }
-  }
-  spec.provenance = values.provenance();
-  values.expect_empty();
-  return spec;
-}
-
-std::map<std::string, std::string> write_spec(const PolicySpec& spec, float observation_clip) {
-  // fmt writes the shortest text that reads back as the same number.
-  const auto text = [](auto value) { return fmt::format("{}", value); };
-  std::map<std::string, std::string> metadata = {
-      {"sandrunner.format", kFormatVersion},
-      {"sandrunner.name", spec.name},
-      {"sandrunner.joint_names", joined(spec.joint_names, ",")},
-      {"sandrunner.policy_hz", text(kPolicyHz)},
-      {"sandrunner.control_hz", text(kControlHz)},
-      {"sandrunner.nominal_position_rad", joined(spec.nominal_position_rad, ",")},
-      {"sandrunner.action_scale_rad", text(spec.action_scale_rad)},
-      {"sandrunner.action_clip", text(spec.action_clip)},
-      {"sandrunner.kp_nmprad", text(spec.kp_nmprad)},
-      {"sandrunner.kd_nmsprad", text(spec.kd_nmsprad)},
-      {"sandrunner.torque_limit_nm", text(spec.torque_limit_nm)},
-      {"sandrunner.yaw_command_clip_mps2", text(spec.yaw_command_clip_mps2)},
-      {"sandrunner.observation_clip", text(observation_clip)}};
-  if (spec.has_envelope) {
-    for (const EnvelopeKey& key : kEnvelopeKeys) {
-      metadata[key.name] = text(spec.envelope.*key.value);
-    }
-  }
-  for (const auto& [key, value] : spec.provenance) {
-    metadata[std::string(kProvenancePrefix).append(key)] = value;
-  }
-  return metadata;
-}
-
 /// The tensors of a file besides the network's, with `estimate_*` as vectors while they are read or
 /// written.
 struct OtherTensors {
@@ -271,13 +201,84 @@ void take_tensors(const std::string& path, std::map<std::string, Tensor> tensors
 
 PolicyFile decode(const std::string& path, TensorFile content) {
   PolicyFile file;
-  file.spec = read_spec(path, content.metadata, file.parameters.observation_clip);
+  file.spec = read_spec(path, kFormatVersion, content.metadata, file.parameters.observation_clip);
   take_tensors(path, std::move(content.tensors), true, file);
   check_golden_example(path, Network(file.parameters), file.golden);
   return file;
 }
 
 }  // namespace
+
+PolicySpec read_spec(const std::string& path, const std::string& format,
+                     const std::map<std::string, std::string>& metadata, float& observation_clip) {
+  Metadata values(path, metadata);
+  if (!values.contains("sandrunner.format")) {
+    fail_file(path,
+              "not a policy file: metadata key 'sandrunner.format' is missing "
+              "('sandrunner-policy import' takes bare weights)");
+  }
+  values.expect("sandrunner.format", format);
+  values.expect("sandrunner.policy_hz", std::to_string(kPolicyHz));
+  values.expect("sandrunner.control_hz", std::to_string(kControlHz));
+  PolicySpec spec;
+  spec.name = values.text("sandrunner.name");
+  spec.joint_names = values.joint_names("sandrunner.joint_names");
+  spec.nominal_position_rad = values.joint_numbers("sandrunner.nominal_position_rad");
+  spec.action_scale_rad = values.positive("sandrunner.action_scale_rad");
+  if (values.contains("sandrunner.action_clip")) {
+    spec.action_clip = values.not_negative("sandrunner.action_clip");
+  }
+  spec.kp_nmprad = values.not_negative("sandrunner.kp_nmprad");
+  spec.kd_nmsprad = values.not_negative("sandrunner.kd_nmsprad");
+  spec.torque_limit_nm = values.positive("sandrunner.torque_limit_nm");
+  spec.yaw_command_clip_mps2 = values.positive("sandrunner.yaw_command_clip_mps2");
+  const double clip = values.positive("sandrunner.observation_clip");
+  if (clip > kLargestObservationClip) {
+    fail_file(path, "metadata 'sandrunner.observation_clip' is {}, expected at most {}", clip,
+              kLargestObservationClip);
+  }
+  observation_clip = static_cast<float>(clip);
+  spec.has_envelope =
+      std::any_of(std::begin(kEnvelopeKeys), std::end(kEnvelopeKeys),
+                  [&](const EnvelopeKey& key) { return values.contains(key.name); });
+  if (spec.has_envelope) {
+    for (const EnvelopeKey& key : kEnvelopeKeys) {
+      spec.envelope.*key.value = values.from_zero_to(key.name, kLargestInEnvelope);
+    }
+  }
+  spec.provenance = values.provenance();
+  values.expect_empty();
+  return spec;
+}
+
+std::map<std::string, std::string> write_spec(const std::string& format, const PolicySpec& spec,
+                                              float observation_clip) {
+  // fmt writes the shortest text that reads back as the same number.
+  const auto text = [](auto value) { return fmt::format("{}", value); };
+  std::map<std::string, std::string> metadata = {
+      {"sandrunner.format", format},
+      {"sandrunner.name", spec.name},
+      {"sandrunner.joint_names", joined(spec.joint_names, ",")},
+      {"sandrunner.policy_hz", text(kPolicyHz)},
+      {"sandrunner.control_hz", text(kControlHz)},
+      {"sandrunner.nominal_position_rad", joined(spec.nominal_position_rad, ",")},
+      {"sandrunner.action_scale_rad", text(spec.action_scale_rad)},
+      {"sandrunner.action_clip", text(spec.action_clip)},
+      {"sandrunner.kp_nmprad", text(spec.kp_nmprad)},
+      {"sandrunner.kd_nmsprad", text(spec.kd_nmsprad)},
+      {"sandrunner.torque_limit_nm", text(spec.torque_limit_nm)},
+      {"sandrunner.yaw_command_clip_mps2", text(spec.yaw_command_clip_mps2)},
+      {"sandrunner.observation_clip", text(observation_clip)}};
+  if (spec.has_envelope) {
+    for (const EnvelopeKey& key : kEnvelopeKeys) {
+      metadata[key.name] = text(spec.envelope.*key.value);
+    }
+  }
+  for (const auto& [key, value] : spec.provenance) {
+    metadata[std::string(kProvenancePrefix).append(key)] = value;
+  }
+  return metadata;
+}
 
 PolicyFile read_policy_file(const std::string& path) {
   return decode(path, read_safetensors(path));
@@ -297,12 +298,12 @@ Policy load_policy_text(std::string_view content, const std::string& name) {
   return {std::move(file.spec), Network(file.parameters)};
 }
 
-std::string_view shipped_policy_text() noexcept {
-  return embedded_policy_file("raibo.safetensors");
+std::string_view shipped_policy_text(const std::string& robot) {
+  return embedded_policy_file(robot + ".safetensors");
 }
 
-Policy load_shipped_policy() {
-  return load_policy_text(shipped_policy_text(), "raibo.safetensors (built in)");
+Policy load_shipped_policy(const std::string& robot) {
+  return load_policy_text(shipped_policy_text(robot), robot + ".safetensors (built in)");
 }
 
 void write_policy_file(const std::string& path, const PolicyFile& file) {
@@ -310,7 +311,7 @@ void write_policy_file(const std::string& path, const PolicyFile& file) {
   OtherTensors others{{file.spec.estimate_mean.begin(), file.spec.estimate_mean.end()},
                       {file.spec.estimate_variance.begin(), file.spec.estimate_variance.end()}};
   TensorFile content;
-  content.metadata = write_spec(file.spec, file.parameters.observation_clip);
+  content.metadata = write_spec(kFormatVersion, file.spec, file.parameters.observation_clip);
   for (const auto& list :
        {tensors_of(copy.parameters), others.list(), golden_tensors(copy.golden)}) {
     for (const NamedTensor& tensor : list) {

@@ -39,9 +39,9 @@ constexpr Setting<C> kDelays[] = {
 
 using L = TorqueSpeedLine;
 constexpr Setting<L> kLine[] = {
-    {"stall_torque_nm", &L::stall_torque_nm, 1e-3, 1e4,
+    {"stall_torque_nm", repeated<1>(&L::stall_torque_nm), 1e-3, 1e4,
      "Torque of a drive at rest where the torque-speed line begins, at the joint.", kFromRobotFile},
-    {"no_load_speed_radps", &L::no_load_speed_radps, 1e-3, 1e4,
+    {"no_load_speed_radps", repeated<1>(&L::no_load_speed_radps), 1e-3, 1e4,
      "Speed at which a drive has no torque left, at the joint.", kFromRobotFile},
 };
 
@@ -56,7 +56,8 @@ Simulator::Simulator(const Robot& robot, const SimulatorConfig& config)
     : robot_(robot),
       config_(config),
       foot_(make_foot_profile(config.terrain, robot.model)),
-      terrain_(make_terrain(config.terrain, foot_, robot.model)) {
+      terrain_(make_terrain(config.terrain, foot_, robot.model)),
+      line_(drive_line<double>(config.torque_speed_line)) {
   reset_standing();
 }
 
@@ -200,13 +201,13 @@ void Simulator::write(const SafeCommand& command) noexcept {
   if (cut_.load(std::memory_order_relaxed)) acting = SafeCommand{};
   const JointCommand& c = acting.joints();
   RigidState<double>& x = state_.robot.rigid;
-  const TorqueSpeedLine& line = config_.torque_speed_line;
+  const DriveLine<double>& line = line_;
   for (int j = 0; j < kNumJoints; ++j) {
     state_.torque_nm[j] =
         acting.enabled()
             ? drive_torque(x.q[j], x.qd[j], c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j],
                            c.kd_nmsprad[j], c.feedforward_nm[j], robot_.model.torque_limit_nm[j],
-                           line.stall_torque_nm, 1.0 / line.no_load_speed_radps)
+                           line.stall_torque_nm[j % 3], line.inverse_no_load_speed[j % 3])
             : 0.0;
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
@@ -273,7 +274,9 @@ SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot) {
   read_settings(config, "sim", kDelays, c);
   TorqueSpeedLine line = robot.torque_speed_line;
   read_settings(config, "sim", kLine, line);
-  if (config.flag("sim.torque_speed_line", false)) c.torque_speed_line = line;
+  if (config.flag("sim.torque_speed_line", robot.obeys_torque_speed_line)) {
+    c.torque_speed_line = line;
+  }
   read_settings(config, "sim", kStep, c.step);
   return c;
 }
@@ -283,7 +286,7 @@ std::vector<SettingLine> simulator_settings() {
   list_settings(lines, "sim.noise", kNoise);
   list_settings(lines, "sim", kDelays);
   lines.push_back({.key = "sim.torque_speed_line",
-                   .fallback = "false",
+                   .fallback = kFromRobotFile,
                    .unit = {},
                    .range = "true, false",
                    .meaning = "Drives lose torque towards their top speed."});

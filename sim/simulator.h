@@ -64,7 +64,7 @@ class Simulator final : public RobotIo {
   /// On its belly in the lying pose, at rest; disturbed in the same way, but touching the ground.
   void reset_lying();
 
-  // What somebody does to the robot and its ground between two ticks; time goes on.
+  // What the viewer does to the robot and its ground between two ticks; time goes on.
   /// Gives the whole robot this much more speed, world frame, m/s: a push that is over at once.
   void push(double vx_mps, double vy_mps) noexcept;
   /// For a tick, moves the robot as a careful hand does towards its nominal pose, level and just
@@ -101,6 +101,7 @@ class Simulator final : public RobotIo {
   SimulatorConfig config_;
   FootProfile<double> foot_;
   Terrain<double> terrain_;
+  DriveLine<double> line_;
   RobotStepper<double> stepper_;
   SimulatorState state_;
   StepReport<double> report_;

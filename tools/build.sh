@@ -16,7 +16,8 @@ build=$root/build/release
 what=${1:-all}
 bash "$root/tools/install_packages.sh" "$what"
 
-# Configured for this very folder (a copied tree brings the build of its original along), and for all that is asked for?
+# Configured for this very folder (a copied tree brings the build of its original along), and for
+# all that is asked for?
 cached() { grep -qsxF "$1" "$build/CMakeCache.txt"; }
 configure=(cmake --preset release)
 [[ $what != sandrunner ]] || configure+=(-D SANDRUNNER_ALL=OFF)
@@ -25,6 +26,7 @@ if [[ ! -f $build/build.ninja ]] || ! cached "CMAKE_HOME_DIRECTORY:INTERNAL=$roo
 elif [[ $what != sandrunner ]] && ! cached SANDRUNNER_ALL:BOOL=ON; then
   (cd "$root" && "${configure[@]}") >&2
 fi
-# What ninja says when nothing is to be done. Asked with -n, it does not know: it would look for new files first.
+# What ninja says when nothing is to be done. Asked with -n, it does not know: it would look for new
+# files first.
 idle='^ninja: no work to do\.$|Re-checking globbed directories\.\.\.$'
 cmake --build "$build" --target "$what" 2>&1 | { grep --line-buffered -vE "$idle" || true; } >&2

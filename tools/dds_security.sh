@@ -72,7 +72,8 @@ EOF
 } | identity operator
 rule subscribe "${telemetry[@]}" | identity viewer
 
-# Nobody is seen, let alone heard, before they have proved who they are; everything on the wire is encrypted.
+# Nobody is seen, let alone heard, before they have proved who they are; everything on the wire is
+# encrypted.
 sign governance <<EOF
 <?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"

@@ -10,8 +10,8 @@ import pathlib
 import re
 import sys
 
-# From the bottom up. A folder may include those of the lines below its own, not its siblings; "drivers/drives/*" are
-# all folders in drivers/drives.
+# From the bottom up. A folder may include those of the lines below its own, not its siblings;
+# "drivers/drives/*" are all folders in drivers/drives.
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
@@ -31,10 +31,11 @@ LAYERS = [
     ["rt/telemetry/view"],
     ["rt/run"],
     ["rt"],
-    ["tools/bench/mujoco", "tools/evaluate", "tools/train/data", "tools/train/kernels"],
+    ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
-    ["tools/hil/emulated"],
-    ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/train"],
+    ["tools/train/model"],
+    ["tools/evaluate", "tools/hil/emulated"],
+    ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
     ["tools/python"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.

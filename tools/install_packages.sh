@@ -19,8 +19,8 @@ packages=(
   liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
   esbuild libjs-three libboost-dev
 )
-# Trainer, benches, tests and the Debian package with its man pages; the emulated machine of tools/hil; a DDS peer that
-# is not ours, and the generator of its code; the Python module.
+# Trainer, benches, tests and the Debian package with its man pages; the emulated machine of
+# tools/hil; a DDS peer that is not ours, and the generator of its code; the Python module.
 [[ ${1:-all} == sandrunner ]] || packages+=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file help2man
   qemu-system-x86 busybox-static cpio xz-utils

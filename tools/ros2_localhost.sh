@@ -4,7 +4,8 @@
 # rmw_cyclonedds. In Humble, `ros2 node list` lacks the robot, whose identifiers are as in later
 # releases; its topics are there.
 export ROS_DOMAIN_ID=42
-# The loopback interface has no multicast: each process needs an index of its own, up to 119 as for the robot.
+# The loopback interface has no multicast: each process needs an index of its own, up to 119 as for
+# the robot.
 export CYCLONEDDS_URI='<General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex></Discovery>'
 # The file beside this one; zsh has its path in %x.
 FASTRTPS_DEFAULT_PROFILES_FILE=${BASH_SOURCE[0]:-${(%):-%x}}

@@ -5,7 +5,8 @@ import sys
 import textwrap
 import xml.etree.ElementTree as xml
 
-# GoogleTest prints "FILE:LINE: Skipped" and the reason on the next line; scripts print "skipped: REASON".
+# GoogleTest prints "FILE:LINE: Skipped" and the reason on the next line; scripts print "skipped:
+# REASON".
 REASON = re.compile(r"^\S+:\d+: Skipped\n(.+)|skipped: (.+)", re.MULTILINE | re.IGNORECASE)
 
 tests = {}

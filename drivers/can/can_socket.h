@@ -30,7 +30,7 @@ struct CanSocketConfig {
   /// to anybody; on a real bus it costs time for each frame.
   bool loopback = true;
   /// Of the kernel's receive buffer; 0: its default, about 270 frames. Counts for bursts only:
-  /// whoever receives in each cycle leaves it empty.
+  /// a program that receives in each cycle leaves it empty.
   int receive_buffer_bytes = 0;
 };
 

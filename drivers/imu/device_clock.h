@@ -55,7 +55,7 @@ class DeviceClock {
   /// Most that the clocks drift apart: 50 ppm for each quartz, and the 500 ppm by which the kernel
   /// may slew CLOCK_MONOTONIC (adjtimex(2)). 1 / 600 ppm.
   static constexpr std::uint64_t kDriftDivisor = 1'000'000 / 600;
-  /// No latency explains a sample that comes this early, and none lasts so long: a clock jumped.
+  /// No latency explains a sample that comes this early, and none lasts this long: a clock jumped.
   /// Longer than any buffer holds back (16 ms in USB converters) and any backlog takes to drain.
   static constexpr std::int64_t kLost_ns = 50'000'000, kLostFor_ns = 1'000'000'000;
   static constexpr std::int64_t kNotLate = INT64_MIN;

@@ -57,7 +57,7 @@ class Dialogue {
     return false;
   }
 
-  /// Throws away what comes for so long, and then listens at another speed.
+  /// Discards all bytes for `silence_ms`, then listens at another speed.
   void change_baud(unsigned baud, int silence_ms) {
     const Deadline deadline(silence_ms);
     std::array<std::uint8_t, 1024> ignored;

@@ -59,7 +59,7 @@ std::vector<PlannedBus> plan_buses(const HardwareConfig& hardware) {
 
 std::string plan_table(const HardwareConfig& hardware, const std::vector<PlannedBus>& plan) {
   std::string table = fmt::format(
-      "{} at {} Hz, {} s without a command let a drive go\n"
+      "{} at {} Hz, drives time out {} s after the last command\n"
       "bus           drives   load  worst   fit at {:<5} these fit at\n",
       hardware.mode == DriveMode::kGains ? "the drives close the loops, exchange"
                                          : "the host closes the loops, exchange",

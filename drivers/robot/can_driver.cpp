@@ -5,6 +5,7 @@
 
 #include "drivers/robot/can_robot.h"
 #include "drivers/robot/dry_run.h"
+#include "drivers/robot/hardware_fit.h"
 
 namespace sandrunner {
 

@@ -20,7 +20,7 @@ enum class DriveTrouble : std::uint64_t {
   kBusOff = 1u << 12,           ///< its bus was off since the drives were enabled
   kForgotTimeout = 1u << 13,  ///< a drive that forgets_timeout() and whose supply was off, or that
                               ///< was silent for so long that it may have been. Until the next
-                              ///< start, which tells it one
+                              ///< start, which writes it again
 };
 inline constexpr double kEnable_s = 0.1;
 

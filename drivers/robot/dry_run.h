@@ -11,9 +11,9 @@ namespace sandrunner {
 /// A frame as candump prints it: "  can0  001   [8]  FF FF ...".
 std::string candump_line(const std::string& interface, const CanFrame& frame);
 
-/// The frames for the robot as text: the plan of the buses, then for each drive the off frame, the
-/// enable frame, and its command at `stand`, each with its meaning at the drive's output, decoded
-/// from the bytes.
+/// The frames for the robot as text. First comes the plan of the buses. Then each drive has its off
+/// frame, its enable frame, and its command at `stand`, with their meanings at the drive's output,
+/// decoded from the bytes.
 std::string dry_run(const HardwareConfig& config, const RobotDescription& robot,
                     const JointArray<JointSetPoint>& stand);
 

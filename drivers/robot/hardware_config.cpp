@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -203,11 +202,6 @@ DriveConfig read_joint_drive(ConfigTree& t, const DriveKeys& keys, const Hardwar
   return drive;
 }
 
-/// The fastest joint that its drive's replies can tell.
-double reply_speed_radps(const DriveConfig& d) noexcept {
-  return d.ranges().velocity_radps / d.gear;
-}
-
 /// What a joint may be told must be within what its drive's numbers can say.
 void require_range(const DriveConfig& d, int j, const std::string& joint, double torque_scale,
                    const GateConfig& gate) {
@@ -222,7 +216,7 @@ void require_range(const DriveConfig& d, int j, const std::string& joint, double
   check("torque", torque_scale * gate.torque_limit_nm[j], d.gear * d.max_torque_nm, "N m");
   check("kp", gate.kp_limit_nmprad, d.gear * d.gear * ranges.kp_nmprad, "N m/rad");
   check("kd", gate.kd_limit_nmsprad, d.gear * d.gear * ranges.kd_nmsprad, "N m s/rad");
-  check("speed", gate.speed_limit_radps[j], reply_speed_radps(d), "rad/s");
+  check("speed", gate.speed_limit_radps[j], d.reply_speed_radps(), "rad/s");
   const double farthest_rad = std::max(std::fabs(gate.joint_lower_rad[j] - d.zero_rad),
                                        std::fabs(gate.joint_upper_rad[j] - d.zero_rad));
   check("position", farthest_rad, ranges.position_rad / d.gear, "rad from its zero");
@@ -308,14 +302,6 @@ StopLineConfig read_emergency_stop(ConfigTree& config) {
   return stop;
 }
 
-/// Joint speed that the replies of every drive can report, with a margin: a threshold above it
-/// would never be passed.
-double reportable_speed_radps(const HardwareConfig& h) noexcept {
-  double most = std::numeric_limits<double>::infinity();
-  for (const DriveConfig& drive : h.drives) most = std::min(most, 0.98 * reply_speed_radps(drive));
-  return most;
-}
-
 }  // namespace
 
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
@@ -375,56 +361,6 @@ std::vector<SettingLine> hardware_settings() {
   list_settings(lines, hardware + ".imu", kMounting);
   list_settings(lines, hardware + ".emergency_stop", kStopChip);
   list_settings(lines, hardware + ".emergency_stop", kStopLine);
-  return lines;
-}
-
-void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
-  const auto ticks = static_cast<std::uint64_t>(h.ticks_per_exchange());
-  // A value is sent for in one exchange, comes in the ticks up to the next one, and may be lost:
-  // two losses in a row are a fault.
-  gate.joints_limit_ticks = std::max(gate.joints_limit_ticks, ticks + 2);
-  gate.joints_fault_ticks = std::max(gate.joints_fault_ticks, 3 * ticks);
-  const auto imu_ticks = static_cast<std::uint64_t>(kControlHz / h.imu.rate_hz);
-  gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
-  gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
-  for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
-  gate.speed_fault_radps = std::min(gate.speed_fault_radps, reportable_speed_radps(h));
-  gate.hanging = h.hanging;
-}
-
-void fit_drives_to(const GateConfig& gate, HardwareConfig& h) {
-  // Between two commands lie what the loop may miss and the rest of an exchange.
-  const double stall_s = kControlPeriod_s * (static_cast<double>(gate.stall_fault_ticks) +
-                                             static_cast<double>(h.ticks_per_exchange()));
-  if (h.drive_timeout_s <= stall_s) {
-    throw InputError(
-        fmt::format("hardware.drive_timeout_s: {}, expected more than the {} s that the loop may "
-                    "miss and an exchange takes (controller.gate.stall_fault_ticks)",
-                    h.drive_timeout_s, stall_s));
-  }
-  const double reportable_radps = reportable_speed_radps(h);
-  if (gate.speed_fault_radps > reportable_radps) {
-    throw InputError(
-        fmt::format("controller.gate.speed_fault_radps: {} rad/s is more than the drives' replies "
-                    "can report, {:.1f}; it would never be a fault",
-                    gate.speed_fault_radps, reportable_radps));
-  }
-  for (int j = 0; j < kNumJoints; ++j) {
-    DriveConfig& drive = h.drives[j];
-    drive.max_torque_nm = std::min(drive.max_torque_nm, gate.torque_limit_nm[j] / drive.gear);
-  }
-}
-
-std::vector<std::string> unguarded(const HardwareConfig& config) {
-  std::vector<std::string> lines;
-  if (config.emergency_stop.chip.empty()) {
-    lines.emplace_back("no emergency stop is configured: hardware.emergency_stop.chip is not set");
-  }
-  const HardwareConfig open;
-  if (config.voltage_low_v <= open.voltage_low_v && config.voltage_high_v >= open.voltage_high_v) {
-    lines.emplace_back(
-        "the supply voltage is not judged: hardware.voltage_low_v and .voltage_high_v are not set");
-  }
   return lines;
 }
 

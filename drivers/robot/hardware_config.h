@@ -49,6 +49,8 @@ struct DriveConfig {
   DriveRanges ranges() const noexcept {
     return std::visit([](const auto& d) { return drive_ranges(d); }, drive);
   }
+  /// Speed of the fastest joint that the drive's replies can report.
+  double reply_speed_radps() const noexcept { return ranges().velocity_radps / gear; }
 };
 
 /// Table [hardware]: the drives of a robot, which joint each moves, and its IMU.
@@ -71,29 +73,13 @@ struct HardwareConfig {
 
 /// Reads the tables [hardware], [[hardware.bus]], [[hardware.drive]], [hardware.imu],
 /// [hardware.emergency_stop]. Drives are named by the joints of `robot`, each exactly once. Throws
-/// InputError: a joint without a drive or with two, two drives with one identifier, an unknown
-/// protocol or model, a rate that does not divide the control rate, a drive whose range is below
-/// the limits of `gate` (torque, speed, positions, gains).
+/// InputError for a joint without a drive or with two, for two drives with one identifier, and for
+/// an unknown protocol or model; for a rate that does not divide the control rate; for a drive
+/// whose range is below the limits of `gate` (torque, speed, positions, gains).
 HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& robot,
                                     const GateConfig& gate);
 /// The keys of these tables, for the reference.
 std::vector<SettingLine> hardware_settings();
-
-/// Adapts the gate's thresholds to the hardware: ages follow the rate of the exchange, the speed
-/// fault stays below the speed that replies can report, torque limits are scaled by `torque_scale`,
-/// and `hanging` is copied.
-void fit_gate_to(const HardwareConfig& hardware, GateConfig& gate) noexcept;
-
-/// Adapts the drives to the gate's own settings, which are read after that. A drive whose commands
-/// have a torque limit gets the joint's and enforces it itself, even if this computer fails. Throws
-/// InputError for a time-out that is not longer than the stall that the gate tolerates (drives
-/// would switch off without a fault), and for a speed fault above the speed that replies can
-/// report.
-void fit_drives_to(const GateConfig& gate, HardwareConfig& hardware);
-
-/// One line for each guard of the robot that the file leaves off: the emergency stop, the range of
-/// the supply.
-std::vector<std::string> unguarded(const HardwareConfig& config);
 
 /// "LF_HAA (can0 id 1)": the name of a joint's drive in messages.
 std::string drive_name(const HardwareConfig& hardware, const RobotDescription& robot, int joint);

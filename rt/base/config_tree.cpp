@@ -327,6 +327,48 @@ std::vector<double> ConfigTree::numbers(const std::string& path,
   return result;
 }
 
+std::vector<double> ConfigTree::repeated(const std::string& path,
+                                         const std::vector<double>& fallback, std::size_t few,
+                                         double min, double max) {
+  std::vector<double> result = fallback;
+  const std::size_t all = fallback.size();
+  if (const Found found = find(path); found.node != nullptr) {
+    const std::string one = describe_range("a finite number", min, max);
+    const std::string several =
+        describe_range(fmt::format("an array of {} finite numbers", few), min, max);
+    const std::string expected =
+        fmt::format("{}, or {} {}", few == 1 ? one : several, few == 1 ? "an array of" : "of", all);
+    std::vector<double> given;
+    const auto add = [&](const toml::node& node, const std::string& where) {
+      const std::optional<double> value = number_in(node, min, max);
+      if (!value) fail({found.layer, &node}, where, expected);
+      given.push_back(*value);
+    };
+    if (const toml::array* array = found.node->as_array(); array == nullptr) {
+      if (few != 1) fail(found, path, expected);
+      add(*found.node, path);
+    } else if (array->size() == all || (few != 1 && array->size() == few)) {
+      for (const toml::node& node : *array) add(node, fmt::format("{}[{}]", path, given.size()));
+    } else {
+      fail(found, path, expected);
+    }
+    for (std::size_t i = 0; i < all; ++i) result[i] = given[i % given.size()];
+  }
+  // As short as it can be given.
+  std::size_t size = few;
+  for (std::size_t i = few; i < all; ++i) {
+    if (result[i] != result[i % few]) size = all;
+  }
+  std::string text;
+  bool finite = true;
+  for (std::size_t i = 0; i < size; ++i) {
+    text += (text.empty() ? "" : ", ") + toml_text(result[i]);
+    finite = finite && std::isfinite(result[i]);
+  }
+  record_->values[path] = !finite ? std::string() : size == 1 ? text : "[" + text + "]";
+  return result;
+}
+
 std::vector<ConfigTree> ConfigTree::tables(const std::string& path) {
   const Found found = find(path);
   const toml::array* array = nullptr;

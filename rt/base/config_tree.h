@@ -57,6 +57,10 @@ class ConfigTree {
                      const std::vector<std::string>& allowed);
   std::vector<double> numbers(const std::string& path, const std::vector<double>& fallback,
                               std::size_t expected_size, double min, double max);
+  /// As many numbers as `fallback` has, or only the first `few` of them, which then repeat; with a
+  /// `few` of 1 a number without an array.
+  std::vector<double> repeated(const std::string& path, const std::vector<double>& fallback,
+                               std::size_t few, double min, double max);
   /// The elements of an array of tables, taken whole from the strongest layer that has it; empty
   /// without one. What is asked of an element is known to this tree's `reject_unknown` and
   /// `effective`.

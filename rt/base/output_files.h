@@ -11,7 +11,7 @@ namespace sandrunner {
 /// there: now rather than after the run.
 void prepare_folder(const std::string& folder, const std::string& option);
 
-/// A file that gets its name when it is whole. What it holds is written beside it, in
+/// A file that gets its name when it is whole. Its contents are written next to it, in
 /// `path`.part, and flushed to the disk before the file is renamed. If it is not kept, the part is
 /// removed, and a file that had the name before is as it was. Links of either name are replaced,
 /// not followed. Throws InputError with the path and the system's reason if the file cannot be

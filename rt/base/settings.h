@@ -37,6 +37,18 @@ constexpr DegreesSetting<Settings> degrees(double Settings::*member_rad) noexcep
   return DegreesSetting<Settings>(member_rad);
 }
 
+/// An array of which a file may give only the first `kFew` numbers, which then repeat: one number
+/// for three joints that are alike, three for four legs that are.
+template <typename Settings, std::size_t kSize, std::size_t kFew>
+struct RepeatedSetting {
+  std::array<double, kSize> Settings::*member;
+};
+template <std::size_t kFew, typename Settings, std::size_t kSize>
+constexpr RepeatedSetting<Settings, kSize, kFew> repeated(
+    std::array<double, kSize> Settings::*array) noexcept {
+  return {array};
+}
+
 /// One of some words, in the order of an enum's values; of a bool, those for false and true.
 template <typename Settings>
 struct WordSetting {
@@ -65,6 +77,7 @@ struct Setting {
       std::variant<double Settings::*, int Settings::*, unsigned Settings::*,
                    std::uint16_t Settings::*, std::uint64_t Settings::*, bool Settings::*,
                    std::string Settings::*, std::array<double, 3> Settings::*,
+                   RepeatedSetting<Settings, 3, 1>, RepeatedSetting<Settings, 12, 3>,
                    DegreesSetting<Settings>, WordSetting<Settings>>;
 
   /// A number, or an array of three, each from `least` to `most`. `default_words` and `range_words`
@@ -104,6 +117,12 @@ double degrees_of(double angle_rad) noexcept;
 /// "table.key"; without a table "key".
 std::string setting_path(const std::string& table, const char* key);
 
+/// Numbers that a setting of an array needs at least; 0: it is no RepeatedSetting.
+template <typename Member>
+inline constexpr std::size_t kFewOf = 0;
+template <typename Settings, std::size_t kSize, std::size_t kFew>
+inline constexpr std::size_t kFewOf<RepeatedSetting<Settings, kSize, kFew>> = kFew;
+
 /// Reads one row. Throws InputError for a value out of its range.
 template <typename Settings>
 void read_setting(ConfigTree& config, const std::string& path, const Setting<Settings>& row,
@@ -120,6 +139,11 @@ void read_setting(ConfigTree& config, const std::string& path, const Setting<Set
       double& angle_rad = settings.*member.member;
       angle_rad =
           config.number(path, degrees_of(angle_rad), row.min, row.max) * (std::numbers::pi / 180.0);
+    } else if constexpr (kFewOf<Member> > 0) {
+      auto& value = settings.*member.member;
+      const std::vector<double> numbers =
+          config.repeated(path, {value.begin(), value.end()}, kFewOf<Member>, row.min, row.max);
+      std::copy(numbers.begin(), numbers.end(), value.begin());
     } else {
       auto& value = settings.*member;
       using Value = std::remove_reference_t<decltype(value)>;
@@ -190,6 +214,8 @@ void list_settings(std::vector<SettingLine>& lines, const std::string& table, co
         }
       } else if constexpr (std::is_same_v<Member, DegreesSetting<Settings>>) {
         line.fallback = setting_text(degrees_of(defaults.*member.member));
+      } else if constexpr (kFewOf<Member> > 0) {
+        line.fallback = setting_text((defaults.*member.member)[0]);
       } else {
         const auto& value = defaults.*member;
         using Value = std::remove_cvref_t<decltype(value)>;

@@ -139,8 +139,8 @@ void Controller::pause_motion(std::uint64_t tick) noexcept {
 /// for ever; a push, which is over soon, still meets the whole stiffness. No further than counts as
 /// standing: a load that does not end is an overload.
 void Controller::yield_to_heat(const JointState& joints) noexcept {
-  const double continuous_nm = config_.gate.continuous_torque_nm;
   for (int j = 0; j < kNumJoints; ++j) {
+    const double continuous_nm = config_.gate.continuous_torque_nm[j % kJointsPerLeg];
     const double torque_nm = joints.torque_nm[j];
     const bool warm = state_.gate.heat_n2m2[j] > 0.5 * continuous_nm * continuous_nm;
     if (!warm || std::fabs(torque_nm) < 0.7 * continuous_nm) continue;

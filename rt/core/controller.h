@@ -41,7 +41,7 @@ struct WalkConfig {
 struct StandConfig {
   double kp_nmprad = 0.0;   ///< from the robot's file
   double kd_nmsprad = 0.0;  ///< from the robot's file
-  /// StandUp: its stiffness rises from nothing for so long, and the first of its motions lasts no
+  /// StandUp: its stiffness rises from zero over this time, and the first of its motions lasts no
   /// less. For the first tests of a robot: a wrong sign or scale shows before the drives are
   /// strong.
   double gain_ramp_s = 0.0;
@@ -74,11 +74,11 @@ struct DampingConfig {
 struct ShapingConfig {
   CommandEnvelope envelope;  ///< from the policy's file
   double centripetal_limit_mps2 = kCentripetalLimit_mps2;
-  /// After so long without a sign of life of the operator, the command is zero; ... 0: such an
-  /// operator cannot be lost, and neither of the others acts.
+  /// After this time without a sign of life of the operator, the command is zero. 0: such an
+  /// operator cannot be lost, and the other two do not act.
   std::uint64_t operator_hold_ticks = 0;
-  double operator_stand_s = 10.0;  ///< ... a walking robot stops and stands; ...
-  double operator_down_s = 120.0;  ///< ... a standing robot is let down in Damping.
+  double operator_stand_s = 10.0;  ///< then a walking robot stops and stands
+  double operator_down_s = 120.0;  ///< then a standing robot lies down
 };
 
 struct ControllerConfig {

@@ -12,6 +12,9 @@ GateConfig below_ceilings(const GateConfig& config) noexcept {
   };
   for (const auto& threshold : kGateThresholds) lower(threshold);
   for (const auto& threshold : kGateTickThresholds) lower(threshold);
+  for (const auto& threshold : kGateJointThresholds) {
+    for (double& value : c.*threshold.value) value = std::min(value, threshold.ceiling);
+  }
   return c;
 }
 

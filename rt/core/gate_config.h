@@ -34,7 +34,7 @@ struct GateConfig {
   // Joint speeds, rad/s.
   /// Limit: counted; a commanded velocity is clamped to it. From the URDF.
   JointArray<double> speed_limit_radps{};
-  double speed_fault_radps = 0.0;  ///< fault, of any joint. From the robot's map
+  LegJoints<double> speed_fault_radps{};  ///< fault. From the robot's map
   /// Fault: a position that changes in a tick by this more than the speed fault explains.
   double encoder_jump_rad = 0.2;
 
@@ -52,7 +52,7 @@ struct GateConfig {
   double power_limit_w = 0.0;
   /// I2t: the mean of the squared torque over about `thermal_time_s` may not exceed the square of
   /// this. Counted from four fifths of it on; fault. From the robot's map.
-  double continuous_torque_nm = 0.0;
+  LegJoints<double> continuous_torque_nm{};
   double thermal_time_s = 1.0;
 
   // Tilt: angle between the body's and the world's z axis, degrees. A robot on its feet on the
@@ -89,11 +89,11 @@ struct GateConfig {
   std::uint64_t policy_frozen_steps = 20;  ///< fault: steps of the policy with the same targets
 };
 
-/// A threshold that is one number, and what no setting can put it beyond: compiled in.
-template <typename T>
+/// A threshold, and what no setting can put it beyond: compiled in.
+template <typename T, typename Value = T>
 struct GateThreshold {
   const char* key;  ///< setting controller.gate.<key>; null: no setting has it
-  T GateConfig::*value;
+  Value GateConfig::*value;
   T least, ceiling;
   const char* meaning;  ///< of that setting, in a sentence
 };
@@ -105,7 +105,6 @@ inline constexpr GateThreshold<double> kGateThresholds[] = {
      "Commanded positions are clamped to the stops plus this."},
     {"target_step_rad", &GateConfig::target_step_rad, 0.0, 4.0,
      "Commanded positions move by at most this in a tick."},
-    {"speed_fault_radps", &GateConfig::speed_fault_radps, 0.0, 100.0, "Fault: a joint is faster."},
     {"encoder_jump_rad", &GateConfig::encoder_jump_rad, 0.0, 0.5,
      "Fault: a position changes in a tick by this more than the speed fault explains."},
     {"torque_fault_ratio", &GateConfig::torque_fault_ratio, 0.0, 2.0,
@@ -116,7 +115,6 @@ inline constexpr GateThreshold<double> kGateThresholds[] = {
     {nullptr, &GateConfig::kd_limit_nmsprad, 0.0, 50.0, ""},
     {"power_limit_w", &GateConfig::power_limit_w, 0.0, 1e5,
      "Torques are lowered until the joints give no more mechanical power together."},
-    {nullptr, &GateConfig::continuous_torque_nm, 0.0, 1e3, ""},
     {nullptr, &GateConfig::thermal_time_s, 1e-3, 600.0, ""},
     {"tilt_limit_deg", &GateConfig::tilt_limit_deg, 0.0, 60.0,
      "Limit: the body's tilt is counted; a fault after tilt_fault_s."},
@@ -127,6 +125,12 @@ inline constexpr GateThreshold<double> kGateThresholds[] = {
      "Fault: the accelerometer reports a free fall for this long."},
     {nullptr, &GateConfig::frozen_moved_rad, 0.0, 0.1, ""},
     {nullptr, &GateConfig::frozen_commanded_rad, 0.0, 1.0, ""},
+};
+
+/// Thresholds of HAA, HFE and KFE.
+inline constexpr GateThreshold<double, LegJoints<double>> kGateJointThresholds[] = {
+    {"speed_fault_radps", &GateConfig::speed_fault_radps, 0.0, 100.0, "Fault: a joint is faster."},
+    {nullptr, &GateConfig::continuous_torque_nm, 0.0, 1e3, ""},
 };
 
 inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
@@ -150,6 +154,13 @@ inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
 /// The row of a threshold. Does not compile for one that has none.
 consteval GateThreshold<double> gate_threshold(double GateConfig::*value) {
   for (const GateThreshold<double>& threshold : kGateThresholds) {
+    if (threshold.value == value) return threshold;
+  }
+  throw "no such threshold";
+}
+consteval GateThreshold<double, LegJoints<double>> gate_threshold(
+    LegJoints<double> GateConfig::*value) {
+  for (const auto& threshold : kGateJointThresholds) {
     if (threshold.value == value) return threshold;
   }
   throw "no such threshold";

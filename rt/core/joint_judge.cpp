@@ -162,7 +162,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       const double way_rad = std::fabs(joints.position_rad[j] - m.position_rad[j]);
       const double reach_rad =
           config.encoder_jump_rad +
-          config.speed_fault_radps * seconds(joints.tick[j] - m.sample_tick[j]);
+          config.speed_fault_radps[j % kJointsPerLeg] * seconds(joints.tick[j] - m.sample_tick[j]);
       find(way_rad > reach_rad, Fault::kEncoderJump);
       const bool frozen = all_frozen || frozen_in_motion(config, joints, j, context, m);
       const bool ignores = ignores_target(config, joints, j, context, m);

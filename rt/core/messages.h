@@ -49,6 +49,10 @@ inline constexpr std::array<const char*, kNumJoints> kJointNames = {
 
 template <typename T>
 using JointArray = std::array<T, kNumJoints>;
+/// One value for each joint of a leg, HAA, HFE, KFE: the same for all legs. Joint j of a robot is
+/// element `j % kJointsPerLeg`.
+template <typename T>
+using LegJoints = std::array<T, kJointsPerLeg>;
 using Vector3 = std::array<double, 3>;
 
 inline double length(const Vector3& v) noexcept { return std::hypot(v[0], v[1], v[2]); }
@@ -85,7 +89,7 @@ struct SensorFrame {
   std::uint64_t tick = 0;
   JointState joints;
   ImuSample imu;
-  std::uint64_t emergency_stop = 0;  ///< 1: somebody presses it
+  std::uint64_t emergency_stop = 0;  ///< 1: pressed
   std::uint64_t drives_cut = 0;      ///< 1: RobotIo::cut_drives was called
   /// Joints whose drive another program commands, or which answers more often than it is asked: bit
   /// j for joint j.

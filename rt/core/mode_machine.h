@@ -19,7 +19,7 @@
 // (1) Starts a stop: the command goes to zero, the policy walks on until the robot has stopped.
 //
 // (2) Only when the drives are off and no condition for a fault holds any more (controller.h). The
-// robot then stays Passive until somebody asks for more: a reset never re-arms.
+// robot then stays Passive until the next request: a reset never re-arms.
 //
 // (3) Stand lowers the body: the legs fold, then it damps. A robot that lies on the ground, as in
 // the first motion of StandUp, goes to Damping at once, and so does one that leans by more than 20

@@ -105,12 +105,13 @@ SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
       tilt_fault_ticks_(ticks_from_s(config_.tilt_fault_s)),
       free_fall_ticks_(std::max<std::uint64_t>(1, ticks_from_s(config_.free_fall_s))),
       heat_per_tick_(kControlPeriod_s / std::max(config_.thermal_time_s, kControlPeriod_s)),
-      heat_fault_n2m2_(config_.continuous_torque_nm * config_.continuous_torque_nm),
       tilt_limit_cos_(cos_of_degrees(config_.tilt_limit_deg)),
       tilt_fault_cos_(cos_of_degrees(config_.tilt_fault_deg)) {
   damping_.kd_nmsprad.fill(damping_kd_nmsprad);
   for (int j = 0; j < kNumJoints; ++j) {
     torque_fault_nm_[j] = config_.torque_fault_ratio * config_.torque_limit_nm[j];
+    const double continuous_nm = config_.continuous_torque_nm[j % kJointsPerLeg];
+    heat_fault_n2m2_[j] = continuous_nm * continuous_nm;
   }
 }
 
@@ -238,7 +239,7 @@ std::uint64_t SafetyGate::judge_joints(const JointState& joints, Mode mode, Gate
   // Legs that run may be as fast as that for a moment after Walk, whatever follows it.
   const bool runs = mode == Mode::kWalk || mode == Mode::kFault ||
                     (state.walked != 0 && state.tick - state.walk_tick < kRunsOut_ticks);
-  const double speed_fault_radps = (runs ? 1.0 : kCalmSpeedShare) * config_.speed_fault_radps;
+  const double speed_share = runs ? 1.0 : kCalmSpeedShare;
   bool past_stop = false, too_fast = false;
   for (int j = 0; j < kNumJoints; ++j) {
     std::uint64_t faults = 0;
@@ -249,6 +250,7 @@ std::uint64_t SafetyGate::judge_joints(const JointState& joints, Mode mode, Gate
 
     const double speed_radps = std::fabs(joints.velocity_radps[j]);
     too_fast = too_fast || speed_radps > config_.speed_limit_radps[j];
+    const double speed_fault_radps = speed_share * config_.speed_fault_radps[j % kJointsPerLeg];
     if (speed_radps > speed_fault_radps) faults |= bit(Fault::kJointSpeed);
 
     std::uint64_t& over_ticks = state.torque_over_ticks[j];
@@ -273,8 +275,8 @@ std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t ela
     const double torque_nm = clamp_to(joints.torque_nm[j], -most_nm, most_nm);
     double& heat = state.heat_n2m2[j];
     heat += share * (torque_nm * torque_nm - heat);
-    hot = hot || heat > 0.64 * heat_fault_n2m2_;
-    if (heat > heat_fault_n2m2_ && judged_in(mode, Fault::kOverload)) {
+    hot = hot || heat > 0.64 * heat_fault_n2m2_[j];
+    if (heat > heat_fault_n2m2_[j] && judged_in(mode, Fault::kOverload)) {
       found |= bit(Fault::kOverload);
       at_fault |= std::uint64_t{1} << j;
     }

@@ -65,7 +65,8 @@ class SafetyGate {
   JointCommand damping_;
   JointArray<double> torque_fault_nm_{};
   std::uint64_t torque_fault_ticks_, tilt_fault_ticks_, free_fall_ticks_;
-  double heat_per_tick_, heat_fault_n2m2_;
+  double heat_per_tick_;
+  JointArray<double> heat_fault_n2m2_{};
   double tilt_limit_cos_;
   double tilt_fault_cos_;
 };

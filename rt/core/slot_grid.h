@@ -6,9 +6,9 @@
 
 namespace sandrunner {
 
-/// The grid of a periodic thread: slot n is due at start + n periods, for ever. Whoever is late by
-/// less than a period runs at once; whoever is later skips whole slots, so that a stall is a
-/// counted miss and not a burst of steps. Knows no clock: times are given to it.
+/// The grid of a periodic thread: slot n is due at start + n periods, for ever. A thread that is
+/// late by less than a period runs at once. A later one skips whole slots, so that a stall is a
+/// counted miss and not a burst of steps. The grid knows no clock: times are given to it.
 class SlotGrid {
  public:
   SlotGrid(std::int64_t start_ns, std::int64_t period_ns) noexcept

@@ -9,8 +9,8 @@
 namespace sandrunner {
 
 /// Hands the latest value of one writing thread to one reading thread. Both sides are wait-free: a
-/// write and a read are one exchange each, whatever the other side does or whoever preempts whom. A
-/// value that is not read before the next write is gone; the sequence numbers show it.
+/// write and a read are one exchange each, whatever the other side does and whichever side preempts
+/// the other. A value that is not read before the next write is gone; the sequence numbers show it.
 ///
 /// Three slots: the writer owns one, the reader owns one, the third changes hands. Exactly one
 /// thread may write and one may read.

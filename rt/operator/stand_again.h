@@ -7,10 +7,10 @@
 
 namespace sandrunner {
 
-/// Lets another operator speak, until it is told to bring the robot to Stand: then it asks for what
-/// the mode machine needs from wherever it is, a latched fault included, and the other one has
-/// nothing to say but another request, which ends it. For a simulated robot, which somebody holds
-/// upright meanwhile. Called from the control thread.
+/// Passes on what another operator commands, until `begin` starts the return to Stand. Then it
+/// makes the requests that the mode machine needs from its present mode, the reset of a latched
+/// fault included. A request of the other operator ends that. For a simulated robot that the viewer
+/// holds upright meanwhile. Called from the control thread.
 class StandAgain final : public OperatorInput {
  public:
   /// `other` must outlive it.
@@ -19,7 +19,7 @@ class StandAgain final : public OperatorInput {
   void begin() noexcept;
   /// The robot is to be held: it does not carry itself yet.
   bool holds() const noexcept;
-  /// It is held so that it can stand from there; before, nothing but its rest is asked for.
+  /// It is held so that it can stand from there; before, this only requests its rest.
   void is_upright() noexcept { upright_ = true; }
 
   OperatorCommand command(std::uint64_t tick) noexcept override;

@@ -12,6 +12,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
+#include "rt/plot/axes.h"
 
 namespace sandrunner::plot {
 namespace {
@@ -23,19 +24,6 @@ constexpr double kLeft_px = 86.0;    // y axis
 constexpr double kRight_px = 22.0;
 constexpr double kBetweenViews_px = 26.0;
 constexpr double kPanelHead_px = 34.0;  // title and legend of a panel
-constexpr double kPixelsPerXTick = 90.0;
-constexpr double kPixelsPerYTick = 26.0;
-
-constexpr Color kGrid{0.89, 0.90, 0.92};
-constexpr Color kAxis{0.62, 0.65, 0.69};
-
-struct Range {
-  double begin = 0.0, end = 1.0;
-};
-
-struct Box {
-  double left = 0.0, top = 0.0, width = 0.0, height = 0.0;
-};
 
 /// Range of all finite values, a little wider.
 Range range_of(const Panel& panel) {
@@ -52,13 +40,6 @@ Range range_of(const Panel& panel) {
   if (panel.from_zero) return {0.0, std::max(1.12 * range.end, panel.least_range)};
   const double width = std::max(1.12 * (range.end - range.begin), panel.least_range);
   return {middle - 0.5 * width, middle + 0.5 * width};
-}
-
-/// The middle of a pixel, where thin lines are sharp.
-double crisp(double px) { return std::floor(px) + 0.5; }
-
-double map(double value, const Range& range, double at_begin, double at_end) {
-  return at_begin + (value - range.begin) / (range.end - range.begin) * (at_end - at_begin);
 }
 
 void draw_series(const Canvas& canvas, const Series& series, const std::vector<double>& x,
@@ -143,45 +124,6 @@ void draw_spans(const Canvas& canvas, const Figure& figure, const View& view, co
                 kFaintInk);
   }
   canvas.text(box.left + 0.5 * box.width, box.top + 17.0, view.title, kTextSize_px, 0.5, kFaintInk);
-}
-
-struct Ticks {
-  std::vector<double> values;
-  double step = 1.0;
-};
-
-Ticks ticks_for(const Range& range, double length_px, double pixels_per_tick) {
-  Ticks result;
-  result.values =
-      ticks(range.begin, range.end, std::max(2, static_cast<int>(length_px / pixels_per_tick)));
-  if (result.values.size() > 1) result.step = result.values[1] - result.values[0];
-  return result;
-}
-
-void draw_frame(const Canvas& canvas, const Range& x_range, const Range& y_range, const Box& box) {
-  cairo_t* cr = canvas.cairo();
-  cairo_set_line_width(cr, 1.0);
-  canvas.set_color(kGrid);
-  for (const double x : ticks_for(x_range, box.width, kPixelsPerXTick).values) {
-    const double x_px = crisp(map(x, x_range, box.left, box.left + box.width));
-    cairo_move_to(cr, x_px, box.top);
-    cairo_line_to(cr, x_px, box.top + box.height);
-  }
-  for (const double y : ticks_for(y_range, box.height, kPixelsPerYTick).values) {
-    const double y_px = crisp(map(y, y_range, box.top + box.height, box.top));
-    cairo_move_to(cr, box.left, y_px);
-    cairo_line_to(cr, box.left + box.width, y_px);
-  }
-  cairo_stroke(cr);
-  canvas.set_color(kAxis);
-  if (y_range.begin < 0.0 && y_range.end > 0.0) {
-    const double zero_px = crisp(map(0.0, y_range, box.top + box.height, box.top));
-    cairo_move_to(cr, box.left, zero_px);
-    cairo_line_to(cr, box.left + box.width, zero_px);
-  }
-  cairo_rectangle(cr, crisp(box.left), crisp(box.top), std::floor(box.width),
-                  std::floor(box.height));
-  cairo_stroke(cr);
 }
 
 void draw_y_axis(const Canvas& canvas, const Panel& panel, const Range& y_range, const Box& box) {

@@ -29,8 +29,8 @@ struct RealtimeEnd : LoopEnd {
 /// As run_lockstep, on the clock: control and policy in threads of their own; the sinks are called
 /// in the caller's thread. A watchdog cuts the drives when the
 /// control thread hangs; if it still hangs two seconds later, the process ends. Wanted rights that
-/// are missing are said on standard error before slot 0. `clock` is shared by all threads. Throws
-/// InputError if a required part of the set-up is not to be had.
+/// are missing are reported on standard error before slot 0. `clock` is shared by all threads.
+/// Throws InputError if a required part of the set-up is not to be had.
 RealtimeEnd run_realtime(const Rig& rig, const RealtimeConfig& realtime, Clock& clock);
 
 }  // namespace sandrunner

@@ -10,8 +10,8 @@
 namespace sandrunner {
 
 /// How long the control thread may not tick while the machine runs: longer than any stall that the
-/// safety gate tolerates. Drives have let go by then through their own time-out (50 ms unless set,
-/// at most 100).
+/// safety gate tolerates. Drives have switched off by then through their own time-out (50 ms unless
+/// set, at most 100).
 inline constexpr std::int64_t kWatchdog_ns = 100'000'000;
 
 /// The last line of defence but the drives' own timeout: when the control thread hangs, cuts the

@@ -62,7 +62,7 @@ void RowMaker::follow(const TickRecord& tick) {
   }
   ++sums_.ticks;
   sums_.counted += tick.counts != 0 ? 1 : 0;
-  const JointPower power = joint_power(tick);
+  const JointPower power = joint_power(tick, heat_factor_);
   sums_.power.mechanical_w += power.mechanical_w;
   sums_.power.torque_squared_nm2 += power.torque_squared_nm2;
   const std::array<double, 3> motion = motion_of(tick);
@@ -91,7 +91,7 @@ float RowMaker::cost_of_transport(const Effort& newest) {
   }
   const auto cost = sandrunner::cost_of_transport(
       mean.power.mechanical_w, mean.power.torque_squared_nm2, std::abs(mean.vx_mps),
-      {.mass_kg = scene_.mass_kg, .motor_constant = scene_.motor_constant});
+      {.mass_kg = scene_.mass_kg, .motor_constant = scene_.motor_constant[0]});
   return cost ? static_cast<float>(*cost) : kUnknown;
 }
 

@@ -20,7 +20,10 @@ class RowMaker {
  public:
   /// `scene` must outlive this object.
   explicit RowMaker(const RunScene& scene)
-      : scene_(scene), odometry_(scene.robot), kinematics_(scene.robot) {}
+      : scene_(scene),
+        heat_factor_(heat_factors<double>(scene.motor_constant)),
+        odometry_(scene.robot),
+        kinematics_(scene.robot) {}
 
   /// The row that this tick completes, if any. A row waits for the network's answer to its own
   /// sensors, so it comes a tick or a few later; at the latest when the next one begins.
@@ -53,6 +56,7 @@ class RowMaker {
   float cost_of_transport(const Effort& newest);
 
   const RunScene& scene_;
+  const LegJoints<double> heat_factor_;
   SlowerRate rate_{kPolicyHz};
   Odometry odometry_;
   Kinematics kinematics_;

@@ -36,8 +36,8 @@ struct EstimateErrors {
 struct RunFigures {
   std::array<double, 2> mean_command_mps{};  ///< vx, vy as given to the policy
   double mean_yaw_command_radps = 0.0;
-  /// Mean signed sum of tau qd and mean of the sum over joints of tau^2; tau is the true torque
-  /// after the clamp, or else what the drives report.
+  /// Mean signed sum of tau qd and mean of the sum over joints of tau^2, with tau times its
+  /// heat factor; tau is the true torque after the clamp, or else what the drives report.
   double mechanical_power_w = 0.0, torque_squared_nm2 = 0.0;
   std::int64_t joint_limit_steps = 0;  ///< ticks with a joint past its stop
   std::int64_t speed_limit_steps = 0;  ///< ticks with a joint above its speed limit

@@ -17,7 +17,7 @@ struct RunScene {
   std::string note = {};     ///< a line for the reader of a page, may be empty
   RobotDescription robot = {};
   double mass_kg = 0.0;
-  double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
+  LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   Vector3 base_box_size_m{};
   Vector3 base_box_center_m{};  ///< body frame
   double foot_radius_m = 0.0;

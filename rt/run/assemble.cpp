@@ -10,9 +10,10 @@
 #include "sim/ground/terrain_description.h"
 
 namespace sandrunner {
+namespace {
 
-ProcessConfig read_config(const Options& options, const PolicySpec* spec,
-                          const std::string* hardware) {
+/// The settings, from the weakest layer to the strongest.
+ConfigTree layers_of(const Options& options, const std::string* hardware) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, options.terrain);
   if (hardware) {
@@ -27,6 +28,14 @@ ProcessConfig read_config(const Options& options, const PolicySpec* spec,
     tree.set_text("dds.security_dir", options.dds_security_dir, "--dds-security");
   }
   if (!options.robot_path.empty()) tree.set_text("robot", options.robot_path, "--robot");
+  return tree;
+}
+
+}  // namespace
+
+ProcessConfig read_config(const Options& options, const PolicySpec* spec,
+                          const std::string* hardware) {
+  ConfigTree tree = layers_of(options, hardware);
   ProcessConfig config = read_process_config(tree, spec);
   if (!options.hardware_path.empty() && !config.driver) {
     throw InputError(fmt::format("{}: found no table [hardware]", options.hardware_path));
@@ -38,11 +47,15 @@ ProcessConfig read_config(const Options& options, const PolicySpec* spec,
 RunPolicy load_run_policy(const Options& options) {
   RunPolicy policy;
   if (options.policy_path == kNoPolicy) return policy;
-  const bool shipped = options.policy_path.empty();
-  policy.file = shipped ? std::string(shipped_policy_text())
-                        : read_input_file(options.policy_path, "a policy file");
-  policy.runner = PolicyRunner(load_policy_text(
-      policy.file, shipped ? "raibo.safetensors (built in)" : options.policy_path));
+  if (options.policy_path.empty()) {
+    ConfigTree tree = layers_of(options, nullptr);
+    const std::string robot = shipped_policy_for(tree);
+    policy.file = shipped_policy_text(robot);
+    policy.runner = PolicyRunner(load_shipped_policy(robot));
+  } else {
+    policy.file = read_input_file(options.policy_path, "a policy file");
+    policy.runner = PolicyRunner(load_policy_text(policy.file, options.policy_path));
+  }
   return policy;
 }
 

@@ -61,11 +61,12 @@ struct Words {
 
 void add_robot_options(CLI::App& app, Options& o) {
   app.add_option("--policy", o.policy_path,
-                 "policy file (default: that of Raibo); none: the robot only stands up")
+                 "policy file (default: the robot's own); none: the robot only stands up")
       ->type_name("FILE")
       ->capture_default_str();
   app.add_option("--robot", o.robot_path,
-                 "robot file (sim/robot/README.md; default: that of Raibo)")
+                 "raibo, go2, or the robot file of another one (sim/robot/README.md; default: "
+                 "raibo)")
       ->type_name("FILE")
       ->capture_default_str();
   app.add_option(

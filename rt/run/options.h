@@ -16,7 +16,7 @@ inline constexpr const char* kNoPolicy = "none";
 /// The command line of `sandrunner`, as typed; files are not looked at here.
 struct Options {
   std::string policy_path;    ///< empty: the policy that ships; kNoPolicy: none
-  std::string robot_path;     ///< map of a robot; empty: the robot that ships
+  std::string robot_path;     ///< name or file of a robot; empty: not given
   std::string hardware_path;  ///< TOML of its drives and IMU; empty: the simulator
   bool arm = false;           ///< the script may move the real robot
   bool dry_run = false;       ///< says what would be sent to it
@@ -44,7 +44,7 @@ struct Options {
   std::string record_dir;                ///< folder for run.mcap; empty: no recording
 };
 
-/// Parses the command line. Returns nothing if all is said (--help, --version, which print to
+/// Parses the command line. Returns nothing after --help and --version (which print to
 /// standard output). Throws InputError.
 std::optional<Options> parse_options(int argc, const char* const* argv);
 

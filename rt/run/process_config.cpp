@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/robot/hardware_fit.h"
+#include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/run/robot_drivers.h"
 
@@ -16,7 +18,7 @@ struct RobotKey {
   std::string robot = "raibo";
 };
 constexpr Setting<RobotKey> kRobot[] = {
-    {"robot", &RobotKey::robot, "raibo, or the file of another robot (--robot)."},
+    {"robot", &RobotKey::robot, "raibo, go2, or the file of another robot (--robot)."},
 };
 constexpr Setting<ProcessConfig> kView[] = {
     {"drive", &ProcessConfig::view_drive,
@@ -28,7 +30,7 @@ constexpr Setting<RecordingLimits> kRecording[] = {
     {"limit_s", &RecordingLimits::time_s, 0.1, 1e9, "Longest recording."},
 };
 constexpr Setting<ProcessConfig> kSummary[] = {
-    {"motor_constant", &ProcessConfig::motor_constant, 1e-3, 1e3,
+    {"motor_constant", repeated<1>(&ProcessConfig::motor_constant), 1e-3, 1e3,
      "k_m of the cost of transport, N m/sqrt(W) at the joint.", kFromRobotFile},
 };
 
@@ -36,7 +38,9 @@ constexpr const char* kFromPolicy = "from the policy file";
 
 /// Ends of ranges that the robot's file gives: no setting gives a drive more than that.
 struct Ranges {
-  double kp_nmprad, kd_nmsprad, speed_fault_radps, power_w;
+  double kp_nmprad, kd_nmsprad;
+  LegJoints<double> speed_fault_radps;
+  double power_w;
   bool recorded = false;  ///< what was run once may be read that no run is to have any more
 
   double least(double value) const noexcept { return recorded ? 0.0 : value; }
@@ -156,21 +160,27 @@ std::vector<Setting<GateConfig>> gate_settings(const Ranges& r) {
       rows.back().fallback = kFromRobotFile;
       rows.back().range = range;
     };
-    from_robot(&GateConfig::speed_fault_radps, r.speed_fault_radps,
-               "0 to limits.speed_fault_radps of the robot file");
     from_robot(&GateConfig::power_limit_w, r.power_w, "0 to limits.power_w of the robot file");
   }
   for (const auto& threshold : kGateTickThresholds) add(threshold);
+  for (const auto& t : kGateJointThresholds) {
+    if (t.key == nullptr) continue;
+    static_assert(std::size(kGateJointThresholds) == 2, "speed_fault_radps alone has a setting");
+    rows.emplace_back(t.key, repeated<1>(t.value), t.least,
+                      *std::ranges::max_element(r.speed_fault_radps), t.meaning, kFromRobotFile,
+                      "0 to limits.speed_fault_radps of the robot file");
+  }
   return rows;
 }
 
 Ranges ranges_of(const sim::Robot& robot, bool recorded) {
   // A recording's thresholds are held to what is compiled in alone.
-  const double speed_fault_radps = gate_threshold(&GateConfig::speed_fault_radps).ceiling;
+  LegJoints<double> speed_fault_radps = robot.speed_fault_radps;
+  if (recorded) speed_fault_radps.fill(gate_threshold(&GateConfig::speed_fault_radps).ceiling);
   const double power_w = gate_threshold(&GateConfig::power_limit_w).ceiling;
   return {.kp_nmprad = robot.kp_limit_nmprad,
           .kd_nmsprad = robot.kd_limit_nmsprad,
-          .speed_fault_radps = recorded ? speed_fault_radps : robot.speed_fault_radps,
+          .speed_fault_radps = speed_fault_radps,
           .power_w = recorded ? power_w : robot.power_limit_w,
           .recorded = recorded};
 }
@@ -214,6 +224,10 @@ ControllerConfig read_controller(ConfigTree& config, const ControllerDefaults& d
   lower(lowered.speed_limit_radps, c.gate.speed_limit_radps);
   lower(lowered.torque_limit_nm, c.gate.torque_limit_nm);
   read_settings(config, "controller.gate", gate_settings(ranges), c.gate);
+  for (int j = 0; j < kJointsPerLeg; ++j) {  // no joint may be faster than its own
+    double& fault_radps = c.gate.speed_fault_radps[j];
+    fault_radps = std::min(fault_radps, ranges.speed_fault_radps[j]);
+  }
   // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
   const CommandEnvelope &trained = defaults.config.shaping.envelope, &set = c.shaping.envelope;
   const auto at_most = [](double& value, double a, double b) {
@@ -229,7 +243,7 @@ sim::Robot read_robot(ConfigTree& config, const sim::Robot* recorded) {
   RobotKey key;
   read_settings(config, "", kRobot, key);
   if (recorded) return *recorded;
-  return key.robot == RobotKey().robot ? sim::load_raibo() : sim::load_robot(key.robot);
+  return sim::load_robot(key.robot);
 }
 
 /// Throws InputError for a policy whose joints are not the robot's, or whose gains its drives are
@@ -296,6 +310,11 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   config.reject_unknown();
   p.effective = config.effective();
   return p;
+}
+
+std::string shipped_policy_for(ConfigTree& config) {
+  const std::string name = read_robot(config, nullptr).description.name;
+  return shipped_policy_text(name).empty() ? RobotKey().robot : name;
 }
 
 std::vector<SettingLine> process_settings() {

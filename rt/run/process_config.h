@@ -32,8 +32,8 @@ struct ProcessConfig {
   std::shared_ptr<const RobotDriver> driver;  ///< of a real robot; null: no table of one
   bool view_drive = false;                    ///< pages of --view that have the key may command
   int view_port = 8765;                       ///< of --view; 0: one that is free
-  double motor_constant = 0.0;  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
-  std::string effective;        ///< TOML of every setting with the value in effect
+  LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
+  std::string effective;               ///< TOML of every setting with the value in effect
 };
 
 /// What the controller takes from a robot: posture, gains, limits. Walk's gains are the policy's.
@@ -45,6 +45,10 @@ ControllerConfig controller_config(const sim::Robot& robot);
 /// that no run may have any more. Throws InputError.
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
                                   const sim::Robot* robot = nullptr);
+
+/// Name of the robot whose shipped policy a run with these settings takes: the robot that the key
+/// "robot" names, or Raibo for one that no policy ships for. Throws InputError.
+std::string shipped_policy_for(ConfigTree& config);
 
 /// The keys that are read here and in no other folder, for the reference.
 std::vector<SettingLine> process_settings();

@@ -10,13 +10,13 @@
 
 namespace sandrunner {
 
-/// What the process does about signals while it has a robot. Every one that would end or stop it
-/// (Ctrl-C, Ctrl-\, Ctrl-Z, a closed terminal, a timer, a limit of processor time, ...), but for
-/// a SIGHUP that was ignored from the start (nohup), is taken away from all threads that start
-/// after it and waited for in a thread of its own: no code runs in a signal handler, no system call
-/// of another thread is interrupted, and the robot is let down first. Ignored are those that stand
-/// for an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. What nobody can catch, SIGKILL and
-/// SIGSTOP, is left to the drives' own time-out.
+/// What the process does about signals while it has a robot. It blocks every signal that would end
+/// or stop it (Ctrl-C, Ctrl-\, Ctrl-Z, a closed terminal, a timer, a limit of processor time, ...)
+/// in all threads that start later, and waits for them in a thread of its own. So no code runs in a
+/// signal handler, no system call of another thread is interrupted, and the robot lies down first.
+/// Exception: a SIGHUP that was ignored from the start (nohup). It ignores signals that stand for
+/// an error of a write: SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN. For SIGKILL and SIGSTOP, which no
+/// program can catch, there is the drives' own time-out.
 class SignalWatch {
  public:
   SignalWatch();

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many robots at once: packs of 8 or 16 robots in SIMD lanes (or one at a time), each with its own
 // inertia, ground, drives and delay. A robot's trajectory has the same bits at every width, in
-// every lane, beside any neighbours.
+// every lane, next to any neighbours.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 
+#include "sim/step/actuator.h"
 #include "sim/step/robot_step.h"
 
 namespace sandrunner::sim {
@@ -16,11 +17,12 @@ template <typename S>
 struct BatchDrive {
   std::array<S, kNumJoints> target_before{};  ///< joint targets until `switch_tick`, rad
   std::array<S, kNumJoints> target{};         ///< joint targets from then on, rad
-  S switch_tick{};            ///< ticks into the period at which the new targets arrive
-  S kp{}, kd{};               ///< of all joints, N m/rad, N m s/rad
-  S torque_scale = S(1.0);    ///< delivered over commanded torque
-  S stall_torque_nm{};        ///< torque-speed line; 0: none
-  S inverse_no_load_speed{};  ///< s/rad
+  S switch_tick{};          ///< ticks into the period at which the new targets arrive
+  S kp{}, kd{};             ///< of all joints, N m/rad, N m s/rad
+  S torque_scale = S(1.0);  ///< delivered over commanded torque
+  DriveLine<S> line;        ///< by default none
+  /// Of HAA, HFE and KFE (estimator/cost_of_transport.h).
+  LegJoints<S> heat_factor{S(1.0), S(1.0), S(1.0)};
 };
 
 /// Share of a joint's speed limit above which a speed counts in `speed_excess`.
@@ -33,7 +35,7 @@ inline constexpr float kLoaded_n = 3.0f;
 /// Sums over the ticks of one policy period, for rewards and statistics.
 template <typename S>
 struct BatchSums {
-  S torque_squared{};  ///< sum over joints of tau^2, N^2 m^2
+  S torque_squared{};  ///< sum over joints of (heat factor times tau)^2, N^2 m^2
   S power{};           ///< signed sum of tau qd, W
   /// Sum over HFE and KFE of max(tau, 0) max(qd, 0), W: legs that push off extend both.
   S extension_power{};

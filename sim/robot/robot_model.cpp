@@ -29,8 +29,7 @@ struct RobotFile {
   std::string left_front, right_front, left_hind, right_hind;
   std::string haa, hfe, kfe;
   std::string base, hip, thigh, shank, foot;
-  double rotor_inertia_kgm2 = 0.0;
-  std::array<double, kJointsPerLeg> nominal_rad{}, lying_rad{};
+  LegJoints<double> rotor_inertia_kgm2{}, friction_nm{};
 };
 
 using F = RobotFile;
@@ -49,8 +48,10 @@ constexpr Setting<F> kJoints[] = {
     {"haa", &F::haa, "Name of the hip abduction joint in the URDF.", kRequired},
     {"hfe", &F::hfe, "Name of the hip flexion joint in the URDF.", kRequired},
     {"kfe", &F::kfe, "Name of the knee joint in the URDF.", kRequired},
-    {"rotor_inertia_kgm2", &F::rotor_inertia_kgm2, 0.0, 1.0,
+    {"rotor_inertia_kgm2", repeated<1>(&F::rotor_inertia_kgm2), 0.0, 1.0,
      "Inertia of a motor's rotor at the joint: times the gear ratio squared.", kRequired},
+    {"friction_nm", repeated<1>(&F::friction_nm), 0.0, 5.0,
+     "Dry friction of drive and joint, at the joint."},
 };
 constexpr Setting<F> kLinks[] = {
     {"base", &F::base, "Name of the base's link in the URDF.", kRequired},
@@ -58,12 +59,6 @@ constexpr Setting<F> kLinks[] = {
     {"thigh", &F::thigh, "Name of the link that the HFE moves.", kRequired},
     {"shank", &F::shank, "Name of the link that the KFE moves.", kRequired},
     {"foot", &F::foot, "Name of the link that is fixed to the shank.", kRequired},
-};
-constexpr Setting<F> kPose[] = {
-    {"nominal_rad", &F::nominal_rad, -7.0, 7.0,
-     "HAA, HFE, KFE of every leg, standing; a training wants an HAA of 0.", kRequired},
-    {"lying_rad", &F::lying_rad, -7.0, 7.0, "HAA, HFE, KFE on its belly, as a run starts.",
-     kRequired},
 };
 
 using M = RobotModel<double>;
@@ -73,7 +68,11 @@ constexpr Setting<M> kCollision[] = {
 };
 
 using R = Robot;
-constexpr Setting<R> kFold[] = {
+constexpr Setting<R> kPose[] = {
+    {"nominal_rad", repeated<kJointsPerLeg>(&R::nominal_rad), -7.0, 7.0,
+     "HAA, HFE, KFE of every leg, standing; a training wants an HAA of 0.", kRequired},
+    {"lying_rad", repeated<kJointsPerLeg>(&R::lying_rad), -7.0, 7.0,
+     "HAA, HFE, KFE on its belly, as a run starts.", kRequired},
     {"fold_rad", &R::fold_rad, -7.0, 7.0,
      "HAA, HFE, KFE folded under the hips: from here the legs extend.", kRequired},
 };
@@ -82,8 +81,8 @@ constexpr Setting<R> kHeight[] = {
      "from the geometry"},
 };
 // A row whose range is that of the gate's threshold.
-constexpr Setting<R> within(const GateThreshold<double>& threshold, const char* key,
-                            double R::*member, const char* meaning) {
+constexpr Setting<R> within(const auto& threshold, const char* key, Setting<R>::Member member,
+                            const char* meaning) {
   return {key, member, threshold.least, threshold.ceiling, meaning, kRequired};
 }
 constexpr Setting<R> kGains[] = {
@@ -108,26 +107,30 @@ constexpr Setting<R> damping(double kd_limit_nmsprad) {
 }
 constexpr Setting<R> kLimits[] = {
     within(gate_threshold(&GateConfig::speed_fault_radps), "speed_fault_radps",
-           &R::speed_fault_radps, "A faster joint is a fault; well above normal running."),
+           repeated<1>(&R::speed_fault_radps),
+           "A faster joint is a fault; well above normal running."),
     within(gate_threshold(&GateConfig::power_limit_w), "power_w", &R::power_limit_w,
            "Largest mechanical power of all joints together."),
 };
 constexpr Setting<R> kMotor[] = {
     within(gate_threshold(&GateConfig::continuous_torque_nm), "continuous_torque_nm",
-           &R::continuous_torque_nm, "Rms torque that a drive gives for ever, at the joint."),
+           repeated<1>(&R::continuous_torque_nm),
+           "Rms torque that a drive gives for ever, at the joint."),
     within(gate_threshold(&GateConfig::thermal_time_s), "thermal_time_s", &R::thermal_time_s,
            "Time constant with which a motor's windings warm."),
 };
 constexpr Setting<TorqueSpeedLine> kLine[] = {
-    {"stall_torque_nm", &TorqueSpeedLine::stall_torque_nm, 1e-3, 1e4,
+    {"stall_torque_nm", repeated<1>(&TorqueSpeedLine::stall_torque_nm), 1e-3, 1e4,
      "Torque of the torque-speed line at rest, at the joint.", kRequired},
-    {"no_load_speed_radps", &TorqueSpeedLine::no_load_speed_radps, 1e-3, 1e4,
+    {"no_load_speed_radps", repeated<1>(&TorqueSpeedLine::no_load_speed_radps), 1e-3, 1e4,
      "Speed at which the torque-speed line ends, at the joint.", kRequired},
 };
 constexpr Setting<R> kConstant[] = {
-    {"constant_nmpsqrtw", &R::motor_constant_nmpsqrtw, 1e-3, 1e3,
+    {"constant_nmpsqrtw", repeated<1>(&R::motor_constant_nmpsqrtw), 1e-3, 1e3,
      "Motor constant k_m at the joint: its heat is torque^2 / k_m^2.",
      "sqrt(stall torque / no-load speed)"},
+    {"torque_speed_line", &R::obeys_torque_speed_line,
+     "Simulated drives obey the torque-speed line unless a setting says otherwise."},
 };
 
 // Names of the URDF's parts.
@@ -177,7 +180,6 @@ RobotFile read_file(Map& map) {
   map.read("links", kLinks, file);
   map.read("legs", kLegs, file);
   map.read("joints", kJoints, file);
-  map.read("pose", kPose, file);
   return file;
 }
 
@@ -189,7 +191,7 @@ Names names_in(const RobotFile& f) {
           .foot = f.foot};
 }
 
-JointArray<double> all_legs(const std::array<double, kJointsPerLeg>& leg) {
+JointArray<double> all_legs(const LegJoints<double>& leg) {
   JointArray<double> all;
   for (int j = 0; j < kNumJoints; ++j) all[j] = leg[j % kJointsPerLeg];
   return all;
@@ -197,11 +199,10 @@ JointArray<double> all_legs(const std::array<double, kJointsPerLeg>& leg) {
 
 // All figures; the nominal height is 0 where the geometry is to give it.
 void read_figures(Map& map, const RobotFile& file, Robot& robot) {
-  robot.model.rotor_inertia.fill(file.rotor_inertia_kgm2);
-  robot.nominal_rad = all_legs(file.nominal_rad);
-  robot.lying_rad = all_legs(file.lying_rad);
+  robot.model.rotor_inertia = all_legs(file.rotor_inertia_kgm2);
+  robot.model.friction_nm = all_legs(file.friction_nm);
   map.read("collision", kCollision, robot.model);
-  map.read("pose", kFold, robot);
+  map.read("pose", kPose, robot);
   map.read("pose", kHeight, robot);
   map.read("gains", kGains, robot);
   map.read("gains", std::array{damping(robot.kd_limit_nmsprad)}, robot);
@@ -211,7 +212,10 @@ void read_figures(Map& map, const RobotFile& file, Robot& robot) {
   map.read("motor", kLine, robot.torque_speed_line);
   // Of a DC motor, stall torque = k_t V / R and no-load speed = V / k_t: their ratio is k_t^2 / R,
   // the square of k_m, before and behind the gear.
-  robot.motor_constant_nmpsqrtw = std::sqrt(line.stall_torque_nm / line.no_load_speed_radps);
+  for (int j = 0; j < kJointsPerLeg; ++j) {
+    robot.motor_constant_nmpsqrtw[j] =
+        std::sqrt(line.stall_torque_nm[j] / line.no_load_speed_radps[j]);
+  }
   map.read("motor", kConstant, robot);
 }
 
@@ -347,6 +351,10 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
 }
 
 Robot load_robot(const std::string& map_path) {
+  if (const std::string_view map = embedded_robot_file(map_path + ".toml"); !map.empty()) {
+    return parse_robot(std::string(map), map_path + ".toml",
+                       std::string(embedded_robot_file(map_path + ".urdf")), map_path + ".urdf");
+  }
   const std::string map_text = read_input_file(map_path, "a robot file");
   const std::size_t first = map_text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && map_text[first] == '<') {
@@ -370,7 +378,6 @@ std::vector<SettingLine> robot_file_settings() {
   list_settings(lines, "links", kLinks);
   list_settings(lines, "collision", kCollision);
   list_settings(lines, "pose", kPose);
-  list_settings(lines, "pose", kFold);
   list_settings(lines, "pose", kHeight);
   list_settings(lines, "gains", kGains);
   list_settings(lines, "gains", std::array{damping(0.0)});
@@ -381,9 +388,6 @@ std::vector<SettingLine> robot_file_settings() {
   return lines;
 }
 
-Robot load_raibo() {
-  return parse_robot(std::string(embedded_robot_file("raibo.toml")), "raibo.toml",
-                     std::string(embedded_robot_file("raibo.urdf")), "raibo.urdf");
-}
+Robot load_raibo() { return load_robot("raibo"); }
 
 }  // namespace sandrunner::sim

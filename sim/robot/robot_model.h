@@ -41,11 +41,17 @@ struct LegModel {
   Body<S> shank;  ///< below KFE, with the foot
 };
 
+/// Speed of a joint, rad/s, below which its dry friction is proportional to its speed: a joint that
+/// jumps from one friction to the opposite one has no rest that steps of the simulation can find.
+inline constexpr double kFrictionSpeed_radps = 0.1;
+
 template <typename S>
 struct RobotModel {
   Body<S> base;
   std::array<LegModel<S>, kNumLegs> legs;
-  std::array<S, kNumJoints> rotor_inertia{};           ///< reflected to the joint, kg m^2
+  std::array<S, kNumJoints> rotor_inertia{};  ///< reflected to the joint, kg m^2
+  /// Dry friction, N m: against the joint's motion, in full from kFrictionSpeed_radps on.
+  std::array<S, kNumJoints> friction_nm{};
   std::array<S, kNumJoints> lower_rad{}, upper_rad{};  ///< stops
   std::array<S, kNumJoints> torque_limit_nm{}, speed_limit_radps{};
   S foot_radius_m{};                           ///< of the tyre or ball
@@ -65,8 +71,8 @@ struct RobotModel {
 /// Electrical limit of a drive, seen at the joint: |torque| <= stall torque (1 - |speed| / no-load
 /// speed) while it drives in the direction of motion. A stall torque of 0: no such limit.
 struct TorqueSpeedLine {
-  double stall_torque_nm = 0.0;
-  double no_load_speed_radps = 0.0;
+  LegJoints<double> stall_torque_nm{};
+  LegJoints<double> no_load_speed_radps{};
 };
 
 /// A RobotModel and the other figures of its robot file that controller and program need
@@ -79,27 +85,31 @@ struct Robot {
   double nominal_height_m = 0.0;     ///< base height in that pose, feet just touching
   JointArray<double> lying_rad{};    ///< pose in which it lies on its belly
   /// Pose of each leg from which it stands up.
-  std::array<double, kJointsPerLeg> fold_rad{};
+  LegJoints<double> fold_rad{};
   double stand_kp_nmprad = 0.0;  ///< gains of StandUp and Stand
   double stand_kd_nmsprad = 0.0;
   double damping_kd_nmsprad = 0.0;  ///< gain of Damping, and of the damping after a fault
   double kp_limit_nmprad = 0.0;     ///< largest gains that the drives are to be given
   double kd_limit_nmsprad = 0.0;
-  double speed_fault_radps = 0.0;     ///< a joint measured above it is a fault
-  double power_limit_w = 0.0;         ///< mechanical power of all joints together
-  double continuous_torque_nm = 0.0;  ///< rms torque that a drive gives for ever, at the joint
-  double thermal_time_s = 0.0;        ///< time constant with which its windings warm
+  LegJoints<double> speed_fault_radps{};  ///< a joint measured above it is a fault
+  double power_limit_w = 0.0;             ///< mechanical power of all joints together
+  LegJoints<double>
+      continuous_torque_nm{};   ///< rms torque that a drive gives for ever, at the joint
+  double thermal_time_s = 0.0;  ///< time constant with which its windings warm
   TorqueSpeedLine torque_speed_line;
+  /// Whether simulated drives obey that line unless a setting says otherwise.
+  bool obeys_torque_speed_line = false;
   /// k_m at the joint: a torque heats the motor by torque^2 / k_m^2, in W.
-  double motor_constant_nmpsqrtw = 0.0;
+  LegJoints<double> motor_constant_nmpsqrtw{};
 };
 
-/// The robot that ships (sim/robot/raibo.urdf and raibo.toml, embedded in the program).
+/// The default robot (sim/robot/raibo.urdf and raibo.toml, embedded in the program).
 Robot load_raibo();
 
-/// Loads a quadruped of this topology. `map_path` is a TOML file that names the links and joints of
+/// Loads a quadruped of this topology. `map_path` is the name of a robot that ships, "raibo" or
+/// "go2", or the path of a TOML file that names the links and joints of
 /// the URDF and gives what a URDF cannot (sim/robot/README.md); a relative `urdf` in it is looked
-/// up beside the map. Throws InputError, one line, for anything that is not such a robot.
+/// up next to the robot file. Throws InputError, one line, for anything that is not such a robot.
 Robot load_robot(const std::string& map_path);
 
 /// As load_robot, from texts; `map_name` and `urdf_name` appear in errors.
@@ -128,6 +138,7 @@ RobotModel<To> convert_model(const RobotModel<double>& from) noexcept {
   }
   for (int j = 0; j < kNumJoints; ++j) {
     to.rotor_inertia[j] = To(from.rotor_inertia[j]);
+    to.friction_nm[j] = To(from.friction_nm[j]);
     to.lower_rad[j] = To(from.lower_rad[j]);
     to.upper_rad[j] = To(from.upper_rad[j]);
     to.torque_limit_nm[j] = To(from.torque_limit_nm[j]);

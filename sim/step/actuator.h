@@ -3,8 +3,26 @@
 
 #include "rt/core/joint_pd.h"
 #include "sim/lanes/lanes.h"
+#include "sim/robot/robot_model.h"
 
 namespace sandrunner::sim {
+
+/// A TorqueSpeedLine (sim/robot/robot_model.h) as drive_torque takes it, of HAA, HFE and KFE. A
+/// stall torque of 0: no line.
+template <typename S>
+struct DriveLine {
+  LegJoints<S> stall_torque_nm{};
+  LegJoints<S> inverse_no_load_speed{};  ///< s/rad
+};
+template <typename S>
+DriveLine<S> drive_line(const TorqueSpeedLine& line) noexcept {
+  DriveLine<S> drive;
+  for (int j = 0; j < kJointsPerLeg; ++j) {
+    drive.stall_torque_nm[j] = S(line.stall_torque_nm[j]);
+    drive.inverse_no_load_speed[j] = S(1.0 / line.no_load_speed_radps[j]);
+  }
+  return drive;
+}
 
 /// Torque of a joint drive, N m: the PD law, clamped to +-`limit_nm` and, with a stall torque above
 /// 0, to the drive's TorqueSpeedLine (sim/robot/robot_model.h). Positions rad, rates rad/s, kp

@@ -148,8 +148,8 @@ inline void solve_on_disc(S gxx, S gxy, S gyy, S bx, S by, S radius, S& tx, S& t
 /// mu lambda_n whose velocity opposes it.
 ///
 /// Friction changes the normal velocity as much as the normal impulse does when a leg is steep (mu
-/// G_nt > G_nn), so that treating the two in turn may cycle. Here lambda(s) = -(G + s diag(1, 1,
-/// 0))^-1 b has v_n = 0 and v_t = -s lambda_t for every s >= 0; s = 0 sticks, and if that lies
+/// G_nt > G_nn), so that treating the two alternately may cycle. Here lambda(s) = -(G + s diag(1,
+/// 1, 0))^-1 b has v_n = 0 and v_t = -s lambda_t for every s >= 0; s = 0 sticks, and if that lies
 /// outside the cone, |lambda_t| - mu lambda_n has a root, bracketed by s = 0 (positive) and s =
 /// infinity (negative). Anderson-Bjoerck iteration on u = s/(s + m), which maps the bracket to [0,
 /// 1].
@@ -226,8 +226,9 @@ inline std::array<S, 3> projected_step(const PointContact<S>& c, const Mask<S>& 
   return {x * scale, y * scale, select(hard, normal, c.impulse[2])};
 }
 
-/// Sweeps with exact visits, before the paper's projected steps take over: exact visits in turn can
-/// cycle where a soft foot and a hard knee share a leg, the paper's shorter steps do not.
+/// Sweeps with exact visits, before the paper's projected steps take over: exact visits one after
+/// the other can cycle where a soft foot and a hard knee share a leg, the paper's shorter steps do
+/// not.
 inline constexpr int kExactSweeps = 50;
 
 /// Solves in place; `sum` comes back as the effect of all impulses. Returns the number of sweeps of

@@ -264,6 +264,23 @@ void RobotStepper<S>::add_stops(const RobotModel<S>& model, S dt, const RobotSta
   }
 }
 
+/// What is left of the drives' torques behind the friction of their joints.
+template <typename S>
+std::array<S, kNumJoints> behind_friction(const RobotModel<S>& model,
+                                          const std::array<S, kNumJoints>& qd,
+                                          const std::array<S, kNumJoints>& torque_nm) noexcept {
+  const S zero = S(0.0), one = S(1.0);
+  std::array<S, kNumJoints> left = torque_nm;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const S friction = model.friction_nm[j];
+    const Mask<S> rubs = friction > zero;
+    if (!any(rubs)) continue;
+    const S share = min(max(S(1.0 / kFrictionSpeed_radps) * qd[j], -one), one);
+    left[j] = select(rubs, fma(-friction, share, torque_nm[j]), torque_nm[j]);
+  }
+  return left;
+}
+
 template <typename S>
 void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foot,
                            const Terrain<S>& terrain, const StepSettings& settings,
@@ -272,7 +289,8 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   const S dt = S(settings.dt_s), zero = S(0.0);
   rotation_ = rotation_matrix(x.rigid.orientation);
   dynamics_.update(model, x.rigid);
-  const Motion<S> acceleration = dynamics_.free_acceleration(torque_nm);
+  const Motion<S> acceleration =
+      dynamics_.free_acceleration(behind_friction(model, x.rigid.qd, torque_nm));
   velocity_ = transposed_times(rotation_, x.rigid.velocity);
   free_.linear = mul_add(acceleration.linear, dt, velocity_);
   free_.angular = mul_add(acceleration.angular, dt, x.rigid.angular_velocity);

@@ -1,5 +1,5 @@
-# Fails if the network calls a transcendental function of the mathematics library: its bits differ from system to
-# system. The CONTROL, which calls some, shows that they would be seen.
+# Fails if the network calls a transcendental function of the mathematics library: its bits differ
+# from system to system. The CONTROL, which calls some, shows that they would be seen.
 function(transcendentals object result)
   execute_process(COMMAND ${NM} -u ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL

@@ -29,7 +29,8 @@ import time
 
 import inputs
 
-# A run takes 0.02 to 0.5 s on a free machine: one that is hundreds of times as slow has no "hang" yet.
+# A run takes 0.02 to 0.5 s on a free machine: one that is hundreds of times as slow has no "hang"
+# yet.
 LIMIT_S = 300.0
 PROGRAMS = ['sandrunner', 'sandrunner-replay', 'sandrunner-policy', 'sandrunner-evaluate', 'sandrunner-ctl',
             'dds_attacker']
@@ -67,7 +68,7 @@ class Child:
         self.out, self.err = folder / f'{log}stdout', folder / f'{log}stderr'
         words = [str(programs / command[0]), *(word.replace('\0', '') for word in command[1:])]
         environment = {**os.environ, **one.environment}
-        if one.shell:  # what has to be done before in the very process; the environment is not for bash
+        if one.shell:  # what comes before in the same process; the environment is not for bash
             words = ['bash', '-c', one.shell + '; exec "$@"', 'bash', 'env',
                      *(f'{name}={value}' for name, value in one.environment.items()), *words]
             environment = None

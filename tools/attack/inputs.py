@@ -6,7 +6,8 @@ import signal
 
 SHORT = ['--start', 'walk', '--duration', '0.02']
 DOMAIN = '@DOMAIN@'  # in a word of a command: a DDS domain that nobody else uses
-# Of a live robot, tighter than those of the one that ships: torque, N m; forward, backward, sideways, m/s; yaw, rad/s.
+# Of a live robot, tighter than those of the one that ships: torque, N m; forward, backward,
+# sideways, m/s; yaw, rad/s.
 BOUNDS = {'gate.torque_limit_nm': 50, 'shaping.forward_mps': 1, 'shaping.backward_mps': 0.5,
           'shaping.lateral_mps': 0.3, 'shaping.yaw_radps': 0.7}
 # Each of them ends a program or stops it, by default.
@@ -27,7 +28,7 @@ class Input:
     environment: dict = dataclasses.field(default_factory=dict)
     signals: list = dataclasses.field(default_factory=list)  # (seconds after the start, signal)
     other_user: bool = False
-    beside: list = dataclasses.field(default_factory=list)  # commands that run until this one has ended
+    beside: list = dataclasses.field(default_factory=list)  # commands that run until it has ended
 
 
 def number(rng):

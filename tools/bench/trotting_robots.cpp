@@ -60,7 +60,6 @@ TrottingBatch::TrottingBatch(const sim::Robot& robot, int robots, sim::BatchWidt
   const sim::TerrainDescription sand = dry_sand();
   const auto terrain = sim::convert_terrain<float>(
       sim::make_terrain(sand, sim::make_foot_profile(sand, robot.model), robot.model));
-  const sim::TorqueSpeedLine& line = robot.torque_speed_line;
   for (int i = 0; i < robots; ++i) {
     const auto draw = [&](std::uint64_t counter) {
       return sim::random_uniform(kSeed, static_cast<std::uint64_t>(i), counter);
@@ -81,8 +80,7 @@ TrottingBatch::TrottingBatch(const sim::Robot& robot, int robots, sim::BatchWidt
     drive.switch_tick = std::floor(static_cast<float>(2 * kDelay_ticks * draw(2)));
     drive.kp = static_cast<float>(kTrotKp);
     drive.kd = static_cast<float>(kTrotKd);
-    drive.stall_torque_nm = static_cast<float>(line.stall_torque_nm);
-    drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+    drive.line = sim::drive_line<float>(robot.torque_speed_line);
   }
 }
 
@@ -130,7 +128,7 @@ TrottingRobot::TrottingRobot(const sim::Robot& robot) : robot_(robot) {
 }
 
 void TrottingRobot::advance(int periods) {
-  const sim::TorqueSpeedLine& line = robot_.torque_speed_line;
+  const auto line = sim::drive_line<double>(robot_.torque_speed_line);
   for (int k = 0; k < periods; ++k, ++periods_) {
     target_before_ = target_;
     target_ = trot_targets(robot_.nominal_rad, static_cast<double>(periods_) / kPolicyHz, 0.0);
@@ -140,7 +138,8 @@ void TrottingRobot::advance(int periods) {
       for (int j = 0; j < kNumJoints; ++j) {
         torque_nm[j] = sim::drive_torque(state_.rigid.q[j], state_.rigid.qd[j], target[j], 0.0,
                                          kTrotKp, kTrotKd, 0.0, robot_.model.torque_limit_nm[j],
-                                         line.stall_torque_nm, 1.0 / line.no_load_speed_radps);
+                                         line.stall_torque_nm[j % kJointsPerLeg],
+                                         line.inverse_no_load_speed[j % kJointsPerLeg]);
       }
       stepper_.step(robot_.model, foot_, terrain_, {}, torque_nm, state_, report_);
     }

@@ -158,7 +158,7 @@ void watch_topic(const Options& options, Interrupt& interrupt) {
   };
   if (!interrupt.wait_until(kFindRobot_ns, [&] { return look() || writers_of(reader) > 0; }) &&
       !interrupt.came()) {
-    to_standard_error(fmt::format("sandrunner-ctl: nobody publishes {} {} yet, waiting\n",
+    to_standard_error(fmt::format("sandrunner-ctl: found no publisher of {} {} yet, waiting\n",
                                   topic.name, place(options.dds)));
   }
   while (!look() && !interrupt.wait(kLook_ns)) {

@@ -56,7 +56,8 @@ def run(programs, policy, robot, job, commands, folder):
     rows = [(0.0, zero), (0.5, zero), (0.5, a), (3, a), (3, b), (5.5, b), (5.5, a), (7, a), (7, zero)]
     file = folder / f'{first} {second}.csv'.replace(' ', '-')
     if not file.exists():
-        # Two rows at one time are a step; the controller makes of it what the envelope's accelerations allow.
+        # Two rows at one time are a step; the controller makes of it what the envelope's
+        # accelerations allow.
         lines = [f'{t + 1e-6 * i:.6f},{v[0]:g},{v[1]:g},{v[2]:g}\n' for i, (t, v) in enumerate(rows)]
         part = file.with_suffix(f'.{start}-{ground.replace("/", "-")}')
         part.write_text('t_s,vx,vy,wz\n' + ''.join(lines))
@@ -71,7 +72,7 @@ def main():
     parser = argparse.ArgumentParser(prog='tools/evaluate/corners.py', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('policy', type=pathlib.Path)
-    parser.add_argument('--robot', type=pathlib.Path, help='robot file (default: that of Raibo)')
+    parser.add_argument('--robot', help='raibo, go2 or a robot file (default: raibo)')
     parser.add_argument('--bin', type=pathlib.Path, default=TREE / 'build/release/bin', help='folder of the programs')
     parser.add_argument('--runs', type=int, help='so many of them, drawn by chance (default: all 3,822)')
     options = parser.parse_args()

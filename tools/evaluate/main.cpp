@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
@@ -32,7 +31,7 @@ Part make_part(Study& study, const std::string& name) {
 }
 
 std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& part,
-                                                const Policy& policy, const std::string& name,
+                                                const Subject& subject, const std::string& name,
                                                 const RunnerSettings& settings) {
   std::vector<Trial> trials;
   for (const Group& group : part.groups) {
@@ -44,7 +43,7 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
         fmt::format("\r{:<8} {:<20} {:6} of {} runs ", part.name, name, done, trials.size()));
   };
   const std::vector<TrialFigures> all =
-      run_trials(study.robot(), study.foot(), policy, trials, settings,
+      run_trials(study.robot(), study.foot(), subject, trials, settings,
                  terminal ? progress : std::function<void(std::size_t)>());
   if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
   std::vector<std::vector<TrialFigures>> groups;
@@ -60,22 +59,22 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
-  const sim::Robot robot =
-      options->robot_path.empty() ? sim::load_raibo() : sim::load_robot(options->robot_path);
-  std::vector<Policy> policies = {load_policy(options->policy_path)};
-  if (!options->against_path.empty()) policies.push_back(load_policy(options->against_path));
-  for (const Policy& policy : policies) require_joints(policy.spec(), robot.description);
+  const sim::Robot robot = sim::load_robot(options->robot);
+  std::vector<Subject> policies = {load_subject(options->policy_path)};
+  if (!options->against_path.empty()) policies.push_back(load_subject(options->against_path));
+  for (const Subject& policy : policies) require_joints(spec_of(policy), robot.description);
   const std::string dir = options->out_dir + "/";
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");
 
   Results results;
-  for (const Policy& policy : policies) {
-    const bool taken = !results.policies.empty() && results.policies[0] == policy.spec().name;
-    results.policies.push_back(policy.spec().name + (taken ? " (2)" : ""));
-  }
   std::vector<CommandEnvelope> envelopes;
-  for (const Policy& policy : policies) envelopes.push_back(policy.spec().envelope);
+  for (const Subject& policy : policies) {
+    const PolicySpec& spec = spec_of(policy);
+    const bool taken = !results.policies.empty() && results.policies[0] == spec.name;
+    results.policies.push_back(spec.name + (taken ? " (2)" : ""));
+    envelopes.push_back(spec.envelope);
+  }
   Study study(options->study, robot);
   RunnerSettings settings;
   settings.threads = options->threads;

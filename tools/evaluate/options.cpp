@@ -32,12 +32,14 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "commands and disturbances.",
       "sandrunner-evaluate"};
   app.option_defaults()->always_capture_default();
-  app.add_option("--policy", o.policy_path, "policy file")->type_name("FILE")->required();
+  app.add_option("--policy", o.policy_path, "policy file, or a study model")
+      ->type_name("FILE")
+      ->required();
   app.add_option("--against", o.against_path, "second policy file, to compare with")
       ->type_name("FILE");
-  app.add_option("--robot", o.robot_path,
-                 "robot file (sim/robot/README.md; default: that of Raibo)")
-      ->type_name("FILE");
+  app.add_option("--robot", o.robot,
+                 "raibo, go2, or the robot file of another one (sim/robot/README.md)")
+      ->type_name("NAME|FILE");
   app.add_option("--out", o.out_dir, "folder for evaluation.json, CSV files and pictures")
       ->type_name("DIR");
   app.add_option("--threads", o.threads, "worker threads; the results do not depend on them")

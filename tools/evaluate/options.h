@@ -10,7 +10,7 @@
 namespace sandrunner::evaluate {
 
 struct Options {
-  std::string policy_path, against_path, robot_path, out_dir;
+  std::string policy_path, against_path, robot = "raibo", out_dir;
   StudySettings study;
   int threads = 1;
   std::vector<std::string> parts = {"straight", "grid", "turn", "robust", "commands"};

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include "rt/plot/plot.h"
+#include "rt/plot/heat_map.h"
 
 namespace sandrunner::evaluate {
 namespace {
@@ -99,54 +98,11 @@ void draw_cost(const PartResults& results, const std::vector<std::string>& polic
   plot::draw(figure, path);
 }
 
-// Light yellow (0) over green to dark blue (1), ends after ColorBrewer's YlGnBu.
-plot::Color shade(double share) {
-  constexpr plot::Color kStops[] = {
-      {1.00, 1.00, 0.85}, {0.78, 0.91, 0.71}, {0.25, 0.71, 0.77}, {0.13, 0.37, 0.66}};
-  const double at = 3.0 * std::clamp(share, 0.0, 1.0);
-  const auto i = std::min(static_cast<std::size_t>(at), std::size_t{2});
-  const double t = at - static_cast<double>(i);
-  const auto mix = [&](double a, double b) { return a + t * (b - a); };
-  return {mix(kStops[i].red, kStops[i + 1].red), mix(kStops[i].green, kStops[i + 1].green),
-          mix(kStops[i].blue, kStops[i + 1].blue)};
-}
-
 struct Map {
   const char* key;
   const char* title;
   bool more_is_better;
 };
-
-void draw_map(const plot::Canvas& canvas, double left, double top, const std::string& title,
-              const std::vector<double>& values, double low, double high, const Metric& m,
-              bool more_is_better) {
-  constexpr double kCellWidth_px = 47.0, kCellHeight_px = 26.0;
-  canvas.text(left, top - 10.0, title, 14.0, 0.0, plot::kInk, true);
-  for (int flat = 0; flat < kGridSize; ++flat) {
-    for (int cone = 0; cone < kGridSize; ++cone) {
-      const double value = values[static_cast<std::size_t>(flat) * kGridSize + cone];
-      const double x = left + flat * kCellWidth_px;
-      const double y = top + (kGridSize - 1 - cone) * kCellHeight_px;
-      double share = high > low ? (value - low) / (high - low) : 0.0;
-      if (more_is_better) share = 1.0 - share;
-      canvas.set_color(std::isnan(value) ? plot::Color{0.2, 0.2, 0.2} : shade(share));
-      cairo_rectangle(canvas.cairo(), x, y, kCellWidth_px, kCellHeight_px);
-      cairo_fill(canvas.cairo());
-      if (std::isnan(value)) continue;
-      const plot::Color ink = share > 0.7 ? plot::Color{1.0, 1.0, 1.0} : plot::kInk;
-      canvas.text(x + 0.5 * kCellWidth_px, y + 0.5 * kCellHeight_px + 4.0,
-                  fmt::format("{:.{}f}", value, m.digits), 11.0, 0.5, ink);
-    }
-  }
-  for (int i = 0; i < kGridSize; ++i) {
-    canvas.text(left + (i + 0.5) * kCellWidth_px, top + kGridSize * kCellHeight_px + 15.0,
-                fmt::format("{:.0f}", 1.0 + i), 11.0, 0.5, plot::kFaintInk);
-    canvas.text(left - 6.0, top + (kGridSize - 0.5 - i) * kCellHeight_px + 4.0,
-                fmt::format("{:.2f}", 0.15 + 0.05 * i), 11.0, 1.0, plot::kFaintInk);
-  }
-  canvas.text(left + 0.5 * kGridSize * kCellWidth_px, top + kGridSize * kCellHeight_px + 32.0,
-              "sigma_flat across, sigma_cone up, MN/m\u00b3", 11.0, 0.5, plot::kFaintInk);
-}
 
 void draw_grid(const PartResults& results, const std::vector<std::string>& policies,
                const std::string& path) {
@@ -174,9 +130,19 @@ void draw_grid(const PartResults& results, const std::vector<std::string>& polic
       }
     }
     for (int p = 0; p < count; ++p) {
-      draw_map(canvas, kLeft_px + p * kAcross_px, kTop_px + row * kDown_px,
-               fmt::format("{}: {}", policies[p], map.title), values[p], low, high, m,
-               map.more_is_better);
+      plot::HeatMap cells;
+      cells.title = fmt::format("{}: {}", policies[p], map.title);
+      cells.values = values[p];
+      for (int i = 0; i < kGridSize; ++i) {
+        cells.column_labels.push_back(fmt::format("{:.0f}", 1.0 + i));
+        cells.row_labels.push_back(fmt::format("{:.2f}", 0.15 + 0.05 * i));
+      }
+      cells.caption = "sigma_flat across, sigma_cone up, MN/m\u00b3";
+      cells.low = low;
+      cells.high = high;
+      cells.digits = m.digits;
+      cells.dark_is_low = map.more_is_better;
+      plot::draw_map(canvas, cells, kLeft_px + p * kAcross_px, kTop_px + row * kDown_px);
     }
     ++row;
   }

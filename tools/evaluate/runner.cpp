@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/evaluate/runner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <mutex>
+#include <type_traits>
+#include <utility>
 
+#include "estimator/cost_of_transport.h"
 #include "estimator/observation.h"
+#include "policy/policy_file.h"
+#include "rt/base/errors.h"
 #include "rt/base/worker_pool.h"
 #include "rt/core/command_shaping.h"
 #include "sim/batch/disturbances.h"
@@ -21,27 +28,30 @@ namespace {
 enum Stream : std::uint64_t { kNoiseStream = 11, kPushStream = 12 };
 constexpr std::uint64_t kDrawsPerStep = 64;
 
-// The robots of one pack from start to end.
+// The robots of one pack from start to end. Runner: one of Subject.
+template <typename Runner>
 class PackRun {
  public:
-  PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, Policy& policy,
-          const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count)
+  PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, Runner& policy,
+          const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count,
+          const StepObserver& observe, std::size_t first)
       : robot_(robot),
         policy_(policy),
         facts_(facts),
         trials_(trials),
+        observe_(observe),
+        first_(first),
         batch_(static_cast<int>(settings.width), foot, sim::StepSettings{}, settings.width),
         lanes_(static_cast<std::size_t>(count)) {
     sim::RobotModel<double> model = robot.model;
     model.torque_limit_nm = facts.torque_limit_nm;
+    policy_.reset();
     const PolicySpec& spec = policy.spec();
     sim::BatchDrive<float> drive;
-    const sim::TorqueSpeedLine& line = robot.torque_speed_line;
     drive.kp = static_cast<float>(spec.kp_nmprad);
     drive.kd = static_cast<float>(spec.kd_nmsprad);
-    drive.stall_torque_nm =
-        settings.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
-    drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+    drive.heat_factor = heat_factors<float>(robot.motor_constant_nmpsqrtw);
+    if (settings.torque_speed_line) drive.line = sim::drive_line<float>(robot.torque_speed_line);
     for (int i = 0; i < batch_.size(); ++i) {
       // Lanes without a trial of their own idle far above the ground.
       const Trial& trial = trials_[std::min(i, count - 1)];
@@ -56,6 +66,7 @@ class PackRun {
       const int late_ticks = trial.a_step_late() ? kTicksPerPolicyStep : 0;
       drive.switch_tick = static_cast<float>(trial.latency_ticks - late_ticks);
       lanes_[i].drive = drive;
+      lanes_[i].memory = policy_.state();
       lanes_[i].target_rad = lanes_[i].answer_rad = robot.nominal_rad;
     }
   }
@@ -89,13 +100,18 @@ class PackRun {
  private:
   struct Lane {
     bool done = false;
-    NetworkState memory;
+    std::decay_t<decltype(std::declval<Runner&>().state())> memory;
     JointArray<double> target_rad{}, answer_rad{};  // the drives', the network's
     sim::BatchDrive<float> drive;
     TrialRecorder recorder;
     sim::TouchdownWatch touchdowns;  // of the LooseStep
     bool met = false;                // the place where it is disturbed
   };
+
+  static const NetworkState* memory_of([[maybe_unused]] const Lane& lane) {
+    if constexpr (std::is_same_v<Runner, Policy>) return &lane.memory;
+    return nullptr;
+  }
 
   static bool finished(const Trial& trial, const TrialRecorder& recorder) {
     if (recorder.time_s() < trial.duration_s) return false;
@@ -130,8 +146,12 @@ class PackRun {
     lane.memory = policy_.state();
     // What reaches the drives in this period: this answer, or, later than that, the one before.
     const JointArray<double> target_rad = trial.a_step_late() ? lane.answer_rad : answer.target_rad;
-    lane.recorder.begin_period(state, sim::ground_truth(robot_.model, state, *trial.terrain),
-                               answer.estimate, asked, lane.target_rad, target_rad,
+    const StateEstimate truth = sim::ground_truth(robot_.model, state, *trial.terrain);
+    if (observe_) {
+      observe_(first_ + static_cast<std::size_t>(i),
+               {state, truth, answer.estimate, torque_of(lane, state), memory_of(lane)});
+    }
+    lane.recorder.begin_period(state, truth, answer.estimate, asked, lane.target_rad, target_rad,
                                policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);
     for (int j = 0; j < kNumJoints; ++j) {
       lane.drive.target_before[j] = static_cast<float>(lane.target_rad[j]);
@@ -140,6 +160,19 @@ class PackRun {
     lane.target_rad = target_rad;
     lane.answer_rad = answer.target_rad;
     batch_.set_drive(i, lane.drive);
+  }
+
+  JointArray<double> torque_of(const Lane& lane, const sim::RobotState<float>& state) const {
+    const sim::BatchDrive<float>& drive = lane.drive;
+    JointArray<double> torque_nm{};
+    for (int j = 0; j < kNumJoints; ++j) {
+      torque_nm[j] = sim::drive_torque<float>(
+          state.rigid.q[j], state.rigid.qd[j], static_cast<float>(lane.target_rad[j]), 0.0f,
+          drive.kp, drive.kd, 0.0f, static_cast<float>(facts_.torque_limit_nm[j]),
+          drive.line.stall_torque_nm[j % kJointsPerLeg],
+          drive.line.inverse_no_load_speed[j % kJointsPerLeg]);
+    }
+    return torque_nm;
   }
 
   static std::array<float, kObservationSize> observe(const Trial& trial, std::uint64_t step,
@@ -194,20 +227,37 @@ class PackRun {
   }
 
   const sim::Robot& robot_;
-  Policy& policy_;
+  Runner& policy_;
   const RobotFacts& facts_;
   const Trial* trials_;
+  const StepObserver& observe_;
+  std::size_t first_;  // place of this pack's first trial among all
   sim::Batch batch_;
   std::vector<Lane> lanes_;
 };
 
 }  // namespace
 
+Subject load_subject(const std::string& path) {
+  if (!train::is_study_model(path)) return load_policy(path);
+  train::StudyModelFile file = train::read_study_model(path);
+  if (file.sizes.see_insight()) {
+    throw InputError(fmt::format(
+        "'{}': found a study model wired as '{}', expected one that sees what sensors measure",
+        path, learner::wiring_text(file.sizes.encoder, file.sizes.actor_sees)));
+  }
+  return train::StudyModel(std::move(file));
+}
+
+const PolicySpec& spec_of(const Subject& subject) {
+  return std::visit([](const auto& runner) -> const PolicySpec& { return runner.spec(); }, subject);
+}
+
 RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
   RobotFacts facts;
   facts.mass_kg = robot.model.mass();
   facts.torque_limit_nm = robot.model.torque_limit_nm;
-  facts.motor_constant = robot.motor_constant_nmpsqrtw;
+  facts.motor_constant = robot.motor_constant_nmpsqrtw[0];
   if (policy.torque_limit_nm > 0.0) {
     for (double& limit : facts.torque_limit_nm) limit = std::min(limit, policy.torque_limit_nm);
   }
@@ -223,23 +273,28 @@ RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
 }
 
 std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootProfile<double>& foot,
-                                     const Policy& policy, const std::vector<Trial>& trials,
+                                     const Subject& subject, const std::vector<Trial>& trials,
                                      const RunnerSettings& settings,
-                                     const std::function<void(std::size_t)>& progress) {
+                                     const std::function<void(std::size_t)>& progress,
+                                     const StepObserver& observe) {
   const auto width = static_cast<std::size_t>(settings.width);
-  const RobotFacts facts = robot_facts(robot, policy.spec());
+  const RobotFacts facts = robot_facts(robot, spec_of(subject));
   std::vector<TrialFigures> figures(trials.size());
   WorkerPool pool(settings.threads);
-  // One for each worker; they share the weights.
-  std::vector<Policy> policies(static_cast<std::size_t>(settings.threads), policy);
+  // One for each worker.
+  std::vector<Subject> subjects(static_cast<std::size_t>(settings.threads), subject);
   std::size_t done = 0;
   std::mutex mutex;  // of `done` and the call of `progress`
   pool.run(static_cast<int>((trials.size() + width - 1) / width), [&](int pack, int worker) {
     const std::size_t first = static_cast<std::size_t>(pack) * width;
     const std::size_t count = std::min(width, trials.size() - first);
-    PackRun(robot, foot, policies[static_cast<std::size_t>(worker)], settings, facts,
-            trials.data() + first, static_cast<int>(count))
-        .run(figures.data() + first);
+    std::visit(
+        [&](auto& runner) {
+          PackRun(robot, foot, runner, settings, facts, trials.data() + first,
+                  static_cast<int>(count), observe, first)
+              .run(figures.data() + first);
+        },
+        subjects[static_cast<std::size_t>(worker)]);
     const std::lock_guard lock(mutex);
     done += count;
     if (progress) progress(done);

@@ -4,14 +4,26 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "policy/policy.h"
 #include "sim/robot/robot_model.h"
 #include "tools/evaluate/trial.h"
 #include "tools/evaluate/trial_figures.h"
+#include "tools/train/model/study_model.h"
 
 namespace sandrunner::evaluate {
+
+/// What is measured: a policy, or a network that only a study has.
+using Subject = std::variant<Policy, train::StudyModel>;
+
+/// The subject of a file. Throws InputError, also for a study model that sees what no sensor
+/// measures.
+Subject load_subject(const std::string& path);
+
+const PolicySpec& spec_of(const Subject& subject);
 
 struct RunnerSettings {
   int threads = 1;
@@ -20,12 +32,24 @@ struct RunnerSettings {
   sim::BatchWidth width = sim::best_batch_width();
 };
 
+/// A robot at the start of a policy step, for those who need more than a run's figures.
+struct ObservedStep {
+  const sim::RobotState<float>& state;
+  const StateEstimate& truth;
+  const StateEstimate& estimate;
+  const JointArray<double>& torque_nm;  ///< of the drives, under the targets until this step
+  const NetworkState* memory;           ///< after the step; null for a study model
+};
+/// `trial`: its place in the list. Called by several threads, for one trial by one of them.
+using StepObserver = std::function<void(std::size_t trial, const ObservedStep& step)>;
+
 /// Figures of each trial, in their order; the same bits for any number of threads. `progress`, if
 /// any, is called with the number of trials done so far, by one thread at a time.
 std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootProfile<double>& foot,
-                                     const Policy& policy, const std::vector<Trial>& trials,
+                                     const Subject& subject, const std::vector<Trial>& trials,
                                      const RunnerSettings& settings,
-                                     const std::function<void(std::size_t done)>& progress = {});
+                                     const std::function<void(std::size_t done)>& progress = {},
+                                     const StepObserver& observe = {});
 
 /// The robot's facts that the figures need. `policy` may limit the torque further.
 RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy);

@@ -36,7 +36,7 @@ struct TrialFigures {
   double vx_mps = kNotDefined, vy_mps = kNotDefined, yaw_rate_radps = kNotDefined;
   double horizontal_speed_mps = kNotDefined;  ///< length of the mean (vx, vy)
   double power_w = kNotDefined;               ///< mechanical, mean signed sum of tau qd
-  double torque_squared_nm2 = kNotDefined;    ///< mean of the sum over joints of tau^2
+  double torque_squared_nm2 = kNotDefined;    ///< mean of sim::BatchSums::torque_squared
   double cot = kNotDefined;                   ///< P/(m g |v_xy|); not below 0.05 m/s
   double turning_cot = kNotDefined;  ///< P/(m g l_c |wz|), l_c diagonal foot distance; paper, CoTu
   /// Interquartile range of the height of a foot: mean of the four ...
@@ -68,7 +68,7 @@ struct TrialFigures {
 /// What does not change between runs.
 struct RobotFacts {
   double mass_kg = 0.0;
-  double motor_constant = 0.0;   ///< k_m, N m/sqrt(W) at the joint
+  double motor_constant = 0.0;   ///< k_m of HAA, N m/sqrt(W) at the joint
   double foot_diagonal_m = 0.0;  ///< l_c: LF to RH in the nominal pose
   JointArray<double> torque_limit_nm{};
 };

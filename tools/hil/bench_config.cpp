@@ -17,7 +17,7 @@ ProcessConfig read_bench_config(const std::string& hardware_path, const std::str
   tree.add_file(hardware_path);
   for (const std::string& file : config_files) tree.add_file(file);
   for (const std::string& assignment : assignments) tree.set(assignment);
-  const Policy policy = load_shipped_policy();
+  const Policy policy = load_shipped_policy(shipped_policy_for(tree));
   ProcessConfig config = read_process_config(tree, &policy.spec());
   if (!config.hardware) {
     throw InputError(fmt::format("{}: found no table [hardware]", hardware_path));

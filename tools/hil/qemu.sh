@@ -61,8 +61,9 @@ if [[ ! -e $kernel/vmlinux ]]; then
     '*/kernel/drivers/net/can/dev/can-dev.ko' '*/kernel/drivers/net/can/vcan.ko' '*/kernel/drivers/net/can/slcan/slcan.ko' \
     '*/kernel/drivers/virtio/*.ko' '*/kernel/drivers/block/virtio_blk.ko'
   rm "$new"/*.deb
-  # The uncompressed kernel out of the bzImage: QEMU enters it directly, which saves the emulated xz 3.5 s. Where it lies
-  # in there: Linux, Documentation/x86/boot.rst (setup_sects, payload_offset, payload_length).
+  # The uncompressed kernel out of the bzImage: QEMU enters it directly, which saves the emulated xz
+  # 3.5 s. Where it lies in there: Linux, Documentation/x86/boot.rst (setup_sects, payload_offset,
+  # payload_length).
   image=$(echo "$new"/boot/vmlinuz-*)
   number() { od -An "-tu$2" "-j$1" "-N$2" "$image"; }
   dd if="$image" bs=1M iflag=skip_bytes,count_bytes skip=$((($(number 497 1) + 1) * 512 + $(number 584 4))) \
@@ -125,7 +126,8 @@ chmod +x "$guest/init"
 (cd "$guest" && find . | cpio -o -H newc --quiet) >"$work/initrd"
 
 # --- boot ---
-# KVM only with real hardware virtualisation: a /dev/kvm without it opens, and then runs no stock kernel.
+# KVM only with real hardware virtualisation: a /dev/kvm without it opens, and then runs no stock
+# kernel.
 machine=(-accel tcg,thread=single -smp 1 -icount "shift=0,sleep=off" -rtc clock=vm)
 if $parallel; then
   machine=(-accel "tcg,thread=multi" -smp 2)

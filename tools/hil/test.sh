@@ -55,10 +55,10 @@ walk)
   ;;
 faults) guest faults 3600 "sandrunner-hil runs $faults" ;;
 cost)
-  # At 4 kHz, a tick sends to all drives and reads what they answered to the last one. Here the drives share the
-  # controller's processor, and 250 us are not enough for both: they are exchanged with at 1 kHz, one tick sends, the next
-  # reads, and the two are added. In the middle of the walk the kernel counts the system calls of the control thread (the
-  # one at priority 80).
+  # At 4 kHz, a tick sends to all drives and reads what they answered to the last one. Here the
+  # drives share the controller's processor, and 250 us are not enough for both: they are exchanged
+  # with at 1 kHz, one tick sends, the next reads, and the two are added. In the middle of the walk
+  # the kernel counts the system calls of the control thread (the one at priority 80).
   guest cost 900 "mount -t tracefs tracefs /sys/kernel/tracing
     calls=/sys/kernel/tracing/events/raw_syscalls/sys_enter
     sandrunner-hil --hardware moteus.toml --set hardware.imu.device=/tmp/imu & sleep 1
@@ -75,8 +75,8 @@ cost)
       END { printf \"a tick at 4 kHz, 12 frames in, 12 out: p99.9 %.0f us, at most %.0f us of 250\\n\", p, most }' /tmp/log"
   ;;
 check)
-  # The file of the check has the wrong sign for RF_HAA; at the robot two drives have each other's id. A joint has 1.4 s: Enter,
-  # after 0.3 s the hand, which takes 0.5 s, after 1.2 s Enter.
+  # The file of the check has the wrong sign for RF_HAA; at the robot two drives have each other's
+  # id. A joint has 1.4 s: Enter, after 0.3 s the hand, which takes 0.5 s, after 1.2 s Enter.
   guest check 900 'joints=$(sed -n "s/^joint = \"\(.*\)\"/\1/p" moteus.toml)
     sed "s|^device = \"[^\"]*\"|device = \"/tmp/imu\"|" moteus.toml >robot.toml
     awk "/RF_HAA/ { wrong = 1 } /^sign/ && wrong { sub(1, -1); wrong = 0 } { print }" robot.toml >/tmp/check.toml

@@ -10,6 +10,7 @@
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
+#include "sim/robot/embedded.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/train_config.h"
 
@@ -38,10 +39,10 @@ void require_count(const char* name, int found, int most) {
 }  // namespace
 
 sim::Robot load_robot_named(const std::string& robot) {
-  if (robot == "raibo") return sim::load_raibo();
-  if (!std::filesystem::exists(robot)) {
+  if (embedded_robot_file(robot + ".toml").empty() && !std::filesystem::exists(robot)) {
     throw InputError(fmt::format(
-        "robot: found '{}', expected 'raibo' or the path of a robot file (sim/robot/README.md)",
+        "robot: found '{}', expected 'raibo', 'go2' or the path of a robot file "
+        "(sim/robot/README.md)",
         robot));
   }
   return sim::load_robot(robot);

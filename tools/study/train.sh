@@ -3,8 +3,9 @@
 # tools/study/train.sh DIR SEED [NAME ...]: trains the controllers of trainings/ (all of them
 # without a name) with this seed in DIR/NAME-SEED. It continues a training that was interrupted. Of
 # one that is complete it puts the best policy and a short learning curve into DIR:
-# NAME-SEED.safetensors, NAME-SEED.csv. TRANSITIONS: length of each training, the same for all
-# controllers that are compared.
+# NAME-SEED.safetensors, NAME-SEED.csv. A student (pl-*) imitates the teacher of this seed in DIR.
+# TRANSITIONS: length of each training, the same for all controllers that are compared; a student's
+# is two thirds of it, on top of its teacher's.
 set -eu
 for word; do
   case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
@@ -18,7 +19,8 @@ if [ $# -lt 2 ]; then
 fi
 out=$1 seed=$2
 shift 2
-[ $# -gt 0 ] || set -- ours env-rigid env-linear env-quasistatic
+[ $# -gt 0 ] || set -- ours env-rigid env-linear env-quasistatic tcn oracle-h oracle-o teacher-gm teacher-rigid \
+  pl-gm pl-rigid
 for name in "$@"; do
   if [ ! -f "$here/trainings/$name.toml" ]; then
     echo "train.sh: found '$name', expected one of" "$(cd "$here/trainings" && echo *.toml)" >&2
@@ -28,11 +30,21 @@ done
 mkdir -p "$out"
 for name in "$@"; do
   run=$out/$name-$seed
+  length=$transitions
+  teacher=
+  case $name in pl-*)
+    length=$(awk -v all="$transitions" 'BEGIN { printf "%.0f", 2 / 3 * all }')
+    teacher=$out/teacher-${name#pl-}-$seed.safetensors
+    if [ ! -f "$teacher" ]; then
+      echo "train.sh: found no $teacher, expected that of teacher-${name#pl-}: train it first" >&2
+      exit 2
+    fi ;;
+  esac
   resume=
   [ ! -f "$run/checkpoint.bin" ] || resume=--resume
-  "$program" --config "$here/trainings/$name.toml" --set run.transitions="$transitions" \
-    --seed "$seed" --out "$run" $resume
-  if ! awk -F, -v all="$transitions" 'END { exit !($2 + 0 >= all + 0) }' "$run/curve.csv"; then
+  "$program" --config "$here/trainings/$name.toml" --set run.transitions="$length" \
+    ${teacher:+--set "imitation.teacher=$teacher"} --seed "$seed" --out "$run" $resume
+  if ! awk -F, -v all="$length" 'END { exit !($2 + 0 >= all + 0) }' "$run/curve.csv"; then
     echo "train.sh: $run is not complete: run the same command again" >&2
     exit 1
   fi

@@ -32,6 +32,7 @@ TaskConfig without_randomness(TaskConfig c) {
   c.robot = {};
   c.robot.latency_s = training.latency_s;
   c.robot.torque_speed_line = training.torque_speed_line;
+  c.robot.rotor_inertia_low = c.robot.rotor_inertia_high = 1.0;
   c.noise = {};
   return c;
 }
@@ -69,11 +70,12 @@ Battery::Battery(const BatterySettings& settings, const TaskConfig& training, in
       runs_(make_runs(settings, training, grounds_)),
       steps_(static_cast<int>(std::lround(settings.duration_s * kPolicyHz))),
       task_(without_randomness(training), robot, {whole_blocks(runs_.size()), kBlock}, kSeed),
-      rollout_({whole_blocks(runs_.size()), 1, Task::privileged_size()}, layout.hidden()),
+      rollout_({whole_blocks(runs_.size()), 1, Task::privileged_size(),
+                layout.sizes().see_insight() ? learner::kInsightSize : 0},
+               layout.memory()),
       weights_(layout),
       pool_(pool),
-      h_(layout.hidden(), whole_blocks(runs_.size())),
-      c_(h_),
+      memory_(layout.memory(), whole_blocks(runs_.size())),
       sums_(static_cast<std::size_t>(whole_blocks(runs_.size()))) {
   for (int worker = 0; worker < pool.threads(); ++worker) {
     passes_.emplace_back(layout, 1, kBlock, 1);
@@ -88,12 +90,14 @@ std::deque<Battery::Ground> Battery::make_grounds(const BatterySettings& setting
   const bool yields =
       g.rigid_envs + g.patchy_envs < block_envs || (patchy && g.patch_rigid_share < 1.0);
   std::deque<Ground> grounds;
-  const auto add = [&](const sim::TerrainDescription& terrain) {
+  // factor: as of terrain_features.
+  const auto add = [&](const sim::TerrainDescription& terrain, double factor) {
     const auto foot = sim::make_foot_profile(terrain, robot.model);
-    grounds.push_back(
-        {terrain.name, sim::convert_terrain<float>(sim::make_terrain(terrain, foot, robot.model))});
+    grounds.push_back({terrain.name,
+                       sim::convert_terrain<float>(sim::make_terrain(terrain, foot, robot.model)),
+                       terrain_features(terrain.patches.front().ground, factor)});
   };
-  if (hard) add(preset("rigid"));
+  if (hard) add(preset("rigid"), 1.0);
   if (!yields) return grounds;
   if (g.yielding == sim::GroundKind::kLinear) {
     for (const auto& [name, wanted_npm] :
@@ -107,14 +111,14 @@ std::deque<Battery::Ground> Battery::make_grounds(const BatterySettings& setting
           std::clamp(kSpringDamping, g.spring_damping_ratio_low, g.spring_damping_ratio_high);
       p.damping_nspm = spring_damping_nspm(p.stiffness_npm, ratio, robot.model.mass());
       p.friction = kSpringFriction;
-      add(spring);
+      add(spring, ratio);
     }
     return grounds;
   }
   const double inertial = std::clamp(1.0, g.inertial_low, g.inertial_high);
   const auto add_soil = [&](sim::TerrainDescription terrain) {
     terrain.patches.front().ground.grain_density_kgpm3 *= inertial;
-    add(terrain);
+    add(terrain, inertial);
   };
   for (const char* name : {"wet-sand", "grass", "dry-sand"}) {
     const sim::TerrainDescription terrain = preset(name);
@@ -144,6 +148,7 @@ std::vector<Battery::Run> Battery::make_runs(const BatterySettings& settings,
       for (int i = 0; i < count; ++i) {
         Trial trial;
         trial.terrain = &ground.terrain;
+        trial.features = ground.features;
         for (std::size_t k = 0; k < 3; ++k) trial.command[k] = static_cast<float>(command[k]);
         trial.stand_s = kStand_s;
         trial.latency_s = latency_s[static_cast<std::size_t>(i) % latency_s.size()];
@@ -167,8 +172,7 @@ std::vector<Battery::Run> Battery::make_runs(const BatterySettings& settings,
 
 BatteryFigures Battery::run(const std::vector<float>& parameters) {
   weights_.set(parameters.data());
-  h_.setZero();
-  c_.setZero();
+  memory_.setZero();
   std::ranges::fill(sums_, Sums{});
   pool_.run(static_cast<int>(sums_.size()) / kBlock,
             [&](int block, int worker) { run_block(block, worker); });
@@ -187,8 +191,8 @@ void Battery::run_block(int block, int worker) {
   learner::BlockPass<float>& pass = passes_[static_cast<std::size_t>(worker)];
   for (int step = 0; step < steps_; ++step) {
     pass.answer(weights_, rollout_.observation(0).middleCols(first, kBlock),
-                &rollout_.reset(0, first), h_.middleCols(first, kBlock),
-                c_.middleCols(first, kBlock), rollout_.action(0).middleCols(first, kBlock));
+                rollout_.insight(0).middleCols(first, kBlock), &rollout_.reset(0, first),
+                memory_.middleCols(first, kBlock), rollout_.action(0).middleCols(first, kBlock));
     std::array<std::array<float, 3>, kBlock> command;
     for (int i = 0; i < kBlock; ++i) {
       command[static_cast<std::size_t>(i)] = task_.command(first + i);
@@ -201,6 +205,7 @@ void Battery::run_block(int block, int worker) {
     }
     rollout_.observation(0).middleCols(first, kBlock) =
         rollout_.observation(1).middleCols(first, kBlock);
+    rollout_.insight(0).middleCols(first, kBlock) = rollout_.insight(1).middleCols(first, kBlock);
   }
 }
 
@@ -256,7 +261,7 @@ BatteryFigures Battery::figures() const {
     const double speed_mps = std::hypot(s.velocity[0], s.velocity[1]) / steady;
     if (speed_mps < 0.05) continue;  // as in sandrunner-evaluate
     const double power =
-        (s.power + s.torque_squared / square(robot_.motor_constant_nmpsqrtw)) / steady;
+        (s.power + s.torque_squared / square(robot_.motor_constant_nmpsqrtw[0])) / steady;
     cost_at[static_cast<std::size_t>(speed)].add(power / (weight_n * speed_mps));
   }
   BatteryFigures f;

@@ -81,6 +81,7 @@ class Battery {
   struct Ground {
     std::string name;
     sim::Terrain<float> terrain;
+    TerrainFeatures features;
   };
   struct Run {
     Trial trial;
@@ -112,7 +113,7 @@ class Battery {
   learner::Weights<float> weights_;
   std::vector<learner::BlockPass<float>> passes_;  // one a worker
   WorkerPool& pool_;
-  learner::Matrix<float> h_, c_;
+  learner::Matrix<float> memory_;
   std::vector<Sums> sums_;  // one an environment
 };
 

@@ -9,11 +9,11 @@
 
 namespace sandrunner::train {
 
-/// curve.html: the learning curve, and beneath it a run of the policy as it is, of a few seconds at
-/// `speed_mps` forward on dry sand, in a page that opens from a disk (rt/telemetry/view). The run
-/// is that of `sandrunner --start walk` with this robot and policy; nothing of the training depends
-/// on it. At most 2 MB. For a thread in which denormal numbers are zero.
-/// `transitions`: after which the policy was taken.
+/// curve.html, a page that opens from disk (rt/telemetry/view): the learning curve, and beneath it
+/// a run of the present policy, a few seconds at `speed_mps` forward on dry sand. The run is that
+/// of `sandrunner --start walk` with this robot and policy; nothing of the training depends on it.
+/// At most 2 MB. For a thread in which denormal numbers are zero. `transitions`: after which the
+/// policy was taken.
 std::string curve_page(const Progress& progress, const PolicyFile& policy, double transitions,
                        const sim::Robot& robot, double speed_mps);
 

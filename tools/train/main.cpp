@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <thread>
 
@@ -22,10 +23,18 @@ namespace {
 
 std::atomic<bool> interrupted{false};
 
+// Where the policy is, and how to go on.
+void print_end(const std::string& out) {
+  std::string policy = out + "/best.safetensors";
+  if (!std::filesystem::exists(policy)) policy = out + "/policy.safetensors";
+  fmt::print("wrote {}: run it with sandrunner --policy {}\n", out, policy);
+  if (interrupted) fmt::print("interrupted: go on with the same command and --resume\n");
+}
+
 int run(int argc, char** argv) {
   TrainingOptions options;
   options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  std::string config_file, robot_file, from_file;
+  std::string config_file, from_file, robot_name = "raibo";
   std::vector<std::string> assignments;
   bool resume = false, explain = false;
   CLI::App app{"Trains a policy from random weights on randomised deformable ground.",
@@ -39,9 +48,11 @@ int run(int argc, char** argv) {
          "--config", config_file,
          "TOML with settings that differ from the built-in ones (tools/train/training.toml)")
       ->type_name("FILE");
-  app.add_option("--robot", robot_file,
-                 "robot file of the robot to train (sim/robot/README.md; default: that of Raibo)")
-      ->type_name("FILE");
+  app.add_option("--robot", robot_name,
+                 "robot to train: raibo, go2, or the robot file of another one "
+                 "(sim/robot/README.md)")
+      ->type_name("NAME|FILE")
+      ->capture_default_str();
   app.add_option("--set", assignments, "one setting; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -73,7 +84,7 @@ int run(int argc, char** argv) {
     throw InputError("--from: expected without --resume, which has weights of its own");
   }
   ConfigTree tree;
-  const sim::Robot robot = robot_file.empty() ? sim::load_raibo() : sim::load_robot(robot_file);
+  const sim::Robot robot = sim::load_robot(robot_name);
   add_training_layers(tree, robot);
   if (!config_file.empty()) tree.add_file(config_file);
   for (const std::string& assignment : assignments) tree.set(assignment);
@@ -90,7 +101,10 @@ int run(int argc, char** argv) {
   if (resume) training.resume();
   prepare_folder(options.out, "--out");
   if (!resume) training.start();
+  fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
+  std::fflush(stdout);
   training.run(interrupted);
+  print_end(options.out);
   return kExitOk;
 }
 

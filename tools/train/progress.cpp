@@ -73,6 +73,8 @@ constexpr Column kColumns[] = {
     {"action_std", [](R r) { return r.action_std; }},
     {"asymmetry", [](R r) { return r.asymmetry; }},
     {"explained_variance", [](R r) { return r.explained_variance; }},
+    {"imitation_rms", [](R r) { return r.imitation_rms; }},
+    {"encoding_rms", [](R r) { return r.encoding_rms; }},
 };
 
 // What is drawn together, columns by their names in curve.csv.
@@ -202,7 +204,8 @@ std::string Progress::line(const ProgressRow& r, double eta_s) {
       "{:6.2f} M {:3.0f} k/s {:4.1f} Hz trot {:+.2f}  alive {:.3f} error {:.2f} cost {:.2f} "
       "fast {:.3f} late {:.2f} {:3.0f} min",
       r.transitions / 1e6, r.transitions_per_s / 1e3, w.stride_hz, w.diagonal, r.battery.alive,
-      r.battery.error, r.battery.cost_of_transport, r.battery.too_fast, r.late, eta_s / 60.0);
+      r.battery.error, r.battery.cost_of_transport, r.battery.too_fast, r.late,
+      std::max(eta_s, 0.0) / 60.0);
 }
 
 std::string Progress::summary(const BatteryFigures& f) {

@@ -23,6 +23,7 @@ struct ProgressRow {
   double battery_share = 0;      ///< of the process's core time, 0 to 1
   double late = 0, settled = 0;  ///< share of the late penalties, of the settling
   double learning_rate = 0, kl = 0, action_std = 0, asymmetry = 0, explained_variance = 0;
+  double imitation_rms = 0, encoding_rms = 0;
 };
 
 /// The learning curve as a trivially copyable list: part of the checkpoint, so that curve and CSV

@@ -103,19 +103,18 @@ void read_gate(ConfigTree& config, const BatterySettings& battery, GateSettings&
   }
 }
 
-// Settings that have one value: another is refused, as nothing would come of it.
-void read_wiring(ConfigTree& config) {
-  const auto only = [&](const std::string& key, const char* value, const char* lacks) {
+void read_wiring(ConfigTree& config, TrainConfig& c) {
+  const auto text = [&](const std::string& key) {
     require_key(config, key);
-    if (const std::string found = config.text(key, value); found != value) {
-      throw InputError(
-          fmt::format("training config: {} = '{}', expected '{}': the trainer has no {} yet", key,
-                      found, value, lacks));
-    }
+    return config.text(key, "");
   };
-  only("network.encoder", "lstm", "other encoder");
-  only("network.actor", "encoding, estimate", "actor with other inputs");
-  only("imitation.teacher", "", "imitation of a teacher");
+  learner::NetworkSizes& network = c.learner.network;
+  network.encoder = learner::parse_encoder("network.encoder", text("network.encoder"));
+  network.actor_sees = learner::parse_actor_inputs("network.actor", text("network.actor"));
+  c.teacher = text("imitation.teacher");
+  if (c.teacher.empty()) return;
+  c.learner.loss.policy_weight = 0.0;
+  c.learner.loss.imitation_weight = c.learner.loss.encoding_weight = 1.0;
 }
 
 // What one table asks of another.
@@ -151,7 +150,7 @@ TrainConfig read_train_config(ConfigTree& config) {
   c.window = read_integer(config, "learner.window", 1, 4096);
   c.learner = read_learner_config(config);
   c.task = read_task_config(config);
-  read_wiring(config);
+  read_wiring(config, c);
   check_blocks(c);
   config.reject_unknown();
   c.effective = config.effective();

@@ -30,6 +30,7 @@ struct TrainConfig {
   int window = 0;  ///< policy steps of 10 ms between updates
   learner::LearnerConfig learner;
   TaskConfig task;
+  std::string teacher;    ///< file of the networks that the policy imitates; empty: none
   std::string effective;  ///< TOML of all values, for the policy's provenance
 };
 

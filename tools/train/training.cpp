@@ -47,6 +47,7 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   hash = learner::fnv1a(bytes(robot.model), hash);
   hash = learner::fnv1a(bytes(robot.nominal_rad), hash);
   hash = learner::fnv1a(bytes(robot.torque_speed_line), hash);
+  hash = learner::fnv1a(bytes(robot.motor_constant_nmpsqrtw), hash);
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 
@@ -62,6 +63,17 @@ std::map<std::string, std::string> settings_in(std::string_view effective) {
   return settings;
 }
 
+learner::RolloutShape rollout_shape(const TrainConfig& config) {
+  learner::RolloutShape shape;
+  shape.envs = config.run.envs;
+  shape.steps = config.window;
+  shape.privileged = Task::privileged_size();
+  const bool imitates = !config.teacher.empty();
+  shape.insight = imitates || config.learner.network.see_insight() ? learner::kInsightSize : 0;
+  shape.teacher = imitates ? config.learner.network.hidden : 0;
+  return shape;
+}
+
 }  // namespace
 
 Training::Training(const TrainConfig& config, const sim::Robot& robot,
@@ -71,8 +83,7 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       options_(options),
       pool_(options.threads),
       task_(config.task, robot, {config.run.envs, config.learner.block_envs}, options.seed),
-      learner_(config.learner, {config.run.envs, config.window, task_.privileged_size()},
-               options.seed, pool_, Task::symmetry()),
+      learner_(config.learner, rollout_shape(config), options.seed, pool_, Task::symmetry()),
       gate_(config.gate, config.battery.tracked_error, config.run.transitions,
             config.run.settle_share, config.task.reward.prior_start_transitions),
       checkpoint_path_(checkpoint_path(options.out)),
@@ -80,6 +91,7 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       robot_hash_(hash_of(robot)),
       builds_(build_commit()),
       processors_(processor_name()) {
+  if (!config.teacher.empty()) imitate(config.teacher);
   if (config.battery.every_updates > 0) {
     battery_.emplace(config.battery, config.task, config.learner.block_envs, robot,
                      learner_.layout(), pool_);
@@ -206,19 +218,22 @@ void Training::save() {
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
   const Snapshot now = snapshot();
-  const PolicyFile policy = policy_file(now, learner_.averaged());
-  write_policy_file(options_.out + "/policy.safetensors", policy);
+  write_network(options_.out + "/policy.safetensors", policy_spec(now), learner_.averaged());
   if (!best_is_written_) {
-    PolicyFile best = policy_file(best_, best_parameters_);
-    best.spec.provenance["battery"] = Progress::summary(best_.battery);
-    write_policy_file(options_.out + "/best.safetensors", best);
+    PolicySpec best = policy_spec(best_);
+    best.provenance["battery"] = Progress::summary(best_.battery);
+    write_network(options_.out + "/best.safetensors", std::move(best), best_parameters_);
     best_is_written_ = true;
   }
   progress_.write(options_.out);
-  pool_.run(1, [&](int, int) {
-    write_file(options_.out + "/curve.html", curve_page(progress_, policy, now.transitions, robot_,
-                                                        config_.task.command.speed_start_mps));
-  });
+  if (config_.learner.network.are_a_robots()) {
+    const PolicyFile policy = policy_file(policy_spec(now), learner_.averaged());
+    pool_.run(1, [&](int, int) {
+      write_file(options_.out + "/curve.html",
+                 curve_page(progress_, policy, now.transitions, robot_,
+                            config_.task.command.speed_start_mps));
+    });
+  }
   saved_at_s_ = wall_seconds();
   fallbacks_ = 0;
 }
@@ -341,6 +356,8 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   r.kl = update.kl;
   r.action_std = update.action_std;
   r.asymmetry = update.asymmetry;
+  r.imitation_rms = update.imitation_rms;
+  r.encoding_rms = update.encoding_rms;
   r.explained_variance = update.explained_variance;
   return r;
 }

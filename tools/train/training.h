@@ -11,6 +11,7 @@
 #include "sim/robot/robot_model.h"
 #include "tools/train/battery.h"
 #include "tools/train/learner/learner.h"
+#include "tools/train/model/model_file.h"
 #include "tools/train/penalty_gate.h"
 #include "tools/train/progress.h"
 #include "tools/train/task/task.h"
@@ -56,6 +57,7 @@ class Training {
   void run(const std::atomic<bool>& interrupted);
 
  private:
+  void imitate(const std::string& teacher_file);
   void save();
   void restore(const learner::Checkpoint& checkpoint);
   void require_same_settings(const learner::Checkpoint& checkpoint) const;
@@ -66,7 +68,11 @@ class Training {
   void fall_back();
   ProgressRow make_row(const WindowStats& window, const learner::UpdateStats& update,
                        double simulation_s, double total_s) const;
-  PolicyFile policy_file(const Snapshot& snapshot, const std::vector<float>& parameters) const;
+  PolicySpec policy_spec(const Snapshot& snapshot) const;
+  PolicyFile policy_file(PolicySpec spec, const std::vector<float>& parameters) const;
+  StudyModelFile study_model(PolicySpec spec, const std::vector<float>& parameters) const;
+  void write_network(const std::string& path, PolicySpec spec,
+                     const std::vector<float>& parameters) const;
 
   TrainConfig config_;
   sim::Robot robot_;

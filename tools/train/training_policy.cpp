@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rt/base/errors.h"
 #include "tools/train/policy_spec.h"
@@ -13,33 +14,48 @@
 namespace sandrunner::train {
 namespace {
 
-/// Throws InputError unless weights of `policy` mean in a file with the scales of `ours` what they
+/// Throws InputError unless weights of `network` mean in a file with the scales of `ours` what they
 /// mean in their own. Nominal positions may differ: angles are shown as what they are off them.
-void require_scales(const PolicyFile& policy, const PolicyFile& ours) {
+void require_scales(const PolicySpec& spec, const ObservationScales& network,
+                    const PolicySpec& our_spec, const ObservationScales& ours) {
   const auto check = [&](const std::string& what, double is, double expected) {
     if (std::fabs(is - expected) <= 1e-4 * std::fabs(expected)) return;
     throw InputError(
         fmt::format("policy '{}': its {} is {:.6g}, expected {:.6g}, with which this trainer shows "
                     "and takes it",
-                    policy.spec.name, what, is, expected));
+                    spec.name, what, is, expected));
   };
-  const NetworkParameters &a = policy.parameters, &b = ours.parameters;
   constexpr std::size_t kAngles = 9;
   for (std::size_t i = 0; i < kObservationSize; ++i) {
-    check(fmt::format("variance of observation {}", i), a.observation_variance[i],
-          b.observation_variance[i]);
+    check(fmt::format("variance of observation {}", i), network.variance[i], ours.variance[i]);
     if (i >= kAngles && i < kAngles + kNumJoints) continue;
-    check(fmt::format("mean of observation {}", i), a.observation_mean[i], b.observation_mean[i]);
+    check(fmt::format("mean of observation {}", i), network.mean[i], ours.mean[i]);
   }
-  check("clip of observations", a.observation_clip, b.observation_clip);
-  check("action scale", policy.spec.action_scale_rad, ours.spec.action_scale_rad);
-  check("action clip", policy.spec.action_clip, ours.spec.action_clip);
+  check("clip of observations", network.clip, ours.clip);
+  check("action scale", spec.action_scale_rad, our_spec.action_scale_rad);
+  check("action clip", spec.action_clip, our_spec.action_clip);
+}
+
+/// As files have them.
+ObservationScales observation_scales(const InputScales& scales) {
+  NetworkParameters p;
+  set_normalisation(scales, p);
+  return {p.observation_mean, p.observation_variance, p.observation_clip};
 }
 
 }  // namespace
 
 void Training::go_on_from(PolicyFile policy) {
-  require_scales(policy, policy_file(snapshot(), learner_.averaged()));
+  const learner::NetworkSizes& network = config_.learner.network;
+  if (!network.are_a_robots()) {
+    throw InputError(fmt::format(
+        "--from: found networks wired as '{}', expected '{}': those of a "
+        "policy file",
+        learner::wiring_text(network.encoder, network.actor_sees), learner::wiring_text({}, {})));
+  }
+  const NetworkParameters& p = policy.parameters;
+  require_scales(policy.spec, {p.observation_mean, p.observation_variance, p.observation_clip},
+                 policy_spec(snapshot()), observation_scales(task_.scales()));
   for (std::vector<float>* rows :
        {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
     const std::vector<float> joints = *rows;
@@ -54,21 +70,35 @@ void Training::go_on_from(PolicyFile policy) {
   origin_ = fmt::format("sandrunner-train, from the weights of policy '{}'", policy.spec.name);
 }
 
-PolicyFile Training::policy_file(const Snapshot& snapshot,
-                                 const std::vector<float>& parameters) const {
-  PolicyFile file;
+// The policy imitates the networks of this file.
+void Training::imitate(const std::string& teacher_file) {
+  const TaskNetwork teacher = read_task_network(teacher_file, config_.task.policy.mode_gain);
+  require_scales(teacher.spec, teacher.scales, policy_spec(snapshot()),
+                 observation_scales(task_.scales()));
+  learner_.set_teacher(teacher.layout, teacher.parameters);
+  origin_ = fmt::format("sandrunner-train, imitating '{}' of {} transitions", teacher.spec.name,
+                        teacher.spec.provenance.at("transitions"));
+}
+
+PolicySpec Training::policy_spec(const Snapshot& snapshot) const {
   CommandRange commands = task_.command_range();
   commands.forward_mps = snapshot.command_speed_mps;
-  file.spec = policy_spec(config_.task, robot_, task_.scales(), commands);
-  file.spec.provenance = {{"config", config_.effective},
-                          {"robot", robot_.description.name},
-                          {"seed", std::to_string(options_.seed)},
-                          {"threads", std::to_string(options_.threads)},
-                          {"transitions", fmt::format("{:.0f}", snapshot.transitions)},
-                          {"core_hours", fmt::format("{:.3f}", snapshot.core_hours)},
-                          {"processor", processors_},
-                          {"commit", builds_},
-                          {"origin", origin_}};
+  PolicySpec spec = train::policy_spec(config_.task, robot_, task_.scales(), commands);
+  spec.provenance = {{"config", config_.effective},
+                     {"robot", robot_.description.name},
+                     {"seed", std::to_string(options_.seed)},
+                     {"threads", std::to_string(options_.threads)},
+                     {"transitions", fmt::format("{:.0f}", snapshot.transitions)},
+                     {"core_hours", fmt::format("{:.3f}", snapshot.core_hours)},
+                     {"processor", processors_},
+                     {"commit", builds_},
+                     {"origin", origin_}};
+  return spec;
+}
+
+PolicyFile Training::policy_file(PolicySpec spec, const std::vector<float>& parameters) const {
+  PolicyFile file;
+  file.spec = std::move(spec);
   NetworkParameters& p = file.parameters;
   set_normalisation(task_.scales(), p);
   const auto tensors = learner::policy_tensors(learner_.layout(), parameters);
@@ -79,6 +109,24 @@ PolicyFile Training::policy_file(const Snapshot& snapshot,
   answer_in_joints(config_.task.policy.mode_gain, p);
   file.golden = make_golden_example(p);
   return file;
+}
+
+StudyModelFile Training::study_model(PolicySpec spec, const std::vector<float>& parameters) const {
+  StudyModelFile file;
+  file.spec = std::move(spec);
+  file.sizes = config_.learner.network;
+  file.scales = observation_scales(task_.scales());
+  set_trained(parameters, config_.task.policy.mode_gain, file);
+  return file;
+}
+
+void Training::write_network(const std::string& path, PolicySpec spec,
+                             const std::vector<float>& parameters) const {
+  if (config_.learner.network.are_a_robots()) {
+    write_policy_file(path, policy_file(std::move(spec), parameters));
+  } else {
+    write_study_model(path, study_model(std::move(spec), parameters));
+  }
 }
 
 }  // namespace sandrunner::train

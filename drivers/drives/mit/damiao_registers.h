@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kDamiaoRegisterId = 0x7FF;
 enum class DamiaoRegister : std::uint8_t {
   kReplyId = 7,
   kMotorId = 8,
-  kTimeout = 9,  ///< in kDamiaoTimeoutUnit_s, 0: never; without a command for so long: no torque
+  kTimeout = 9,  ///< in kDamiaoTimeoutUnit_s, 0: never; no torque after this time without a command
   kControlMode = 10,  ///< kDamiaoMitMode: the mode of mit.h
   kPositionMax = 21,  ///< MitLimits::position_rad
   kVelocityMax = 22,

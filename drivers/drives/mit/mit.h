@@ -93,7 +93,7 @@ struct MitReply {
 inline constexpr std::uint8_t kDamiaoLostHost = 0xD;
 
 /// What a fault code means, "" for 0. CubeMars' manuals number theirs differently from version to
-/// version, so that no more is said than that there is one.
+/// version, so only its presence is reported.
 const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept;
 
 // --- the host's side ---

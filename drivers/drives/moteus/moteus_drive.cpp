@@ -133,7 +133,7 @@ std::string describe(const MoteusDrive& drive, const CanFrame& frame) {
   const DriveCommand command{r.position_rad, r.velocity_radps,
                              r.kp_scale * drive.kp_nmprev / kTurn_rad,
                              r.kd_scale * drive.kd_nmsprev / kTurn_rad, r.torque_nm};
-  return fmt::format("{}, at most {:.1f} N m, lets go after {:g} s", describe(command),
+  return fmt::format("{}, at most {:.1f} N m, times out after {:g} s", describe(command),
                      r.max_torque_nm, r.watchdog_s);
 }
 

@@ -51,7 +51,7 @@ enum class MoteusStatus : std::uint8_t {
   kTooLong,          ///< more than a frame holds
   kErrorFrame,       ///< a report of the controller, no frame of a drive
   kWrongFormat,      ///< not CAN FD
-  kOtherId,          ///< from or to somebody else
+  kOtherId,          ///< from or to another device
   kTruncated,        ///< the frame ends within a subframe
   kUnknownSubframe,  ///< its first byte is none of the protocol's, or of its serial stream
   kBadNumber,        ///< a count or register number that can not be

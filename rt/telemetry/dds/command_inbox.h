@@ -23,7 +23,7 @@ namespace sandrunner {
 /// robot would obey as well, stop and damp are all that is accepted. A message that was lost is
 /// sent again, and what it asks for is refused if its sender has asked for a stop or damp within
 /// the last second. Of a flood of requests from one sender, most are ignored without an answer, but
-/// never a stop or damp, so that velocities and other operators are served all the same.
+/// never a stop or damp. So velocities and other operators are still served.
 class CommandInbox {
  public:
   /// `participant` and `desk` must outlive the inbox. `robot`: who answers. Throws InputError.

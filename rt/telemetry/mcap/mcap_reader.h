@@ -15,8 +15,8 @@
 
 namespace sandrunner {
 
-/// Reads an MCAP file from beginning to end, in the order of the file and without its summary, so
-/// that a file truncated anywhere is read up to its last whole chunk.
+/// Reads an MCAP file from beginning to end, in the order of the file and without its summary. So a
+/// file truncated anywhere is read up to its last whole chunk.
 ///
 ///     McapReader reader("run.mcap");
 ///     while (const McapMessage* message = reader.next()) { ... }

@@ -37,8 +37,8 @@ struct BlackBoxResult {
   std::size_t peak_bytes = 0;   ///< of the compressed ticks
 };
 
-/// Keeps the newest ticks of a run in memory, compressed, and writes them into a recording
-/// (DIR/black-box-<tick of the fault>.mcap) two seconds after a fault or at the end of the run.
+/// Keeps the newest ticks of a run in memory, compressed. Two seconds after a fault, or at the end
+/// of the run, it writes them into a recording, DIR/black-box-<tick of the fault>.mcap.
 ///
 /// A recording that begins in the middle needs the state of controller and network before its first
 /// tick: each block of ticks has it. A file has these too: damage costs the replay no more than its

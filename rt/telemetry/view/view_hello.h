@@ -21,8 +21,8 @@ inline constexpr const char* kNoTruthNote =
 /// The fields of a row that a page gets.
 std::span<const RowField> page_fields();
 
-/// What a page is told once, before any frame, as JSON: the robot (its URDF with shapes, which also
-/// has its limits), names, ground, layout of frames and footprints, names of modes, faults and
+/// What a page receives once, before any frame, as JSON: the robot (its URDF with shapes, which
+/// also has its limits), names, ground, layout of frames and footprints, names of modes, faults and
 /// requests.
 /// `note`: a line for whoever looks at the page; may be empty. All
 /// characters that HTML could take for its own are escaped.

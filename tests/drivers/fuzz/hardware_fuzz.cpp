@@ -10,6 +10,7 @@
 
 #include "drivers/robot/bus_plan.h"
 #include "drivers/robot/drive.h"
+#include "drivers/robot/hardware_fit.h"
 #include "rt/base/errors.h"
 #include "tests/drivers/fuzz/fuzz_frame.h"
 #include "tests/drivers/robot/example.h"

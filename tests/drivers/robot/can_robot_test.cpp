@@ -47,8 +47,8 @@ SafeCommand after_encoder_jump() {
   config.joint_lower_rad.fill(-3.0);
   config.joint_upper_rad.fill(3.0);
   config.torque_limit_nm.fill(50.0);
-  config.continuous_torque_nm = 50.0;
-  config.speed_fault_radps = 50.0;
+  config.continuous_torque_nm.fill(50.0);
+  config.speed_fault_radps.fill(50.0);
   const SafetyGate gate(config, 2.0);
   GateState state;
   SensorFrame sensors;

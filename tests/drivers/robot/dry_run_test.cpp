@@ -35,7 +35,8 @@ TEST(DryRunTest, EveryDriveIsToldOffEnableAndThePoseInItsOwnProtocol) {
 
   const std::string moteus = dry_run(example_hardware("moteus"), example_robot(), stand());
   EXPECT_THAT(moteus, HasSubstr("  can0  00008001  ["));
-  EXPECT_THAT(moteus, HasSubstr("kp 100.00, kd 1.000, 0.000 N m, at most 63.5 N m, lets go after"));
+  EXPECT_THAT(moteus,
+              HasSubstr("kp 100.00, kd 1.000, 0.000 N m, at most 63.5 N m, times out after"));
 }
 
 TEST(DryRunTest, TheHostsLoopTellsNoTorqueAtTheSetPoint) {

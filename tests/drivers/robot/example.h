@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "drivers/robot/hardware_config.h"
+#include "drivers/robot/hardware_fit.h"
 
 namespace sandrunner {
 

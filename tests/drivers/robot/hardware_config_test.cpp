@@ -164,9 +164,10 @@ TEST(HardwareConfigTest, WhatGuardsNothingIsNamed) {
 TEST(HardwareConfigTest, ASpeedThatIsAFaultIsOneThatRepliesCanTell) {
   for (const auto& [name, fastest_radps] : {std::pair{"mit", 50.0}, {"moteus", 51.47}}) {
     GateConfig gate = example_gate();
-    gate.speed_fault_radps = 60.0;
+    gate.speed_fault_radps = {60.0, 60.0, 30.0};
     fit_gate_to(example_hardware(name), gate);
-    EXPECT_NEAR(gate.speed_fault_radps, 0.98 * fastest_radps, 0.01) << name;
+    EXPECT_NEAR(gate.speed_fault_radps[1], 0.98 * fastest_radps, 0.01) << name;
+    EXPECT_EQ(gate.speed_fault_radps[2], 30.0) << name;
   }
 }
 

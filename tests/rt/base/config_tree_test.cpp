@@ -72,6 +72,30 @@ TEST(ConfigTreeTest, ReadsEveryType) {
   EXPECT_EQ(config.numbers("absent_v", {7.0}, 3, 0.0, 1.0), (std::vector<double>{7.0}));
 }
 
+TEST(ConfigTreeTest, NumbersThatRepeatMayBeGivenOnce) {
+  ConfigTree config = from("one = 2\nall = [1, 2, 3]\nfew = [1, 2]\nmany = [1, 2, 3, 4]");
+  const auto read = [&](const char* key, std::size_t size, std::size_t few) {
+    return config.repeated(key, std::vector<double>(size, 7.0), few, 0.0, 9.0);
+  };
+  EXPECT_EQ(read("one", 3, 1), (std::vector<double>{2, 2, 2}));
+  EXPECT_EQ(read("all", 3, 1), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(read("few", 4, 2), (std::vector<double>{1, 2, 1, 2}));
+  EXPECT_EQ(read("many", 4, 2), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(read("absent", 3, 1), (std::vector<double>{7, 7, 7}));
+  EXPECT_EQ(config.effective(),
+            "absent = 7.0\nall = [1.0, 2.0, 3.0]\nfew = [1.0, 2.0]\n"
+            "many = [1.0, 2.0, 3.0, 4.0]\none = 2.0\n");
+  EXPECT_EQ(error_of([&] { read("few", 3, 1); }),
+            "a.toml:3: few: found an array of 2, expected a finite number from 0 to 9, or an array "
+            "of 3");
+  EXPECT_EQ(error_of([&] { read("one", 4, 2); }),
+            "a.toml:1: one: found 2, expected an array of 2 finite numbers from 0 to 9, or of 4");
+  EXPECT_EQ(error_of([&] {
+              config.repeated("all", {0.0, 0.0, 0.0}, 1, 0.0, 2.0);
+            }),
+            "a.toml:2: all[2]: found 3, expected a finite number from 0 to 2, or an array of 3");
+}
+
 TEST(ConfigTreeTest, RefusesNumbersOutOfRangeNotFiniteOrOfOtherType) {
   EXPECT_EQ(number_error("-0.5", 0.0, 1.0),
             "a.toml:3: terrain.friction: found -0.5, expected a finite number from 0 to 1");

@@ -410,7 +410,7 @@ TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
   FakeLoop loop;
   loop.reach(Mode::kStand);
   ASSERT_EQ(loop.output.mode, Mode::kStand);
-  const double continuous_nm = loop.config.gate.continuous_torque_nm;
+  const double continuous_nm = loop.config.gate.continuous_torque_nm[0];
   double torque_nm = 0.0, away_rad = 0.0;
   loop.spoil = [&](ControllerInput& seen) {  // its foot lies in sand
     const bool slips = away_rad < 0.35;
@@ -433,7 +433,7 @@ TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
 TEST(ControllerTest, AJointThatBearsTooMuchForEverIsAnOverloadAndDoesNotSinkWithoutEnd) {
   FakeLoop loop;
   loop.reach(Mode::kStand);
-  const double continuous_nm = loop.config.gate.continuous_torque_nm;
+  const double continuous_nm = loop.config.gate.continuous_torque_nm[0];
   double farthest_rad = 0.0;
   loop.spoil = [&](ControllerInput& seen) {  // a load, which giving way does not relieve
     // With breaks, as a torque that was not commanded is a fault as well.

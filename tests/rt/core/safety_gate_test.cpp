@@ -159,7 +159,7 @@ TEST_F(SafetyGateTest, OneJointMayRestWhileTheOthersAndTheBodyMove) {
 TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
   judge(Mode::kWalk);
   stall(config.stall_fault_ticks + 1);
-  sensors.joints.velocity_radps[2] = 2.0 * config.speed_fault_radps;
+  sensors.joints.velocity_radps[2] = 2.0 * config.speed_fault_radps[2];
   EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kLoopStalled) |
                                     static_cast<std::uint64_t>(Fault::kJointSpeed));
   EXPECT_EQ(state.first_fault, Fault::kLoopStalled);
@@ -194,7 +194,7 @@ TEST_F(SafetyGateTest, WhatTheLoopMissedInPassiveIsSoonOver) {
 
 TEST_F(SafetyGateTest, TheDampingOfAFaultGivesAtMostTheJointsLimit) {
   sensors.emergency_stop = 1;
-  sensors.joints.velocity_radps[3] = -0.9 * config.speed_fault_radps;
+  sensors.joints.velocity_radps[3] = -0.9 * config.speed_fault_radps[0];
   sensors.joints.velocity_radps[4] = 1.0;
   config.torque_limit_nm.fill(5.0);
   gate = SafetyGate(config, 2.0);
@@ -321,6 +321,32 @@ TEST(GateConfigTest, EveryThresholdIsBoundedByItsCeilingAndItsDefaultIsWithin) {
   };
   for (const auto& threshold : kGateThresholds) check(threshold);
   for (const auto& threshold : kGateTickThresholds) check(threshold);
+  for (const auto& threshold : kGateJointThresholds) {
+    GateConfig config;
+    config.*threshold.value = {0.0, threshold.ceiling * 2, threshold.ceiling / 2};
+    EXPECT_EQ(below_ceilings(config).*threshold.value,
+              (LegJoints<double>{0.0, threshold.ceiling, threshold.ceiling / 2}));
+  }
+}
+
+TEST_F(SafetyGateTest, EachJointOfALegHasItsOwnSpeedAndItsOwnContinuousTorque) {
+  config.speed_fault_radps = {60.0, 60.0, 30.0};
+  config.continuous_torque_nm = {10.0, 10.0, 20.0};
+  config.thermal_time_s = 0.001;
+  gate = SafetyGate(config, 2.0);
+  sensors.joints.velocity_radps[4] = sensors.joints.velocity_radps[5] = 35.0;
+  sensors.joints.torque_nm[8] = 15.0;
+  EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kJointSpeed));
+  EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 5);
+  state = {};
+  sensors.joints.velocity_radps.fill(0.0);
+  std::uint64_t found = 0;
+  for (int n = 0; n < 10 && found == 0; ++n) found = judge(Mode::kWalk);
+  EXPECT_EQ(found, 0u);
+  sensors.joints.torque_nm[7] = 15.0;
+  for (int n = 0; n < 10 && found == 0; ++n) found = judge(Mode::kWalk);
+  EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kOverload));
+  EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 7);
 }
 
 TEST_F(SafetyGateTest, CommandThatIsNotFiniteBecomesDampingAndLatches) {

@@ -29,11 +29,11 @@ inline ControllerConfig test_robot() {
     set(j + 2, -1.2, -2.5, 0.0);
   }
   c.gate.speed_limit_radps = all_joints(25.0);
-  c.gate.speed_fault_radps = 60.0;
+  c.gate.speed_fault_radps = {60.0, 60.0, 60.0};
   c.gate.kp_limit_nmprad = 200.0;
   c.gate.kd_limit_nmsprad = 5.0;
   c.gate.power_limit_w = 8000.0;
-  c.gate.continuous_torque_nm = 30.0;
+  c.gate.continuous_torque_nm = {30.0, 30.0, 30.0};
   c.gate.thermal_time_s = 20.0;
   c.shaping.envelope = {.forward_mps = 2.0,
                         .backward_mps = 1.0,

@@ -53,7 +53,8 @@ class Nearest {
               (gate.sent_rad[j] - joints.position_rad[j]) / kNotFollowing_rad);
       }
       if (mode != Mode::kWalk && mode != Mode::kPassive) {
-        raise(Fault::kJointSpeed, 3.0 * joints.velocity_radps[j] / limits.speed_fault_radps);
+        raise(Fault::kJointSpeed,
+              3.0 * joints.velocity_radps[j] / limits.speed_fault_radps[j % kJointsPerLeg]);
       }
     }
   }

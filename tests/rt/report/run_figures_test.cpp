@@ -28,7 +28,7 @@ TickRecord walk_tick(std::uint64_t tick) {
 }
 
 RunRecord record_of(std::uint64_t ticks, std::uint64_t step) {
-  RunObserver observer({.mass_kg = 10.0, .motor_constant = 3.0});
+  RunObserver observer({.mass_kg = 10.0, .motor_constant = {3.0, 3.0, 3.0}});
   for (std::uint64_t tick = 0; tick < ticks; tick += step) observer.add(walk_tick(tick));
   return observer.take_record();
 }
@@ -43,7 +43,7 @@ TEST(RunFiguresTest, OfAWalkOfAQuarterOfAnHourTheSecondHalfCounts) {
 }
 
 TEST(RunFiguresTest, OnlyRowsOfTheWalkCount) {
-  RunObserver observer({.mass_kg = 10.0, .motor_constant = 3.0});
+  RunObserver observer({.mass_kg = 10.0, .motor_constant = {3.0, 3.0, 3.0}});
   for (std::uint64_t tick = 0; tick <= 400 * kTicksPerPolicyStep; ++tick) {
     TickRecord record = walk_tick(tick);
     const std::uint64_t period = (tick + kTicksPerPolicyStep - 1) / kTicksPerPolicyStep;

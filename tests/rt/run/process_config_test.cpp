@@ -49,14 +49,42 @@ TEST(ProcessConfigTest, SettingsReachSimulatorControllerAndGate) {
                           "controller.gate.joints_fault_ticks=9", "summary.motor_constant=2.5"});
   EXPECT_EQ(config.simulator.sensor_delay_ticks, 5);
   EXPECT_EQ(config.simulator.noise.joint_velocity_radps, 0.25);
-  EXPECT_EQ(config.simulator.torque_speed_line.stall_torque_nm, 99.0);
-  EXPECT_EQ(config.simulator.torque_speed_line.no_load_speed_radps, 28.1);
+  EXPECT_EQ(config.simulator.torque_speed_line.stall_torque_nm,
+            (LegJoints<double>{99.0, 99.0, 99.0}));
+  EXPECT_EQ(config.simulator.torque_speed_line.no_load_speed_radps[2], 28.1);
   EXPECT_EQ(config.controller.walk.latency_ticks, 20u);
   EXPECT_EQ(config.controller.walk.kd_nmsprad, 0.7);
   EXPECT_EQ(config.controller.damping.kd_nmsprad, 3.0);
   EXPECT_EQ(config.controller.gate.tilt_fault_deg, 50.0);
   EXPECT_EQ(config.controller.gate.joints_fault_ticks, 9u);
-  EXPECT_EQ(config.motor_constant, 2.5);
+  EXPECT_EQ(config.motor_constant[2], 2.5);
+}
+
+TEST(ProcessConfigTest, ARobotThatShipsIsGivenByItsName) {
+  const ProcessConfig go2 = config_of("rigid", {"robot=go2"});
+  EXPECT_EQ(go2.robot.description.name, "go2");
+  EXPECT_EQ(go2.controller.gate.continuous_torque_nm, go2.robot.continuous_torque_nm);
+  EXPECT_EQ(go2.controller.gate.speed_fault_radps, go2.robot.speed_fault_radps);
+  EXPECT_EQ(go2.motor_constant, go2.robot.motor_constant_nmpsqrtw);
+}
+
+TEST(ProcessConfigTest, TheRobotsFileSaysWhetherDrivesObeyTheirTorqueSpeedLine) {
+  const auto stall_nm = [](const std::vector<std::string>& assignments) {
+    return config_of("rigid", assignments).simulator.torque_speed_line.stall_torque_nm;
+  };
+  EXPECT_EQ(stall_nm({}), (LegJoints<double>{}));
+  EXPECT_EQ(stall_nm({"robot=go2"}), (LegJoints<double>{36.7, 36.7, 70.4}));
+  EXPECT_EQ(stall_nm({"robot=go2", "sim.torque_speed_line=false"}), (LegJoints<double>{}));
+}
+
+TEST(ProcessConfigTest, ASettingLowersTheSpeedFaultOfEachJointButRaisesNone) {
+  const auto fault_radps = [](const std::string& value) {
+    return config_of("rigid", {"robot=go2", "controller.gate.speed_fault_radps=" + value})
+        .controller.gate.speed_fault_radps;
+  };
+  EXPECT_EQ(fault_radps("20"), (LegJoints<double>{20.0, 20.0, 20.0}));
+  EXPECT_EQ(fault_radps("30"), (LegJoints<double>{30.0, 30.0, 24.0}));
+  EXPECT_EQ(fault_radps("[40, 35, 22]"), (LegJoints<double>{40.0, 35.0, 22.0}));
 }
 
 TEST(ProcessConfigTest, PolicyGivesTheDefaultsOfTheWalk) {

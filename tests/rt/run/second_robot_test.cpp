@@ -41,10 +41,10 @@ TEST_F(SecondRobotTest, GivesSimulatorControllerAndGateTheirFigures) {
   EXPECT_EQ(c.robot.model.foot_width_m, 0.0);
   // Feet under the HFE axes: 2 * 0.18 m cos 0.65 below them, these 0.03 m below the base.
   EXPECT_NEAR(c.robot.nominal_height_m, 0.03 + 0.36 * std::cos(0.65) + 0.022, 1e-6);
-  EXPECT_EQ(c.motor_constant, 2.0);  // sqrt(80 / 20)
+  EXPECT_EQ(c.motor_constant[0], 2.0);  // sqrt(80 / 20)
   const ProcessConfig with_line =
       config_of("rigid", {"robot=" + map_, "sim.torque_speed_line=true"});
-  EXPECT_EQ(with_line.simulator.torque_speed_line.stall_torque_nm, 80.0);
+  EXPECT_EQ(with_line.simulator.torque_speed_line.stall_torque_nm[0], 80.0);
 
   const StandConfig& stand = c.controller.stand;
   EXPECT_EQ(stand.kp_nmprad, 45.0);
@@ -52,7 +52,7 @@ TEST_F(SecondRobotTest, GivesSimulatorControllerAndGateTheirFigures) {
   EXPECT_EQ(stand.fold_rad, (std::array<double, 3>{0.0, 1.1, -2.2}));
   EXPECT_EQ(c.controller.damping.kd_nmsprad, 1.1);
   const GateConfig& gate = c.controller.gate;
-  EXPECT_EQ(gate.speed_fault_radps, 44.0);
+  EXPECT_EQ(gate.speed_fault_radps[0], 44.0);
   for (int j = 0; j < kNumJoints; j += kJointsPerLeg) {
     EXPECT_EQ(stand.nominal_rad[j + 1], 0.65);
     EXPECT_EQ(stand.nominal_rad[j + 2], -1.3);

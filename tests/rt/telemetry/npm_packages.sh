@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# To be sourced: npm_packages WHAT HERE FOLDER has the packages of HERE/package-lock.json installed in FOLDER. Ends the script
-# with 77 and a line that says why if they are not to be had: WHAT is skipped.
+# To be sourced: npm_packages WHAT HERE FOLDER has the packages of HERE/package-lock.json installed
+# in FOLDER. Ends the script with 77 and a line that says why if they are not to be had: WHAT is
+# skipped.
 npm_packages() {
   local what=$1 here=$2 folder=$3
   skip() {

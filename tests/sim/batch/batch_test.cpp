@@ -88,6 +88,7 @@ RobotModel<float> random_model(Draw& draw) {
     scale(leg.shank);
     leg.foot = leg.foot + draw.vector(0.01);
   }
+  m.friction_nm.fill(std::fmax(draw(-0.4, 0.4), 0.0));  // half of them have none
   return convert_model<float>(m);
 }
 
@@ -125,8 +126,10 @@ struct Story {
     drive.torque_scale = static_cast<float>(draw(0.9, 1.1));
     drive.switch_tick = std::floor(static_cast<float>(draw(0.0, 40.0)));
     const TorqueSpeedLine& line = raibo().torque_speed_line;
-    drive.stall_torque_nm = number % 3 ? static_cast<float>(line.stall_torque_nm) : 0.0f;
-    drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+    drive.line = drive_line<float>(line);
+    drive.line.stall_torque_nm[0] *= 0.5f;
+    if (number % 3 == 0) drive.line = {};
+    drive.heat_factor = {1.0f, 0.8f, 0.5f};
     drive.target_before = drive.target = start.rigid.q;
   }
 
@@ -320,8 +323,7 @@ TEST(BatchTest, AgreesWithTheStepInDouble) {
     BatchDrive<float> drive;
     drive.kp = 60.0f;
     drive.kd = 1.0f;
-    drive.stall_torque_nm = 256.0f;
-    drive.inverse_no_load_speed = 1.0f / 28.1f;
+    drive.line = drive_line<float>(raibo().torque_speed_line);
     drive.switch_tick = 120.0f;
     for (int j = 0; j < kNumJoints; ++j) {
       drive.target_before[j] = static_cast<float>(x.rigid.q[j]);
@@ -346,7 +348,7 @@ TEST(BatchTest, AgreesWithTheStepInDouble) {
         const auto& target = tick < 120 ? drive.target_before : drive.target;
         torque_nm[j] = drive_torque(x.rigid.q[j], x.rigid.qd[j], static_cast<double>(target[j]),
                                     0.0, 60.0, 1.0, 0.0, model.torque_limit_nm[j], 256.0,
-                                    static_cast<double>(drive.inverse_no_load_speed));
+                                    static_cast<double>(drive.line.inverse_no_load_speed[0]));
         squared += torque_nm[j] * torque_nm[j];
       }
       stepper.step(model, foot(), terrain, {}, torque_nm, x, report);

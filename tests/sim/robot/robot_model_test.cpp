@@ -68,10 +68,11 @@ TEST(RobotModelTest, ShippedRobotHasTheReferenceFigures) {
   EXPECT_EQ(robot.stand_kp_nmprad, 100.0);
   EXPECT_EQ(robot.stand_kd_nmsprad, 1.0);
   EXPECT_EQ(robot.damping_kd_nmsprad, 2.0);
-  EXPECT_EQ(robot.speed_fault_radps, 60.0);
-  EXPECT_EQ(robot.torque_speed_line.stall_torque_nm, 256.0);
-  EXPECT_EQ(robot.torque_speed_line.no_load_speed_radps, 28.1);
-  EXPECT_EQ(robot.motor_constant_nmpsqrtw, 3.0);
+  EXPECT_EQ(robot.speed_fault_radps, (LegJoints<double>{60.0, 60.0, 60.0}));
+  EXPECT_EQ(robot.torque_speed_line.stall_torque_nm, (LegJoints<double>{256.0, 256.0, 256.0}));
+  EXPECT_EQ(robot.torque_speed_line.no_load_speed_radps[2], 28.1);
+  EXPECT_EQ(robot.motor_constant_nmpsqrtw, (LegJoints<double>{3.0, 3.0, 3.0}));
+  EXPECT_FALSE(robot.obeys_torque_speed_line);
   for (int j = 0; j < kNumJoints; ++j) {
     EXPECT_EQ(m.rotor_inertia[j], 0.005741839);
     EXPECT_EQ(m.torque_limit_nm[j], 63.45);
@@ -418,7 +419,90 @@ TEST(RobotModelTest, FollowsWhatTheMapLeavesOut) {
   const Robot robot = parse_robot(map, "my.toml", shipped_urdf(), "my.urdf");
   EXPECT_NEAR(robot.nominal_height_m, 0.4725, 5e-5);
   // 0.253 N m/A, 0.32 ohm, gear 6.75.
-  EXPECT_NEAR(robot.motor_constant_nmpsqrtw, 6.75 * 0.253 / std::sqrt(0.32), 2e-3);
+  EXPECT_NEAR(robot.motor_constant_nmpsqrtw[2], 6.75 * 0.253 / std::sqrt(0.32), 2e-3);
+}
+
+TEST(RobotModelTest, AFigureOfTheDrivesIsOneNumberOrThree) {
+  const auto robot_with = [](const std::string& line, const std::string& value) {
+    const std::string map = shipped_map();
+    const auto at = map.find("\n" + line + " = ") + 1;
+    const std::string before = map.substr(at, map.find('\n', at) - at);
+    return parse_robot(edited(map, line, before, line + " = " + value), "my.toml", shipped_urdf(),
+                       "my.urdf");
+  };
+  for (const auto& [line, of] :
+       {std::pair{"rotor_inertia_kgm2",
+                  +[](const Robot& r) {
+                    return LegJoints<double>{r.model.rotor_inertia[3], r.model.rotor_inertia[4],
+                                             r.model.rotor_inertia[5]};
+                  }},
+        std::pair{"stall_torque_nm",
+                  +[](const Robot& r) { return r.torque_speed_line.stall_torque_nm; }},
+        std::pair{"no_load_speed_radps",
+                  +[](const Robot& r) { return r.torque_speed_line.no_load_speed_radps; }},
+        std::pair{"continuous_torque_nm", +[](const Robot& r) { return r.continuous_torque_nm; }},
+        std::pair{"constant_nmpsqrtw", +[](const Robot& r) { return r.motor_constant_nmpsqrtw; }},
+        std::pair{"speed_fault_radps", +[](const Robot& r) { return r.speed_fault_radps; }}}) {
+    EXPECT_EQ(of(robot_with(line, "0.5")), (LegJoints<double>{0.5, 0.5, 0.5})) << line;
+    EXPECT_EQ(of(robot_with(line, "[0.5, 0.25, 0.75]")), (LegJoints<double>{0.5, 0.25, 0.75}))
+        << line;
+    EXPECT_THROW(robot_with(line, "[0.5, 0.25]"), InputError) << line;
+  }
+}
+
+TEST(RobotModelTest, APoseIsThreeNumbersOrTwelve) {
+  const std::string line = "lying_rad = [0.0, 2.5, -2.4]";
+  const auto lying = [&](const std::string& value) {
+    return parse_robot(edited(shipped_map(), "lying_rad", line, "lying_rad = " + value), "my.toml",
+                       shipped_urdf(), "my.urdf")
+        .lying_rad;
+  };
+  const JointArray<double> twelve = lying("[-0.3,2,-2, 0.3,2,-2, -0.3,2,-2, 0.3,2,-1]");
+  EXPECT_EQ(twelve, (JointArray<double>{-0.3, 2, -2, 0.3, 2, -2, -0.3, 2, -2, 0.3, 2, -1}));
+  EXPECT_EQ(lying("[0.1,2,-2]"),
+            (JointArray<double>{0.1, 2, -2, 0.1, 2, -2, 0.1, 2, -2, 0.1, 2, -2}));
+  for (const std::string wrong : {"2", "[0.1]", "[0.1,2,-2,0.1,2,-2]"}) {
+    EXPECT_THROW(lying(wrong), InputError) << wrong;
+  }
+}
+
+// Figures of robots/go2_description of github.com/unitreerobotics/unitree_ros.
+TEST(RobotModelTest, Go2HasThePublishedFigures) {
+  const Robot robot = load_robot("go2");
+  const RobotModel<double>& m = robot.model;
+  EXPECT_EQ(robot.description.name, "go2");
+  EXPECT_NEAR(m.mass(), 15.019, 1e-9);
+  EXPECT_EQ(m.foot_radius_m, 0.022);
+  EXPECT_NEAR(robot.nominal_height_m, 0.335, 5e-4);
+  EXPECT_TRUE(robot.obeys_torque_speed_line);
+  for (int l = 0; l < kNumLegs; ++l) {
+    const LegModel<double>& leg = m.legs[l];
+    const double front = l < 2 ? 1.0 : -1.0, left = l % 2 == 0 ? 1.0 : -1.0;
+    EXPECT_EQ(leg.haa.x, front * 0.1934);
+    EXPECT_EQ(leg.haa.y, left * 0.0465);
+    EXPECT_EQ(leg.hfe.y, left * 0.0955);
+    EXPECT_EQ(leg.kfe.z, -0.213);
+    EXPECT_EQ(leg.foot.z, -0.213);
+    EXPECT_NEAR(leg.hip.mass + leg.thigh.mass + leg.shank.mass, 2.024, 1e-12);
+    EXPECT_LT(front * leg.hip.com.x, 0.0);
+    EXPECT_GT(left * leg.hip.com.y, 0.0);
+    EXPECT_LT(left * leg.thigh.com.y, 0.0);
+    const int haa = kJointsPerLeg * l, kfe = haa + 2;
+    EXPECT_EQ(m.torque_limit_nm[haa], 23.7);
+    EXPECT_EQ(m.torque_limit_nm[kfe], 45.43);
+    EXPECT_EQ(m.speed_limit_radps[haa], 30.1);
+    EXPECT_EQ(m.speed_limit_radps[kfe], 15.7);
+    EXPECT_EQ(m.lower_rad[haa + 1], front > 0.0 ? -1.5708 : -0.5236);
+    EXPECT_EQ(m.lower_rad[kfe], -2.7227);
+    EXPECT_NEAR(m.rotor_inertia[haa], 1.11842e-4 * 6.33 * 6.33, 1e-5);
+    EXPECT_NEAR(m.rotor_inertia[kfe], 1.11842e-4 * 12.13 * 12.13, 1e-5);
+    EXPECT_EQ(robot.lying_rad[haa], -0.3 * left);  // as the robot lies when it is switched on
+    // The knee is the hip's drive behind a gear of 1.917.
+    const TorqueSpeedLine& line = robot.torque_speed_line;
+    EXPECT_NEAR(line.stall_torque_nm[2] / line.stall_torque_nm[0], 1.917, 2e-3);
+    EXPECT_NEAR(line.no_load_speed_radps[0] / line.no_load_speed_radps[2], 1.917, 2e-3);
+    EXPECT_NEAR(robot.motor_constant_nmpsqrtw[2] / robot.motor_constant_nmpsqrtw[0], 1.917, 2e-3);
+  }
 }
 
 TEST(RobotModelTest, RefusesAPosePastAStop) {

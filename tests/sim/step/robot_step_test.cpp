@@ -377,5 +377,47 @@ TEST(RobotStepTest, FloatStaysWithDoubleOverAStride) {
   }
 }
 
+/// A robot in free fall, far from the ground, its joints away from their stops.
+Bench falling_robot(double friction_nm) {
+  Bench bench;
+  bench.state.rigid.position.z = 100.0;
+  bench.remove_stops();
+  bench.robot.model.friction_nm.fill(friction_nm);
+  return bench;
+}
+
+TEST(JointFrictionTest, OfAJointThatMovesIsATorqueAgainstItsMotion) {
+  Bench rubs = falling_robot(0.4), pulled = falling_robot(0.0);
+  JointArray<double> torque_nm{}, less_nm{};
+  for (int j = 0; j < kNumJoints; ++j) {
+    const double way = j % 2 == 0 ? 1.0 : -1.0;
+    rubs.state.rigid.qd[j] = pulled.state.rigid.qd[j] = 5.0 * way;
+    torque_nm[j] = 1.0 * way;
+    less_nm[j] = 0.6 * way;
+  }
+  for (int i = 0; i < 100; ++i) {
+    rubs.step(torque_nm);
+    pulled.step(less_nm);
+  }
+  for (int j = 0; j < kNumJoints; ++j) {
+    ASSERT_GT(std::fabs(rubs.state.rigid.qd[j]), kFrictionSpeed_radps);
+    EXPECT_NEAR(rubs.state.rigid.qd[j], pulled.state.rigid.qd[j], 1e-9) << j;
+  }
+}
+
+TEST(JointFrictionTest, HoldsAJointWhoseTorqueIsSmaller) {
+  Bench held = falling_robot(0.4), free = falling_robot(0.0);
+  JointArray<double> torque_nm{};
+  for (int j = 2; j < kNumJoints; j += kJointsPerLeg) torque_nm[j] = 0.3;
+  for (int i = 0; i < 400; ++i) {
+    held.step(torque_nm);
+    free.step(torque_nm);
+  }
+  for (int j = 2; j < kNumJoints; j += kJointsPerLeg) {
+    EXPECT_LT(std::fabs(held.state.rigid.qd[j]), kFrictionSpeed_radps) << j;
+    EXPECT_GT(std::fabs(free.state.rigid.qd[j]), 5.0 * kFrictionSpeed_radps) << j;
+  }
+}
+
 }  // namespace
 }  // namespace sandrunner::sim

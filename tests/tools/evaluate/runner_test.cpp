@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "rt/core/floating_point.h"
 #include "support.h"
 #include "tests/rt/support.h"
@@ -85,6 +88,32 @@ TEST_F(RunnerTest, DisturbancesActAndFollowTheSeed) {
   EXPECT_NE(bits[6], bits[4]);
   EXPECT_NE(bits[8], bits[7]);
   EXPECT_EQ(bits[5], bits[2]);
+}
+
+TEST_F(RunnerTest, AnObserverSeesEveryStepOfEachTrial) {
+  Trial trial;
+  trial.terrain = study_.add(Study::preset("dry-sand"));
+  trial.duration_s = 0.5;
+  std::vector<Trial> trials(11, trial);
+  for (std::size_t i = 0; i < trials.size(); ++i) trials[i].start = &study_.start(static_cast<int>(i % 3));
+  std::vector<int> steps(trials.size());
+  std::vector<float> first_q(trials.size()), greatest_torque_nm(trials.size());
+  const auto figures = run_trials(
+      study_.robot(), study_.foot(), standing_policy(), trials,
+      {2, true, sim::BatchWidth::kEight}, {}, [&](std::size_t i, const ObservedStep& step) {
+        if (steps[i]++ == 0) first_q[i] = step.state.rigid.q[2];
+        for (const double torque : step.torque_nm) {
+          greatest_torque_nm[i] =
+              std::max(greatest_torque_nm[i], static_cast<float>(std::fabs(torque)));
+        }
+      });
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    EXPECT_EQ(steps[i], static_cast<int>(std::lround(100.0 * figures[i].time_s))) << i;
+    EXPECT_EQ(first_q[i], trials[i].start->rigid.q[2]) << i;
+    // What holds a quarter of the robot at its knee, and no more than the drive has.
+    EXPECT_GT(greatest_torque_nm[i], 3.0f) << i;
+    EXPECT_LE(greatest_torque_nm[i], 61.0f) << i;
+  }
 }
 
 TEST_F(RunnerTest, LooseStepSinksIn) {

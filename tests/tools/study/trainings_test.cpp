@@ -33,13 +33,40 @@ std::map<std::string, std::string> settings_of(const std::string& file) {
   return settings;
 }
 
-TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsInItsGroundAlone) {
-  const std::map<std::string, std::map<std::string, std::string>> expected = {
+TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListed) {
+  std::map<std::string, std::map<std::string, std::string>> expected = {
       {"ours", {}},
       {"env-rigid", {{"ground.rigid_envs", "64"}, {"ground.patchy_envs", "0"}}},
       {"env-quasistatic", {{"ground.inertial_high", "0.0"}}},  // the low end is 0 anyway
       {"env-linear", {{"ground.yielding", "\"linear\""}}},
+      {"tcn", {{"network.encoder", "\"tcn\""}}},
+      {"oracle-h", {{"network.actor", "\"encoding, estimate, terrain\""}}},
+      {"oracle-o", {{"network.actor", "\"estimate, proprioception, terrain\""}}},
+      {"teacher-gm",
+       {{"network.encoder", "\"insight\""},
+        {"network.actor", "\"encoding, proprioception\""},
+        {"learner.estimate_weight", "0.0"}}},
+      {"teacher-rigid",
+       {{"network.encoder", "\"insight\""},
+        {"network.actor", "\"encoding, proprioception\""},
+        {"learner.estimate_weight", "0.0"},
+        {"ground.rigid_envs", "64"},
+        {"ground.patchy_envs", "0"}}},
   };
+  for (const auto& [name, more] :
+       {std::pair<std::string, std::map<std::string, std::string>>{"pl-gm", {}},
+        {"pl-rigid", {{"ground.rigid_envs", "64"}, {"ground.patchy_envs", "0"}}}}) {
+    auto& student = expected[name] = more;
+    student.insert({{"network.actor", "\"encoding, proprioception\""},
+                    {"learner.estimate_weight", "0.0"},
+                    {"learner.action_std_start", "0.05"},
+                    {"learner.action_std_min", "0.05"},
+                    {"learner.learning_rate_min", "0.0005"},
+                    {"learner.learning_rate_max", "0.0005"},
+                    {"command.speed_start_mps", "4.0"},
+                    {"ground.sigma_flat_low_start", "500000.0"},
+                    {"ground.sigma_cone_low_start", "90000.0"}});
+  }
   const auto built_in = settings_of("");
   std::set<std::string> found;
   for (const auto& file : std::filesystem::directory_iterator(kStudy + "/trainings")) {
@@ -102,6 +129,22 @@ TEST_F(TrainScriptTest, TrainsContinuesAndKeepsTheBestPolicyWithAShortCurve) {
   };
   EXPECT_EQ(read_file(folder_.path("log")),
             line("env-rigid", "") + line("env-rigid", " --resume") + line("ours", ""));
+}
+
+TEST_F(TrainScriptTest, AStudentImitatesTheTeacherOfItsSeedForTwoThirdsOfTheLength) {
+  const std::string out = folder_.path("out");
+  const Ended without = run(20, {out, "2", "pl-gm"});
+  EXPECT_EQ(without.code, 2);
+  EXPECT_NE(without.err.find("expected that of teacher-gm: train it first"), std::string::npos)
+      << without;
+  write_file(out + "/teacher-gm-2.safetensors", "weights\n");
+  const Ended ended = run(20, {out, "2", "pl-gm"});
+  EXPECT_EQ(ended.code, 0) << ended;
+  EXPECT_EQ(read_file(folder_.path("log")),
+            "--config " + kStudy +
+                "/trainings/pl-gm.toml --set run.transitions=200 --set "
+                "imitation.teacher=" +
+                out + "/teacher-gm-2.safetensors --seed 2 --out " + out + "/pl-gm-2\n");
 }
 
 TEST_F(TrainScriptTest, RefusesAnUnknownNameBeforeItTrains) {

@@ -41,8 +41,11 @@ std::string mjcf(const sim::RobotModel<double>& m, const MujocoSettings& setting
     const sim::LegModel<double>& leg = m.legs[l];
     const auto body = [&](const char* link, int joint, const sim::Vec3<double>& at,
                           const char* axis, const sim::Body<double>& b) {
-      return fmt::format("<body name='{}{}' pos='{}'><joint axis='{}' armature='{:.17g}'/>{}", link,
-                         l, text(at), axis, m.rotor_inertia[3 * l + joint], inertial(b));
+      return fmt::format(
+          "<body name='{}{}' pos='{}'><joint axis='{}' armature='{:.17g}' "
+          "frictionloss='{:.17g}'/>{}",
+          link, l, text(at), axis, m.rotor_inertia[3 * l + joint], m.friction_nm[3 * l + joint],
+          inertial(b));
     };
     xml += body("hip", 0, leg.haa, "1 0 0", leg.hip) +
            body("thigh", 1, leg.hfe, "0 1 0", leg.thigh) +

@@ -13,7 +13,7 @@ namespace sandrunner::hil {
 
 /// A motor drive at the other end of a CAN bus: what it answers, and its torque, by its own time
 /// and its own encoder. Frames in, frames out; no clock and no I/O. Time is in s since any start.
-/// Without a command for its time-out it lets go, each family in its own way.
+/// After its time-out without a command it acts as its family does: off, or damping.
 class EmulatedDrive {
  public:
   using State = DriveCore::State;
@@ -40,7 +40,7 @@ class EmulatedDrive {
   DriveFaults& faults() noexcept { return core_.faults; }
   const DriveFaults& faults() const noexcept { return core_.faults; }
   State state() const noexcept { return core_.state; }
-  /// Neither a stiffness nor a torque of its own: off, let go, or damping.
+  /// Neither a stiffness nor a torque of its own: off, timed out, or damping.
   bool passive() const noexcept;
   /// Gives no torque at all.
   bool limp() const noexcept;

@@ -12,10 +12,18 @@
 
 namespace sandrunner::learner {
 
+/// What only networks of a study see, which never run on a robot: the parameters of the ground
+/// under the base, ...
+inline constexpr int kTerrainSize = 10;
+/// ... and all that a teacher sees: [terrain | estimate without error | load of each foot].
+inline constexpr int kInsightSize = kTerrainSize + kEstimateSize + kNumLegs;
+
 struct RolloutShape {
   int envs = 0;        ///< environments
   int steps = 32;      ///< of a window; the length of back-propagation through time
   int privileged = 0;  ///< size of the critic's input
+  int insight = 0;     ///< kInsightSize, if a network sees it
+  int teacher = 0;     ///< size of the encoding of the teacher that the policy imitates, if any
 };
 
 /// How a step left the episode. A terminated episode has no future reward; after a timeout the
@@ -58,11 +66,13 @@ class ValueField {
 
 template <typename Scalar>
 struct BasicRollout {
-  BasicRollout(const RolloutShape& rollout_shape, int hidden)
+  /// `memory`: rows of the policy's memory (ParameterLayout::memory).
+  BasicRollout(const RolloutShape& rollout_shape, int memory)
       : shape(rollout_shape),
         observation(kObservationSize, shape.envs, shape.steps + 1),
         privileged(shape.privileged, shape.envs, shape.steps + 1),
         estimate_target(kEstimateSize, shape.envs, shape.steps + 1),
+        insight(shape.insight, shape.envs, shape.steps + 1),
         reset(shape.envs, shape.steps + 1),
         reward(shape.envs, shape.steps),
         end(shape.envs, shape.steps),
@@ -70,11 +80,12 @@ struct BasicRollout {
         action(kNumJoints, shape.envs, shape.steps),
         mean(kNumJoints, shape.envs, shape.steps),
         symmetric_mean(kNumJoints, shape.envs, shape.steps),
+        teacher_mean(shape.teacher > 0 ? kNumJoints : 0, shape.envs, shape.steps),
+        teacher_encoding(shape.teacher, shape.envs, shape.steps),
         log_prob(shape.envs, shape.steps),
         value(shape.envs, shape.steps + 1),
         timeout_value(shape.envs, shape.steps),
-        initial_h(hidden, shape.envs, 1),
-        initial_c(hidden, shape.envs, 1),
+        initial_memory(memory, shape.envs, 1),
         log_std(Eigen::Matrix<Scalar, Eigen::Dynamic, 1>::Zero(kNumJoints)),
         advantage(shape.envs, shape.steps),
         value_target(shape.envs, shape.steps) {}
@@ -88,6 +99,8 @@ struct BasicRollout {
   VectorField<Scalar, Eigen::Dynamic> privileged;
   /// What the estimator should answer to observation(t), in units of its raw output.
   VectorField<Scalar, kEstimateSize> estimate_target;
+  /// What networks of a study see; no rows without one.
+  VectorField<Scalar, Eigen::Dynamic> insight;
   /// 1: the policy's memory is cleared before step t, because the robot was set up anew; else 0.
   ValueField<std::uint8_t> reset;
   // ... and after it.
@@ -102,14 +115,16 @@ struct BasicRollout {
   /// `mean` without what has long been different in the mirror (LearnerConfig::symmetry_steps):
   /// `mean` itself, if the policy is symmetric. Zero without a symmetry.
   VectorField<Scalar, kNumJoints> symmetric_mean;
+  /// What the teacher answers, and its encoding; no rows without one.
+  VectorField<Scalar, Eigen::Dynamic> teacher_mean;
+  VectorField<Scalar, Eigen::Dynamic> teacher_encoding;
   ValueField<Scalar> log_prob;
   ValueField<Scalar> value;
   /// Only for End::kTimeout: the critic's value of `final_privileged`. Written before the update.
   ValueField<Scalar> timeout_value;
 
   // Of the window as a whole: the policy's memory before step 0, and its log standard deviations.
-  VectorField<Scalar, Eigen::Dynamic> initial_h;
-  VectorField<Scalar, Eigen::Dynamic> initial_c;
+  VectorField<Scalar, Eigen::Dynamic> initial_memory;
   Eigen::Matrix<Scalar, Eigen::Dynamic, 1> log_std;
 
   // Written by compute_gae.

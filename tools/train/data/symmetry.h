@@ -24,6 +24,7 @@ struct Reflection {
 /// inverse.
 struct Symmetry {
   Reflection observation, action;
+  Reflection insight;  ///< where a network sees it
 };
 
 }  // namespace sandrunner::learner

@@ -16,6 +16,8 @@ void LossSums::add(const LossSums& other) {
   kl += other.kl;
   clipped += other.clipped;
   asymmetry += other.asymmetry;
+  imitation += other.imitation;
+  encoding += other.encoding;
   samples += other.samples;
 }
 
@@ -35,54 +37,103 @@ BlockPass<Scalar>::BlockPass(const ParameterLayout& layout, int steps, int envs,
       steps_(steps),
       envs_(envs),
       chunk_steps_(chunk_steps),
-      encoder_(kProprioceptionSize, layout.hidden(), steps, envs, kernels),
+      encoder_(make_encoder(layout, steps, envs, kernels)),
       estimator_(layout.estimator(), chunk_steps * envs, kernels),
       actor_(layout.actor(), chunk_steps * envs, kernels),
       critic_(layout.critic(), chunk_steps * envs, kernels),
-      actor_input_(kCommandSize + layout.hidden() + kEstimateSize, chunk_steps * envs),
+      estimate_row_(kCommandSize + (layout.sizes().actor_sees.encoding ? layout.hidden() : 0)),
+      proprioception_row_(estimate_row_ + (layout.sizes().actor_sees.estimate ? kEstimateSize : 0)),
+      terrain_row_(proprioception_row_ +
+                   (layout.sizes().actor_sees.proprioception ? kProprioceptionSize : 0)),
+      actor_input_(layout.actor_inputs(), chunk_steps * envs),
       critic_input_(layout.privileged(), chunk_steps * envs),
       output_gradient_(layout.hidden(), steps * envs) {}
+
+template <typename Scalar>
+typename BlockPass<Scalar>::Encoder BlockPass<Scalar>::make_encoder(
+    const ParameterLayout& layout, int steps, int envs, const Kernels<Scalar>& kernels) {
+  switch (layout.sizes().encoder) {
+    case EncoderKind::kTcn:
+      return Tcn<Scalar>(layout, steps, envs, kernels);
+    case EncoderKind::kInsight:
+      return InsightEncoder<Scalar>(layout, steps, envs, kernels);
+    case EncoderKind::kLstm:
+      break;
+  }
+  return Lstm<Scalar>(layout, steps, envs, kernels);
+}
+
+template <typename Scalar>
+const Matrix<Scalar>& BlockPass<Scalar>::encoding() const {
+  return std::visit([](const auto& e) -> const Matrix<Scalar>& { return e.output(); }, encoder_);
+}
+
+template <typename Scalar>
+void BlockPass<Scalar>::set_data(int first, const ConstMatrixRef<Scalar>& observation,
+                                 const ConstMatrixRef<Scalar>& insight) {
+  const ActorInputs& sees = layout_.sizes().actor_sees;
+  actor_input_.block(0, first, kCommandSize, envs_) = observation.topRows(kCommandSize);
+  if (sees.proprioception) {
+    actor_input_.block(proprioception_row_, first, kProprioceptionSize, envs_) =
+        observation.bottomRows(kProprioceptionSize);
+  }
+  if (sees.terrain) {
+    actor_input_.block(terrain_row_, first, kTerrainSize, envs_) = insight.topRows(kTerrainSize);
+  }
+}
+
+template <typename Scalar>
+template <typename Encoding, typename Estimate>
+void BlockPass<Scalar>::set_answers(const Encoding& h, const Estimate& estimate) {
+  const ActorInputs& sees = layout_.sizes().actor_sees;
+  if (sees.encoding) actor_input_.block(kCommandSize, 0, h.rows(), h.cols()) = h;
+  if (sees.estimate) {
+    actor_input_.block(estimate_row_, 0, kEstimateSize, estimate.cols()) = estimate;
+  }
+}
 
 template <typename Scalar>
 void BlockPass<Scalar>::run_heads(const Weights<Scalar>& weights,
                                   const BasicRollout<Scalar>& rollout, int t, int steps,
                                   int first_env, int window_step) {
   const int n = steps * envs_;
-  const auto h = encoder_.output().middleCols(window_step * envs_, n);
+  const auto h = encoding().middleCols(window_step * envs_, n);
   estimator_.forward(weights.estimator(), h);
   for (int k = 0; k < steps; ++k) {
-    const auto command = rollout.observation(t + k).middleCols(first_env, envs_);
-    actor_input_.block(0, k * envs_, kCommandSize, envs_) = command.topRows(kCommandSize);
+    set_data(k * envs_, rollout.observation(t + k).middleCols(first_env, envs_),
+             rollout.insight(t + k).middleCols(first_env, envs_));
     critic_input_.middleCols(k * envs_, envs_) =
         rollout.privileged(t + k).middleCols(first_env, envs_);
   }
-  actor_input_.block(kCommandSize, 0, layout_.hidden(), n) = h;
-  actor_input_.block(kCommandSize + layout_.hidden(), 0, kEstimateSize, n) = estimator_.output(n);
+  set_answers(h, estimator_.output(n));
   actor_.forward(weights.actor(), actor_input_.leftCols(n));
   critic_.forward(weights.critic(), critic_input_.leftCols(n));
 }
 
 template <typename Scalar>
 void BlockPass<Scalar>::act(const Weights<Scalar>& weights, BasicRollout<Scalar>& rollout, int t,
-                            int first_env, MatrixRef<Scalar> h, MatrixRef<Scalar> c) {
-  answer(weights, rollout.observation(t).middleCols(first_env, envs_), &rollout.reset(t, first_env),
-         h, c, rollout.mean(t).middleCols(first_env, envs_));
+                            int first_env, MatrixRef<Scalar> memory) {
+  answer(weights, rollout.observation(t).middleCols(first_env, envs_),
+         rollout.insight(t).middleCols(first_env, envs_), &rollout.reset(t, first_env), memory,
+         rollout.mean(t).middleCols(first_env, envs_));
   evaluate(weights, rollout, t, first_env);
 }
 
 template <typename Scalar>
 void BlockPass<Scalar>::answer(const Weights<Scalar>& weights,
-                               const ConstMatrixRef<Scalar>& observation, const std::uint8_t* reset,
-                               MatrixRef<Scalar> h, MatrixRef<Scalar> c, MatrixRef<Scalar> mean) {
-  encoder_.input(0) = observation.bottomRows(kProprioceptionSize);
-  encoder_.forward(weights.encoder(), h, c, reset, 0);
-  h = encoder_.output();
-  c = encoder_.last_cell();
-  estimator_.forward(weights.estimator(), encoder_.output());
-  actor_input_.block(0, 0, kCommandSize, envs_) = observation.topRows(kCommandSize);
-  actor_input_.block(kCommandSize, 0, layout_.hidden(), envs_) = encoder_.output();
-  actor_input_.block(kCommandSize + layout_.hidden(), 0, kEstimateSize, envs_) =
-      estimator_.output(envs_);
+                               const ConstMatrixRef<Scalar>& observation,
+                               const ConstMatrixRef<Scalar>& insight, const std::uint8_t* reset,
+                               MatrixRef<Scalar> memory, MatrixRef<Scalar> mean) {
+  std::visit(
+      [&](auto& encoder) {
+        encoder.set_input(0, observation, insight);
+        encoder.forward(weights.encoder(), memory, reset, 0);
+        encoder.remember(memory);
+      },
+      encoder_);
+  estimator_.forward(weights.estimator(), encoding());
+  set_data(0, observation, insight);
+  set_answers(encoding(), estimate());
   actor_.forward(weights.actor(), actor_input_.leftCols(envs_));
   mean = actor_.output(envs_);
 }
@@ -108,14 +159,17 @@ LossSums BlockPass<Scalar>::loss_and_gradient(const Weights<Scalar>& weights,
                                               const BasicRollout<Scalar>& rollout, int first_env,
                                               const LossConfig& config, const AdvantageScale& scale,
                                               int samples, Scalar* gradient) {
-  const auto initial_h = rollout.initial_h(0).middleCols(first_env, envs_);
-  const auto initial_c = rollout.initial_c(0).middleCols(first_env, envs_);
   const std::uint8_t* reset = &rollout.reset(0, first_env);
-  for (int t = 0; t < steps_; ++t) {
-    encoder_.input(t) =
-        rollout.observation(t).middleCols(first_env, envs_).bottomRows(kProprioceptionSize);
-  }
-  encoder_.forward(weights.encoder(), initial_h, initial_c, reset, rollout.shape.envs);
+  std::visit(
+      [&](auto& encoder) {
+        for (int t = 0; t < steps_; ++t) {
+          encoder.set_input(t, rollout.observation(t).middleCols(first_env, envs_),
+                            rollout.insight(t).middleCols(first_env, envs_));
+        }
+        encoder.forward(weights.encoder(), rollout.initial_memory(0).middleCols(first_env, envs_),
+                        reset, rollout.shape.envs);
+      },
+      encoder_);
   LossSums sums;
   output_gradient_.setZero();
   for (int t = 0; t < steps_; t += chunk_steps_) {
@@ -124,16 +178,22 @@ LossSums BlockPass<Scalar>::loss_and_gradient(const Weights<Scalar>& weights,
     run_heads(weights, rollout, t, steps, first_env, t);
     differentiate_loss(weights, rollout, t, steps, first_env, config, scale, samples, sums,
                        gradient);
+    if (rollout.shape.teacher > 0) {
+      differentiate_imitation(rollout, t, steps, first_env, config, samples, sums);
+    }
     critic_.backward(weights.critic(), critic_input_.leftCols(n), gradient);
     actor_.backward(weights.actor(), actor_input_.leftCols(n), gradient);
-    estimator_.backward(weights.estimator(), encoder_.output().middleCols(t * envs_, n), gradient);
-    // Of the actor's inputs only h: command is data, the estimate is detached.
+    estimator_.backward(weights.estimator(), encoding().middleCols(t * envs_, n), gradient);
+    // Of the actor's inputs only h: others are data, the estimate is detached.
     auto dh = output_gradient_.middleCols(t * envs_, n);
-    actor_.add_input_gradient(weights.actor(), dh);
+    if (layout_.sizes().actor_sees.encoding) actor_.add_input_gradient(weights.actor(), dh);
     estimator_.add_input_gradient(weights.estimator(), dh);
   }
-  encoder_.backward(weights.encoder(), output_gradient_, reset, rollout.shape.envs,
-                    gradient + layout_.encoder());
+  std::visit(
+      [&](auto& encoder) {
+        encoder.backward(weights.encoder(), output_gradient_, reset, rollout.shape.envs, gradient);
+      },
+      encoder_);
   return sums;
 }
 
@@ -146,6 +206,7 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
   const int n = steps * envs_;
   const Scalar inverse_samples = Scalar(1) / static_cast<Scalar>(samples);
   const auto clip = static_cast<Scalar>(config.clip);
+  const auto policy_factor = static_cast<Scalar>(config.policy_weight) * inverse_samples;
   const auto value_factor = static_cast<Scalar>(config.value_weight) * inverse_samples;
   const auto estimate_factor =
       static_cast<Scalar>(config.estimate_weight * 2.0 / kEstimateSize) * inverse_samples;
@@ -199,7 +260,7 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
     sums.clipped += is_clipped ? 1.0 : 0.0;
     sums.kl += static_cast<double>(kl_constant + static_cast<Scalar>(0.5) * shift_square);
     Scalar asymmetry = 0;
-    const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * inverse_samples;
+    const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * policy_factor;
     for (int k = 0; k < kActionSize; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const Scalar lopsided = (mean(k) - rollout.symmetric_mean(step)(k, env)) * inverse_old_std[i];
@@ -229,6 +290,27 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
   for (std::size_t k = 0; k < kActionSize; ++k) {
     gradient[layout_.log_std() + static_cast<std::ptrdiff_t>(k)] +=
         log_std_gradient[k] - entropy_gradient;
+  }
+}
+
+template <typename Scalar>
+void BlockPass<Scalar>::differentiate_imitation(const BasicRollout<Scalar>& rollout, int t,
+                                                int steps, int first_env, const LossConfig& config,
+                                                int samples, LossSums& sums) {
+  const int hidden = layout_.hidden();
+  const auto mean_factor =
+      static_cast<Scalar>(config.imitation_weight * 2.0 / kActionSize / samples);
+  const auto encoding_factor = static_cast<Scalar>(config.encoding_weight * 2.0 / hidden / samples);
+  for (int k = 0; k < steps; ++k) {
+    const Matrix<Scalar> off = actor_.output(steps * envs_).middleCols(k * envs_, envs_) -
+                               rollout.teacher_mean(t + k).middleCols(first_env, envs_);
+    const Matrix<Scalar> encoding_off =
+        encoding().middleCols((t + k) * envs_, envs_) -
+        rollout.teacher_encoding(t + k).middleCols(first_env, envs_);
+    sums.imitation += static_cast<double>(off.squaredNorm()) / kActionSize;
+    sums.encoding += static_cast<double>(encoding_off.squaredNorm()) / hidden;
+    actor_.output_gradient(steps * envs_).middleCols(k * envs_, envs_) += mean_factor * off;
+    output_gradient_.middleCols((t + k) * envs_, envs_) += encoding_factor * encoding_off;
   }
 }
 

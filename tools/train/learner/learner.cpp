@@ -67,15 +67,13 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       layout_(config.network, shape.privileged),
       pool_(pool),
       symmetry_(std::move(symmetry)),
-      rollout_(shape, config.network.hidden),
+      rollout_(shape, layout_.memory()),
       parameters_(initial_parameters(layout_, seed, config.action_std_start)),
       weights_(layout_),
       averaged_(parameters_),
       adam_(parameters_.size()),
-      h_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
-      c_(Matrix<float>::Zero(config.network.hidden, shape.envs)),
-      mirror_h_(h_),
-      mirror_c_(c_),
+      memory_(Matrix<float>::Zero(layout_.memory(), shape.envs)),
+      mirror_memory_(memory_),
       asymmetry_(Matrix<float>::Zero(kActionSize, shape.envs)) {
   if (!symmetry_) config_.loss.symmetry_weight = 0.0;
   counters_.seed = seed;
@@ -95,9 +93,9 @@ void Learner::act_block(int block, int t, int worker) {
   const int first = block * config_.block_envs;
   const int end = first + config_.block_envs;
   acting_[static_cast<std::size_t>(worker)].act(weights_, rollout_, t, first,
-                                                h_.middleCols(first, config_.block_envs),
-                                                c_.middleCols(first, config_.block_envs));
+                                                memory_.middleCols(first, config_.block_envs));
   if (symmetry_) act_in_mirror(block, t, worker);
+  if (teacher_) ask_teacher(block, t, worker);
 
   const std::uint64_t step = counters_.steps + static_cast<std::uint64_t>(t);
   const Eigen::Array<float, kActionSize, 1> std_dev = rollout_.log_std.array().exp();
@@ -119,18 +117,59 @@ void Learner::act_block(int block, int t, int worker) {
   }
 }
 
+void Learner::set_teacher(const ParameterLayout& layout, const std::vector<float>& parameters,
+                          const Kernels<float>& kernels) {
+  const auto widths = [](const ParameterLayout& l) {
+    std::vector<int> all = {l.hidden(), l.actor_inputs()};
+    for (const LayerView& layer : l.actor()) all.push_back(layer.outputs);
+    return join(all);
+  };
+  if (widths(layout) != widths(layout_)) {
+    throw InputError(fmt::format("teacher: found encoding and actor of sizes {}, expected {}",
+                                 widths(layout), widths(layout_)));
+  }
+  Teacher teacher{Weights<float>(layout),
+                  {},
+                  Matrix<float>::Zero(layout.memory(), rollout_.shape.envs),
+                  fnv1a({reinterpret_cast<const char*>(parameters.data()), 4 * parameters.size()})};
+  teacher.weights.set(parameters.data());
+  for (int worker = 0; worker < pool_.threads(); ++worker) {
+    teacher.passes.emplace_back(layout, 1, config_.block_envs, 1, kernels);
+  }
+  teacher_ = std::move(teacher);
+  for (std::size_t i = 0; i < layout_.actor().size(); ++i) {
+    const LayerView &from = layout.actor()[i], &to = layout_.actor()[i];
+    std::copy_n(parameters.begin() + from.weight, std::ptrdiff_t{from.inputs} * from.outputs,
+                parameters_.begin() + to.weight);
+    std::copy_n(parameters.begin() + from.bias, from.outputs, parameters_.begin() + to.bias);
+  }
+  averaged_ = parameters_;
+  begin_window();
+}
+
+void Learner::ask_teacher(int block, int t, int worker) {
+  const int first = block * config_.block_envs, envs = config_.block_envs;
+  BlockPass<float>& pass = teacher_->passes[static_cast<std::size_t>(worker)];
+  pass.answer(teacher_->weights, rollout_.observation(t).middleCols(first, envs),
+              rollout_.insight(t).middleCols(first, envs), &rollout_.reset(t, first),
+              teacher_->memory.middleCols(first, envs),
+              rollout_.teacher_mean(t).middleCols(first, envs));
+  rollout_.teacher_encoding(t).middleCols(first, envs) = pass.encoding();
+}
+
 void Learner::act_in_mirror(int block, int t, int worker) {
   const int first = block * config_.block_envs;
   Matrix<float> observation = rollout_.observation(t).middleCols(first, config_.block_envs);
-  std::array<float, kObservationSize> scratch;
+  Matrix<float> insight = rollout_.insight(t).middleCols(first, config_.block_envs);
+  std::array<float, std::max(kObservationSize, kInsightSize)> scratch;
   for (int i = 0; i < config_.block_envs; ++i) {
     symmetry_->observation.apply(observation.col(i), scratch.data());
+    if (insight.rows() > 0) symmetry_->insight.apply(insight.col(i), scratch.data());
   }
   Matrix<float> mean(kActionSize, config_.block_envs);
-  acting_[static_cast<std::size_t>(worker)].answer(weights_, observation, &rollout_.reset(t, first),
-                                                   mirror_h_.middleCols(first, config_.block_envs),
-                                                   mirror_c_.middleCols(first, config_.block_envs),
-                                                   mean);
+  acting_[static_cast<std::size_t>(worker)].answer(
+      weights_, observation, insight, &rollout_.reset(t, first),
+      mirror_memory_.middleCols(first, config_.block_envs), mean);
   const float share = 1.0f / static_cast<float>(config_.symmetry_steps);
   for (int i = 0; i < config_.block_envs; ++i) {
     symmetry_->action.apply(mean.col(i), scratch.data());
@@ -247,7 +286,9 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
 
   const double estimate_squares =
       std::accumulate(total.estimate_square.begin(), total.estimate_square.end(), 0.0);
-  if (!std::isfinite(norm + total.policy + total.value + estimate_squares + total.kl)) return false;
+  if (!std::isfinite(norm + total.policy + total.value + estimate_squares + total.kl +
+                     total.imitation))
+    return false;
   const double kl = total.kl / total.samples;
   for (std::size_t k = 0; k < kEstimateSize; ++k) {
     stats.estimate_rms[k] += total.estimate_square[k] / total.samples;
@@ -255,6 +296,8 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   stats.kl += kl;
   stats.clip_fraction += total.clipped / total.samples;
   if (symmetry_) stats.asymmetry += 2.0 * total.asymmetry / total.samples / kActionSize;
+  stats.imitation_rms += total.imitation / total.samples;
+  stats.encoding_rms += total.encoding / total.samples;
 
   counters_.learning_rate = adapted_learning_rate(counters_.learning_rate, kl, config_);
   const double scale = norm > config_.max_gradient_norm ? config_.max_gradient_norm / norm : 1.0;
@@ -304,12 +347,15 @@ UpdateStats Learner::update() {
   stats.kl /= done;
   stats.clip_fraction /= done;
   stats.asymmetry = std::sqrt(stats.asymmetry / done);
+  stats.imitation_rms = std::sqrt(stats.imitation_rms / done);
+  stats.encoding_rms = std::sqrt(stats.encoding_rms / done);
   stats.learning_rate = counters_.learning_rate;
 
   const int last = rollout_.shape.steps;
   rollout_.observation(0) = rollout_.observation(last);
   rollout_.privileged(0) = rollout_.privileged(last);
   rollout_.estimate_target(0) = rollout_.estimate_target(last);
+  rollout_.insight(0) = rollout_.insight(last);
   for (int env = 0; env < rollout_.shape.envs; ++env) {
     rollout_.reset(0, env) = rollout_.reset(last, env);
   }
@@ -328,18 +374,18 @@ UpdateStats Learner::update() {
 
 void Learner::begin_window() {
   weights_.set(parameters_.data());
-  rollout_.initial_h(0) = h_;
-  rollout_.initial_c(0) = c_;
+  rollout_.initial_memory(0) = memory_;
   rollout_.log_std =
       Eigen::Map<const Vector<float>>(parameters_.data() + layout_.log_std(), kActionSize);
 }
 
 std::string Learner::architecture() const {
   const NetworkSizes& network = config_.network;
-  return fmt::format("envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}",
-                     rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged,
-                     network.hidden, join(network.estimator), join(network.actor),
-                     join(network.critic));
+  return fmt::format(
+      "envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}{}",
+      rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged, network.hidden,
+      join(network.estimator), join(network.actor), join(network.critic),
+      network.are_a_robots() ? "" : ", " + wiring_text(network.encoder, network.actor_sees));
 }
 
 void Learner::save(Checkpoint& checkpoint) const {
@@ -351,10 +397,14 @@ void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.put("learner.averaged", averaged_.data(), averaged_.size());
   checkpoint.put("learner.adam_m", adam_.m.data(), adam_.m.size());
   checkpoint.put("learner.adam_v", adam_.v.data(), adam_.v.size());
-  checkpoint.put("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
-  checkpoint.put("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
-  checkpoint.put("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
-  checkpoint.put("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
+  checkpoint.put("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
+  checkpoint.put("learner.mirror_memory", mirror_memory_.data(),
+                 static_cast<std::size_t>(mirror_memory_.size()));
+  if (teacher_) {
+    checkpoint.put("learner.teacher", &teacher_->hash, 1);
+    checkpoint.put("learner.teacher_memory", teacher_->memory.data(),
+                   static_cast<std::size_t>(teacher_->memory.size()));
+  }
   checkpoint.put("learner.asymmetry", asymmetry_.data(),
                  static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.put("learner.reset", &rollout_.reset(0, 0),
@@ -366,6 +416,7 @@ void Learner::save(Checkpoint& checkpoint) const {
   put_first_step("learner.observation", rollout_.observation);
   put_first_step("learner.privileged", rollout_.privileged);
   put_first_step("learner.estimate_target", rollout_.estimate_target);
+  put_first_step("learner.insight", rollout_.insight);
 }
 
 void Learner::load(const Checkpoint& checkpoint) {
@@ -379,10 +430,19 @@ void Learner::load(const Checkpoint& checkpoint) {
   checkpoint.get("learner.averaged", averaged_.data(), averaged_.size());
   checkpoint.get("learner.adam_m", adam_.m.data(), adam_.m.size());
   checkpoint.get("learner.adam_v", adam_.v.data(), adam_.v.size());
-  checkpoint.get("learner.h", h_.data(), static_cast<std::size_t>(h_.size()));
-  checkpoint.get("learner.c", c_.data(), static_cast<std::size_t>(c_.size()));
-  checkpoint.get("learner.mirror_h", mirror_h_.data(), static_cast<std::size_t>(mirror_h_.size()));
-  checkpoint.get("learner.mirror_c", mirror_c_.data(), static_cast<std::size_t>(mirror_c_.size()));
+  checkpoint.get("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
+  checkpoint.get("learner.mirror_memory", mirror_memory_.data(),
+                 static_cast<std::size_t>(mirror_memory_.size()));
+  if (teacher_) {
+    std::uint64_t hash = 0;
+    checkpoint.get("learner.teacher", &hash, 1);
+    if (hash != teacher_->hash) {
+      throw InputError(fmt::format(
+          "{}: found another teacher than this; continue with the same one", checkpoint.source));
+    }
+    checkpoint.get("learner.teacher_memory", teacher_->memory.data(),
+                   static_cast<std::size_t>(teacher_->memory.size()));
+  }
   checkpoint.get("learner.asymmetry", asymmetry_.data(),
                  static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.get("learner.reset", &rollout_.reset(0, 0),
@@ -394,6 +454,7 @@ void Learner::load(const Checkpoint& checkpoint) {
   get_first_step("learner.observation", rollout_.observation);
   get_first_step("learner.privileged", rollout_.privileged);
   get_first_step("learner.estimate_target", rollout_.estimate_target);
+  get_first_step("learner.insight", rollout_.insight);
   counters_ = counters;
   adam_.step = counters.adam_steps;
   begin_window();

@@ -59,7 +59,9 @@ struct UpdateStats {
   double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
   double learning_rate = 0.0;       ///< after the update
   double action_std = 0.0;          ///< geometric mean, after the update
-  double asymmetry = 0.0;  ///< rms of mean less symmetric mean, in deviations of the action
+  double asymmetry = 0.0;      ///< rms of mean less symmetric mean, in deviations of the action
+  double imitation_rms = 0.0;  ///< of mean less the teacher's, in network units
+  double encoding_rms = 0.0;   ///< of encoding less the teacher's
 };
 
 /// Recurrent PPO with a supervised estimator. A window of training:
@@ -128,6 +130,11 @@ class Learner {
     averaged_ = parameters_;
     begin_window();
   }
+  /// Before the first step: the policy imitates these networks in the states that it visits itself
+  /// (Ross, Gordon, Bagnell 2011), and begins with their actor. Only with RolloutShape::teacher.
+  /// Throws InputError if encoding or actor are of other sizes.
+  void set_teacher(const ParameterLayout& layout, const std::vector<float>& parameters,
+                   const Kernels<float>& kernels = best_kernels<float>());
   /// The most noise that actions have from the next update on, even if that is less than
   /// `action_std_min`.
   void set_action_std_most(double action_std) { action_std_most_ = action_std; }
@@ -145,7 +152,16 @@ class Learner {
     double learning_rate = 0.0;
   };
 
+  // Networks that act in the rollout and do not learn.
+  struct Teacher {
+    Weights<float> weights;
+    std::vector<BlockPass<float>> passes;  // one a worker, one step
+    Matrix<float> memory;
+    std::uint64_t hash = 0;  // of its parameters
+  };
+
   std::string architecture() const;
+  void ask_teacher(int block, int t, int worker);
   void act_in_mirror(int block, int t, int worker);
   void value_timeouts(int first_env, int worker);
   void compute_advantages(UpdateStats& stats);
@@ -165,11 +181,10 @@ class Learner {
   std::vector<float> averaged_;
   double action_std_most_ = 1e3;
   Adam adam_;
-  Matrix<float> h_;  // memory of each environment
-  Matrix<float> c_;
-  Matrix<float> mirror_h_;  // of the policy that sees the mirror
-  Matrix<float> mirror_c_;
-  Matrix<float> asymmetry_;  // of each environment's answers, lately
+  Matrix<float> memory_;         // of each environment
+  Matrix<float> mirror_memory_;  // of the policy that sees the mirror
+  Matrix<float> asymmetry_;      // of each environment's answers, lately
+  std::optional<Teacher> teacher_;
   AdvantageScale advantage_scale_;
   std::vector<BlockPass<float>> acting_;       // one a worker, one step
   std::vector<BlockPass<float>> learning_;     // one a worker, a window

@@ -5,32 +5,33 @@
 
 namespace sandrunner::learner {
 template <typename Scalar>
-Lstm<Scalar>::Lstm(int inputs, int hidden, int steps, int envs, const Kernels<Scalar>& kernels)
+Lstm<Scalar>::Lstm(const ParameterLayout& layout, int steps, int envs,
+                   const Kernels<Scalar>& kernels)
     : kernels_(&kernels),
-      inputs_(inputs),
-      hidden_(hidden),
+      hidden_(layout.hidden()),
+      parameters_(layout.encoder()),
       steps_(steps),
       envs_(envs),
-      stacked_(Matrix<Scalar>::Zero(inputs + 1 + hidden, steps * envs)),
-      gates_(4 * hidden, steps * envs),
-      cell_(hidden, (steps + 1) * envs),
-      tanh_cell_(hidden, steps * envs),
-      output_(hidden, steps * envs),
-      cell_gradient_(hidden, envs),
-      recurrent_gradient_(hidden, envs) {
-  stacked_.row(inputs).setOnes();
+      stacked_(Matrix<Scalar>::Zero(inputs_ + 1 + hidden_, steps * envs)),
+      gates_(4 * hidden_, steps * envs),
+      cell_(hidden_, (steps + 1) * envs),
+      tanh_cell_(hidden_, steps * envs),
+      output_(hidden_, steps * envs),
+      cell_gradient_(hidden_, envs),
+      recurrent_gradient_(hidden_, envs) {
+  stacked_.row(inputs_).setOnes();
 }
 
 template <typename Scalar>
-void Lstm<Scalar>::forward(const LayerWeights<Scalar>& weights, const ConstMatrixRef<Scalar>& h0,
-                           const ConstMatrixRef<Scalar>& c0, const std::uint8_t* reset,
+void Lstm<Scalar>::forward(const std::vector<LayerWeights<Scalar>>& weights,
+                           const ConstMatrixRef<Scalar>& memory, const std::uint8_t* reset,
                            std::ptrdiff_t reset_stride) {
-  cell_.leftCols(envs_) = c0;
+  cell_.leftCols(envs_) = memory.bottomRows(hidden_);
   for (int t = 0; t < steps_; ++t) {
     const int first = t * envs_;
     auto h_before = stacked_.block(inputs_ + 1, first, hidden_, envs_);
     if (t == 0) {
-      h_before = h0;
+      h_before = memory.topRows(hidden_);
     } else {
       h_before = output_.middleCols(first - envs_, envs_);
     }
@@ -42,7 +43,7 @@ void Lstm<Scalar>::forward(const LayerWeights<Scalar>& weights, const ConstMatri
     }
     kernels_->multiply({.samples = envs_,
                         .a = rows_of(std::as_const(stacked_).middleCols(first, envs_)),
-                        .b = weights.forward,
+                        .b = weights.front().forward,
                         .c = rows_of(gates_.middleCols(first, envs_))});
     kernels_->lstm_forward(envs_, hidden_, gates_.col(first).data(), cell_.col(first).data(),
                            cell_.col(first + envs_).data(), tanh_cell_.col(first).data(),
@@ -51,9 +52,9 @@ void Lstm<Scalar>::forward(const LayerWeights<Scalar>& weights, const ConstMatri
 }
 
 template <typename Scalar>
-void Lstm<Scalar>::backward(const LayerWeights<Scalar>& weights, Matrix<Scalar>& output_gradient,
-                            const std::uint8_t* reset, std::ptrdiff_t reset_stride,
-                            Scalar* weight_gradient) {
+void Lstm<Scalar>::backward(const std::vector<LayerWeights<Scalar>>& weights,
+                            Matrix<Scalar>& output_gradient, const std::uint8_t* reset,
+                            std::ptrdiff_t reset_stride, Scalar* gradient) {
   cell_gradient_.setZero();
   for (int t = steps_ - 1; t >= 0; --t) {
     const int first = t * envs_;
@@ -64,7 +65,7 @@ void Lstm<Scalar>::backward(const LayerWeights<Scalar>& weights, Matrix<Scalar>&
     // Through the recurrence into h of the step before, except where a reset cut it.
     kernels_->multiply({.samples = envs_,
                         .a = rows_of(std::as_const(gates_).middleCols(first, envs_)),
-                        .b = weights.backward,
+                        .b = weights.front().backward,
                         .c = rows_of(recurrent_gradient_)});
     for (int env = 0; env < envs_; ++env) {
       if (reset[t * reset_stride + env] != 0) {
@@ -80,7 +81,7 @@ void Lstm<Scalar>::backward(const LayerWeights<Scalar>& weights, Matrix<Scalar>&
                           .columns = inputs,
                           .a = rows_of(std::as_const(gates_)),
                           .b = rows_of(std::as_const(stacked_)),
-                          .c = {weight_gradient, inputs}});
+                          .c = {gradient + parameters_, inputs}});
 }
 
 template class Lstm<float>;

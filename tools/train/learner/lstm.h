@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "tools/train/learner/matrix.h"
 #include "tools/train/learner/weights.h"
@@ -18,31 +19,39 @@ namespace sandrunner::learner {
 template <typename Scalar>
 class Lstm {
  public:
-  Lstm(int inputs, int hidden, int steps, int envs, const Kernels<Scalar>& kernels);
+  Lstm(const ParameterLayout& layout, int steps, int envs, const Kernels<Scalar>& kernels);
 
-  /// Input of step t, inputs x envs: to be filled before `forward`.
-  auto input(int t) { return stacked_.block(0, t * envs_, inputs_, envs_); }
+  /// What the environments observe in step t, 33 x envs: to be given before `forward`.
+  void set_input(int t, const ConstMatrixRef<Scalar>& observation,
+                 const ConstMatrixRef<Scalar>& /*insight*/) {
+    stacked_.block(0, t * envs_, inputs_, envs_) = observation.bottomRows(inputs_);
+  }
 
-  /// Runs all steps. h0, c0: state before the first step, hidden x envs. reset + t * reset_stride:
-  /// for each environment, whether its state is cleared before step t.
-  void forward(const LayerWeights<Scalar>& weights, const ConstMatrixRef<Scalar>& h0,
-               const ConstMatrixRef<Scalar>& c0, const std::uint8_t* reset,
+  /// Runs all steps. memory: [h; c] before the first step, 2 hidden x envs. reset + t *
+  /// reset_stride: for each environment, whether its memory is cleared before step t.
+  void forward(const std::vector<LayerWeights<Scalar>>& weights,
+               const ConstMatrixRef<Scalar>& memory, const std::uint8_t* reset,
                std::ptrdiff_t reset_stride);
 
   /// Outputs h of all steps: hidden x (steps * envs), column t * envs + env.
   const Matrix<Scalar>& output() const { return output_; }
-  /// Cell state after the last step, hidden x envs.
-  auto last_cell() const { return cell_.rightCols(envs_); }
+  /// Memory after the last step.
+  void remember(MatrixRef<Scalar> memory) const {
+    memory.topRows(hidden_) = output_.rightCols(envs_);
+    memory.bottomRows(hidden_) = cell_.rightCols(envs_);
+  }
 
-  /// After `forward`: adds dL/dW to `weight_gradient`, given dL/dh of the outputs (as `output`),
-  /// which it uses as working memory. Nothing flows back into h0, c0. Destroys what `forward` kept.
-  void backward(const LayerWeights<Scalar>& weights, Matrix<Scalar>& output_gradient,
-                const std::uint8_t* reset, std::ptrdiff_t reset_stride, Scalar* weight_gradient);
+  /// After `forward`: adds dL/dW to `gradient` (flat array), given dL/dh of the outputs (as
+  /// `output`), which it uses as working memory. Nothing flows back into the memory. Destroys what
+  /// `forward` kept.
+  void backward(const std::vector<LayerWeights<Scalar>>& weights, Matrix<Scalar>& output_gradient,
+                const std::uint8_t* reset, std::ptrdiff_t reset_stride, Scalar* gradient);
 
  private:
   const Kernels<Scalar>* kernels_;
-  int inputs_;
+  int inputs_ = kProprioceptionSize;
   int hidden_;
+  std::ptrdiff_t parameters_;
   int steps_;
   int envs_;
   Matrix<Scalar> stacked_;    // [x; 1; h before the step]

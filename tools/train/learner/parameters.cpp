@@ -17,14 +17,52 @@ constexpr float kForgetBias = 1.0f;  // the memory starts out remembering
 }  // namespace
 
 ParameterLayout::ParameterLayout(const NetworkSizes& sizes, int privileged)
-    : hidden_(sizes.hidden),
-      privileged_(privileged),
-      encoder_(add("encoder", 4 * sizes.hidden, kProprioceptionSize + 1 + sizes.hidden)),
-      estimator_(add_mlp("estimator", sizes.hidden, sizes.estimator, kEstimateSize)),
-      actor_(
-          add_mlp("actor", kCommandSize + sizes.hidden + kEstimateSize, sizes.actor, kActionSize)),
-      critic_(add_mlp("critic", privileged, sizes.critic, 1)),
-      log_std_(add("log_std", kActionSize, 1)) {}
+    : sizes_(sizes), privileged_(privileged) {
+  add_encoder();
+  estimator_ = add_mlp("estimator", sizes.hidden, sizes.estimator, kEstimateSize);
+  actor_ = add_mlp("actor", actor_inputs(), sizes.actor, kActionSize);
+  critic_ = add_mlp("critic", privileged, sizes.critic, 1);
+  log_std_ = add("log_std", kActionSize, 1);
+}
+
+int ParameterLayout::actor_inputs() const {
+  const ActorInputs& sees = sizes_.actor_sees;
+  return kCommandSize + (sees.encoding ? sizes_.hidden : 0) + (sees.estimate ? kEstimateSize : 0) +
+         (sees.proprioception ? kProprioceptionSize : 0) + (sees.terrain ? kTerrainSize : 0);
+}
+
+int ParameterLayout::memory() const {
+  switch (sizes_.encoder) {
+    case EncoderKind::kTcn:
+      return kTcnPast * kProprioceptionSize + 1;
+    case EncoderKind::kInsight:
+      return 0;
+    case EncoderKind::kLstm:
+      break;
+  }
+  return 2 * sizes_.hidden;
+}
+
+void ParameterLayout::add_encoder() {
+  const int hidden = sizes_.hidden;
+  switch (sizes_.encoder) {
+    case EncoderKind::kLstm:
+      encoder_ = add("encoder", 4 * hidden, kProprioceptionSize + 1 + hidden);
+      break;
+    case EncoderKind::kTcn: {
+      int inputs = kProprioceptionSize;
+      for (std::size_t i = 0; i < kTcnDilations.size(); ++i) {
+        add_layer("encoder", kTcnTaps * inputs, sizes_.channels, encoder_layers_);
+        inputs = sizes_.channels;
+      }
+      add_layer("encoder", inputs, hidden, encoder_layers_);
+      break;
+    }
+    case EncoderKind::kInsight:
+      encoder_layers_ = add_mlp("encoder", kInsightSize, sizes_.insight, hidden);
+      break;
+  }
+}
 
 std::ptrdiff_t ParameterLayout::add(std::string name, int rows, int cols) {
   const std::ptrdiff_t offset = size_;
@@ -39,14 +77,19 @@ std::vector<LayerView> ParameterLayout::add_mlp(const std::string& name, int inp
   widths.push_back(outputs);
   std::vector<LayerView> layers;
   for (const int width : widths) {
-    const std::string prefix = name + "." + std::to_string(layers.size());
-    LayerView layer{inputs, width, 0, 0};
-    layer.weight = add(prefix + ".weight", width, inputs);
-    layer.bias = add(prefix + ".bias", width, 1);
-    layers.push_back(layer);
+    add_layer(name, inputs, width, layers);
     inputs = width;
   }
   return layers;
+}
+
+void ParameterLayout::add_layer(const std::string& name, int inputs, int outputs,
+                                std::vector<LayerView>& layers) {
+  const std::string prefix = name + "." + std::to_string(layers.size());
+  LayerView layer{inputs, outputs, 0, 0};
+  layer.weight = add(prefix + ".weight", outputs, inputs);
+  layer.bias = add(prefix + ".bias", outputs, 1);
+  layers.push_back(layer);
 }
 
 std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64_t seed,
@@ -71,16 +114,21 @@ std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64
     }
   };
 
-  const int hidden = layout.hidden();
-  const int encoder_cols = kProprioceptionSize + 1 + hidden;
-  fill(layout.encoder(), static_cast<std::ptrdiff_t>(4 * hidden) * encoder_cols,
-       1.0 / std::sqrt(static_cast<double>(kProprioceptionSize + hidden)));
-  for (int row = 0; row < 4 * hidden; ++row) {
-    const bool forget_gate = row >= hidden && row < 2 * hidden;
-    const std::ptrdiff_t bias =
-        layout.encoder() + static_cast<std::ptrdiff_t>(row) * encoder_cols + kProprioceptionSize;
-    parameters[static_cast<std::size_t>(bias)] = forget_gate ? kForgetBias : 0.0f;
-  }
+  const auto fill_lstm = [&] {
+    const int hidden = layout.hidden();
+    const int encoder_cols = kProprioceptionSize + 1 + hidden;
+    fill(layout.encoder(), static_cast<std::ptrdiff_t>(4 * hidden) * encoder_cols,
+         1.0 / std::sqrt(static_cast<double>(kProprioceptionSize + hidden)));
+    for (int row = 0; row < 4 * hidden; ++row) {
+      const bool forget_gate = row >= hidden && row < 2 * hidden;
+      const std::ptrdiff_t bias =
+          layout.encoder() + static_cast<std::ptrdiff_t>(row) * encoder_cols + kProprioceptionSize;
+      parameters[static_cast<std::size_t>(bias)] = forget_gate ? kForgetBias : 0.0f;
+    }
+  };
+
+  if (layout.encoder_layers().empty()) fill_lstm();
+  fill_mlp(layout.encoder_layers(), 1.0);
   fill_mlp(layout.estimator(), 1.0);
   fill_mlp(layout.actor(), kActorOutputScale);
   fill_mlp(layout.critic(), kCriticOutputScale);

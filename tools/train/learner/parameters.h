@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "rt/core/messages.h"
+#include "tools/train/data/rollout.h"
+#include "tools/train/learner/wiring.h"
 
 namespace sandrunner::learner {
 
@@ -18,13 +20,26 @@ namespace sandrunner::learner {
 inline constexpr int kProprioceptionSize = kObservationSize - kCommandSize;
 inline constexpr int kActionSize = kNumJoints;
 
-/// Widths of the hidden layers; the defaults are the paper's (critic: ours, the paper does not give
-/// it).
+/// Widths of the hidden layers, and how the networks are wired; the defaults are the paper's
+/// (critic: ours, the paper does not give it).
 struct NetworkSizes {
-  int hidden = 64;  ///< of the LSTM
+  int hidden = 64;  ///< size of the encoding
   std::vector<int> estimator = {128, 128};
   std::vector<int> actor = {256, 128};
   std::vector<int> critic = {256, 128};
+  EncoderKind encoder = EncoderKind::kLstm;
+  ActorInputs actor_sees = {};
+  std::vector<int> insight = {72};  ///< hidden layers of EncoderKind::kInsight
+
+  int channels = 40;  ///< of each layer of EncoderKind::kTcn
+
+  /// Networks as a policy file holds them, which a robot can run.
+  bool are_a_robots() const {
+    return encoder == EncoderKind::kLstm && actor_sees.encoding && actor_sees.estimate &&
+           !actor_sees.proprioception && !actor_sees.terrain;
+  }
+  /// A network sees BasicRollout::insight.
+  bool see_insight() const { return encoder == EncoderKind::kInsight || actor_sees.terrain; }
 };
 
 /// A tensor within the flat array: row-major, starting at `offset`.
@@ -50,12 +65,20 @@ class ParameterLayout {
 
   std::ptrdiff_t size() const { return size_; }
   const std::vector<TensorView>& tensors() const { return tensors_; }
-  int hidden() const { return hidden_; }
+  const NetworkSizes& sizes() const { return sizes_; }
+  int hidden() const { return sizes_.hidden; }
   int privileged() const { return privileged_; }
+  /// Rows of what the encoder remembers from one step to the next: h and c of an LSTM, past
+  /// observations and the number of those that count of a TCN.
+  int memory() const;
+  /// Rows of what the actor sees.
+  int actor_inputs() const;
 
   /// LSTM as one matrix [W_ih | bias | W_hh], (4 hidden) x (30 + 1 + hidden), rows in gate order i,
   /// f, g, o.
   std::ptrdiff_t encoder() const { return encoder_; }
+  /// The layers of an encoder of another kind.
+  const std::vector<LayerView>& encoder_layers() const { return encoder_layers_; }
   const std::vector<LayerView>& estimator() const { return estimator_; }
   const std::vector<LayerView>& actor() const { return actor_; }
   const std::vector<LayerView>& critic() const { return critic_; }
@@ -63,15 +86,18 @@ class ParameterLayout {
   std::ptrdiff_t log_std() const { return log_std_; }
 
  private:
+  void add_encoder();
   std::ptrdiff_t add(std::string name, int rows, int cols);
   std::vector<LayerView> add_mlp(const std::string& name, int inputs,
                                  const std::vector<int>& hidden, int outputs);
+  void add_layer(const std::string& name, int inputs, int outputs, std::vector<LayerView>& layers);
 
-  int hidden_;
+  NetworkSizes sizes_;
   int privileged_;
   std::ptrdiff_t size_ = 0;
   std::vector<TensorView> tensors_;
-  std::ptrdiff_t encoder_;
+  std::ptrdiff_t encoder_ = 0;
+  std::vector<LayerView> encoder_layers_;
   std::vector<LayerView> estimator_;
   std::vector<LayerView> actor_;
   std::vector<LayerView> critic_;
@@ -91,7 +117,7 @@ struct PolicyTensor {
   std::vector<float> values;
 };
 
-/// What a policy file holds of the networks: encoder.{weight_ih, weight_hh, bias_ih, bias_hh}
+/// What a policy file holds of a robot's networks: encoder.{weight_ih, weight_hh, bias_ih, bias_hh}
 /// (bias_hh is zero: one bias is enough), estimator.N.{weight, bias}, actor.N.{weight, bias}.
 std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
                                          const std::vector<float>& parameters);

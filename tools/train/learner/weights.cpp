@@ -36,19 +36,28 @@ void pack_layers(const std::vector<LayerView>& views, const Scalar* parameters, 
 template <typename Scalar>
 Weights<Scalar>::Weights(const ParameterLayout& layout)
     : layout_(layout),
-      encoder_{Panels<Scalar>(kProprioceptionSize + 1 + layout.hidden(), 4 * layout.hidden()),
-               Panels<Scalar>(4 * layout.hidden(), layout.hidden())},
+      encoder_(make_layers<Scalar>(layout.encoder_layers(), 0)),
       estimator_(make_layers<Scalar>(layout.estimator(), layout.hidden())),
-      actor_(make_layers<Scalar>(layout.actor(), layout.hidden())),
+      actor_(make_layers<Scalar>(layout.actor(),
+                                 layout.sizes().actor_sees.encoding ? layout.hidden() : 0)),
       critic_(make_layers<Scalar>(layout.critic(), 0)),
-      log_std_(kActionSize) {}
+      log_std_(kActionSize) {
+  if (layout.encoder_layers().empty()) {
+    encoder_.push_back(
+        {Panels<Scalar>(kProprioceptionSize + 1 + layout.hidden(), 4 * layout.hidden()),
+         Panels<Scalar>(4 * layout.hidden(), layout.hidden())});
+  }
+}
 
 template <typename Scalar>
 void Weights<Scalar>::set(const Scalar* parameters) {
-  const Scalar* encoder = parameters + layout_.encoder();
-  const int inputs = kProprioceptionSize + 1 + layout_.hidden();
-  encoder_.forward.pack(encoder, 1, inputs);
-  encoder_.backward.pack(encoder + kProprioceptionSize + 1, inputs, 1);
+  if (layout_.encoder_layers().empty()) {
+    const Scalar* encoder = parameters + layout_.encoder();
+    const int inputs = kProprioceptionSize + 1 + layout_.hidden();
+    encoder_.front().forward.pack(encoder, 1, inputs);
+    encoder_.front().backward.pack(encoder + kProprioceptionSize + 1, inputs, 1);
+  }
+  pack_layers(layout_.encoder_layers(), parameters, 0, encoder_);
   pack_layers(layout_.estimator(), parameters, 0, estimator_);
   pack_layers(layout_.actor(), parameters, kCommandSize, actor_);
   pack_layers(layout_.critic(), parameters, 0, critic_);

@@ -25,11 +25,12 @@ class Weights {
   /// parameters: the flat array of the layout.
   void set(const Scalar* parameters);
 
-  /// [W_ih | bias | W_hh]; backwards to h.
-  const LayerWeights<Scalar>& encoder() const { return encoder_; }
+  /// LSTM: one matrix [W_ih | bias | W_hh]; backwards to h. Others: their layers; not back to the
+  /// inputs.
+  const std::vector<LayerWeights<Scalar>>& encoder() const { return encoder_; }
   /// Backwards to h.
   const std::vector<LayerWeights<Scalar>>& estimator() const { return estimator_; }
-  /// Backwards to h, the middle part of its inputs.
+  /// Backwards to h, if that is among its inputs.
   const std::vector<LayerWeights<Scalar>>& actor() const { return actor_; }
   /// Not back to its inputs, which are data.
   const std::vector<LayerWeights<Scalar>>& critic() const { return critic_; }
@@ -38,7 +39,7 @@ class Weights {
 
  private:
   ParameterLayout layout_;
-  LayerWeights<Scalar> encoder_;
+  std::vector<LayerWeights<Scalar>> encoder_;
   std::vector<LayerWeights<Scalar>> estimator_;
   std::vector<LayerWeights<Scalar>> actor_;
   std::vector<LayerWeights<Scalar>> critic_;

@@ -19,6 +19,12 @@ std::array<float, kEstimateSize> Task::truth(const Env& e,
   return out;
 }
 
+// Of the patch under the base.
+const TerrainFeatures& Task::features_under(const Env& e,
+                                            const sim::RobotState<float>& state) const {
+  return e.ground_features[static_cast<std::size_t>(e.terrain.region_at(state.rigid.position.x))];
+}
+
 void Task::privileged(const Env& e, const sim::RobotState<float>& state,
                       const sim::BatchReport<float>& report, float* out) const {
   const sim::SensorReading exact = sim::read_sensors(state.rigid, {});
@@ -37,8 +43,8 @@ void Task::privileged(const Env& e, const sim::RobotState<float>& state,
     *out++ = std::clamp(20.0f * report.penetration[l], -3.0f, 3.0f);
   }
   for (int j = 0; j < kNumJoints; ++j) *out++ = 0.5f * e.action[j];
-  const auto patch = static_cast<std::size_t>(e.terrain.region_at(state.rigid.position.x));
-  for (float f : e.ground_features[patch]) *out++ = f;
+  const TerrainFeatures& ground = features_under(e, state);
+  for (int i = 0; i < kGroundFeatures; ++i) *out++ = ground[i];
   for (float f : e.robot_features) *out++ = f;
 }
 
@@ -65,6 +71,12 @@ void Task::observe_env(int env, int t, learner::Rollout& rollout) {
     target[i] = std::clamp((estimate[i] - scales_.estimate_mean[i]) / scales_.estimate_deviation[i],
                            -6.0f, 6.0f);
   }
+  if (rollout.shape.insight == 0) return;
+  float* insight = rollout.insight(t).col(env).data();
+  insight = std::ranges::copy(features_under(e, state), insight).out;
+  insight = std::copy(target.begin(), target.end(), insight);
+  for (const std::int32_t steps : e.unloaded_steps)
+    *insight++ = steps < kUnloadedSteps ? 1.0f : 0.0f;
 }
 
 void Task::observe(int block, int t, learner::Rollout& rollout) {
@@ -95,6 +107,10 @@ learner::Symmetry Task::symmetry() {
   add(s.observation, {-1, 1, -1});      // angular velocity
   add_legs(s.observation, {-1, 1, 1});  // joint positions less nominal, and velocities
   add_legs(s.observation, {-1, 1, 1});
+  for (int i = 0; i < learner::kTerrainSize; ++i) add(s.insight, {1});
+  add(s.insight, {1, 1, -1, 1});  // body height, velocity
+  add_legs(s.insight, {1});       // foot heights
+  add_legs(s.insight, {1});       // loaded feet
   // Modes of the legs: pronk and bound are their own images, pace and trot begin with the other
   // side.
   for (const float side : {1.0f, 1.0f, -1.0f, -1.0f}) add(s.action, {-side, side, side});

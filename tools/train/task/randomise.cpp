@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/cost_of_transport.h"
 #include "rt/core/command_shaping.h"
 #include "sim/lanes/random.h"
 #include "sim/step/actuator.h"
@@ -83,8 +84,31 @@ void Task::approach_target(Env& e) const {
   }
 }
 
+TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor) {
+  const auto f = [](double value) { return static_cast<float>(value); };
+  const float friction = f(3.0 * (p.friction - 0.75));
+  switch (p.kind) {
+    case sim::GroundKind::kLinear:
+      return {0.0f, f(std::log10(p.stiffness_npm / 10e3)), f(4.0 * (factor - 0.55)), friction};
+    case sim::GroundKind::kRigid:
+      return {1.0f, 2.0f, 2.0f, friction, f(2.0 * (factor - 0.65)), f(100.0 * p.roughness_m)};
+    case sim::GroundKind::kGranular:
+      break;
+  }
+  return {0.0f,
+          f(std::log10(p.sigma_flat_npm3 / 3e6)),
+          f(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
+          friction,
+          f(2.0 * (factor - 0.65)),
+          f(100.0 * p.roughness_m),
+          f((p.recruitment - 2.0) / 0.3),
+          f((p.cone_angle_rad / kDegree_rad - 60.0) / 4.0),
+          f((p.stroke_stiffness_npm - 225.0) / 175.0),
+          f((p.stroke_damping_nspm - 2.0) / 2.0)};
+}
+
 sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
-                                      std::array<float, kGroundFeatures>& features) const {
+                                      TerrainFeatures& features) const {
   const GroundSettings& g = config_.ground;
   sim::GroundParameters p;
   p.friction = uniform(env, e, g.friction_low, g.friction_high);
@@ -105,12 +129,7 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     }
     const double ratio = uniform(env, e, g.spring_damping_ratio_low, g.spring_damping_ratio_high);
     p.damping_nspm = spring_damping_nspm(p.stiffness_npm, ratio, robot_.model.mass());
-    features = {0.0f,
-                static_cast<float>(std::log10(p.stiffness_npm / 10e3)),
-                static_cast<float>(4.0 * (ratio - 0.55)),
-                static_cast<float>(3.0 * (p.friction - 0.75)),
-                0.0f,
-                0.0f};
+    features = terrain_features(p, ratio);
     return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
   } else {
     const double open = curriculum_.ground;
@@ -132,12 +151,7 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     p.stroke_stiffness_npm = uniform(env, e, g.stroke_stiffness_low, g.stroke_stiffness_high);
     p.stroke_damping_nspm = uniform(env, e, g.stroke_damping_low, g.stroke_damping_high);
   }
-  features = {rigid ? 1.0f : 0.0f,
-              rigid ? 2.0f : static_cast<float>(std::log10(p.sigma_flat_npm3 / 3e6)),
-              rigid ? 2.0f : static_cast<float>(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
-              static_cast<float>(3.0 * (p.friction - 0.75)),
-              static_cast<float>(2.0 * (inertial - 0.65)),
-              static_cast<float>(100.0 * p.roughness_m)};
+  features = terrain_features(p, inertial);
   return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
 }
 
@@ -185,23 +199,48 @@ void Task::new_robot(int env, Env& e) {
     leg.foot = leg.foot + sim::Vec3<double>{uniform(env, e, -d, d), uniform(env, e, -d, d),
                                             uniform(env, e, -d, d)};
   }
+  new_joints(env, e, m);
   batch_.set_model(env, sim::convert_model<float>(m));
   sim::BatchDrive<float>& drive = e.drive;
   drive.kp = static_cast<float>(config_.policy.kp_nmprad * spread(r.kp_spread));
   drive.kd = static_cast<float>(config_.policy.kd_nmsprad * spread(r.kd_spread));
   drive.torque_scale = static_cast<float>(spread(r.torque_spread));
-  const sim::TorqueSpeedLine& line = robot_.torque_speed_line;
-  drive.stall_torque_nm = r.torque_speed_line ? static_cast<float>(line.stall_torque_nm) : 0.0f;
-  drive.inverse_no_load_speed = static_cast<float>(1.0 / line.no_load_speed_radps);
+  drive.line = {};
+  if (r.torque_speed_line) drive.line = sim::drive_line<float>(robot_.torque_speed_line);
+  drive.heat_factor = heat_factors<float>(robot_.motor_constant_nmpsqrtw);
   const double latency_s = r.latency_s[static_cast<std::size_t>(3.0 * uniform(env, e))];
-  drive.switch_tick = static_cast<float>(std::round(latency_s * kSimulationHz));
+  set_latency(e, latency_s);
   const double offset = config_.noise.joint_offset_rad;
   for (float& o : e.sensors.joint_offset_rad) {
     o = static_cast<float>(uniform(env, e, -offset, offset));
   }
   e.noise_level = static_cast<float>(uniform(env, e, 0.0, config_.noise.level_high));
   e.robot_features = {static_cast<float>(5.0 * (base_factor - 1.0)),
-                      drive.switch_tick / kStepsPerAction - 1.0f};
+                      static_cast<float>(e.latency_ticks) / kStepsPerAction - 1.0f};
+}
+
+// Friction and rotors: nothing is drawn where nothing differs, so that the other draws stay.
+void Task::new_joints(int env, Env& e, sim::RobotModel<double>& m) const {
+  const RobotSettings& r = config_.robot;
+  const bool rubs = *std::ranges::max_element(m.friction_nm) > 0.0;
+  if (rubs && r.friction_spread > 0.0) {
+    const double factor = uniform(env, e, 1.0 - r.friction_spread, 1.0 + r.friction_spread);
+    for (double& friction_nm : m.friction_nm) friction_nm *= factor;
+  }
+  if (r.rotor_inertia_low == r.rotor_inertia_high) return;
+  for (int kind = 0; kind < kJointsPerLeg; ++kind) {
+    const double factor =
+        log_between(r.rotor_inertia_low, r.rotor_inertia_high, uniform(env, e), 1.0);
+    for (int l = 0; l < kNumLegs; ++l) m.rotor_inertia[kJointsPerLeg * l + kind] *= factor;
+  }
+}
+
+// A delay of more than a policy step makes all actions a step late.
+void Task::set_latency(Env& e, double latency_s) {
+  e.latency_ticks = static_cast<std::int32_t>(std::round(latency_s * kSimulationHz));
+  const std::int32_t within =
+      e.latency_ticks > kStepsPerAction ? e.latency_ticks - kStepsPerAction : e.latency_ticks;
+  e.drive.switch_tick = static_cast<float>(within);
 }
 
 void Task::hard_reset(int env, Env& e, double nominal_share) {
@@ -229,7 +268,8 @@ void Task::hard_reset(int env, Env& e, double nominal_share) {
   for (int j = 0; j < kNumJoints; ++j) {
     x.q[j] = static_cast<float>(robot_.nominal_rad[j] +
                                 off * uniform(env, e, -s.reset_joint_rad, s.reset_joint_rad));
-    e.drive.target_before[j] = e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]);
+    e.drive.target_before[j] = e.drive.target[j] = e.newest_target[j] =
+        static_cast<float>(robot_.nominal_rad[j]);
   }
   const auto draw = [&](double width) {
     return static_cast<float>(uniform(env, e, -width, width));
@@ -265,11 +305,12 @@ void Task::begin_trial(int env, const Trial& trial) {
   hard_reset(env, e, trial.nominal_start ? 1.0 : 0.0);
   e.terrain = *trial.terrain;
   batch_.set_terrain(env, e.terrain);
+  e.ground_features[0] = trial.features;
   e.command = {};
   e.target = trial.command;
   e.stand_steps_left = static_cast<std::int32_t>(kPolicyHz * trial.stand_s);
   e.command_steps_left = std::numeric_limits<std::int32_t>::max();
-  e.drive.switch_tick = static_cast<float>(std::round(trial.latency_s * kSimulationHz));
+  set_latency(e, trial.latency_s);
 }
 
 // The robot goes on as it is, perhaps on other ground.

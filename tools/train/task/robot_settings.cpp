@@ -76,7 +76,10 @@ void check_robot(const TaskConfig& config, const sim::Robot& robot) {
 
 void add_training_layers(ConfigTree& config, const sim::Robot& robot) {
   config.add_text(embedded_train_file("training.toml"), "training.toml");
-  config.add_text(robot_settings(robot), fmt::format("robot '{}'", robot.description.name));
+  const std::string& name = robot.description.name;
+  config.add_text(robot_settings(robot), fmt::format("robot '{}'", name));
+  const std::string own = name + ".toml";
+  config.add_text(embedded_train_file(own), own);
 }
 
 }  // namespace sandrunner::train

@@ -20,8 +20,8 @@ std::string robot_settings(const sim::Robot& robot);
 /// limits; a nominal pose that is not its own mirror image.
 void check_robot(const TaskConfig& config, const sim::Robot& robot);
 
-/// The settings of a training of `robot`, from the weakest layer up: training.toml, and what is
-/// derived from the robot.
+/// The settings of a training of `robot`, from the weakest layer up: training.toml, what is derived
+/// from the robot, and what has been found better for a robot of this name (tools/train/go2.toml).
 void add_training_layers(ConfigTree& config, const sim::Robot& robot);
 
 }  // namespace sandrunner::train

@@ -77,6 +77,7 @@ void Task::set_targets(int env, const float* action) {
   e.action_2 = e.action_1;
   e.action_1 = e.action;
   e.drive.target_before = e.drive.target;
+  const bool a_step_late = e.latency_ticks > kStepsPerAction;
   if (config_.policy.in_joints) {
     std::copy_n(action, kNumJoints, e.action.begin());
   } else {
@@ -84,7 +85,9 @@ void Task::set_targets(int env, const float* action) {
   }
   for (int j = 0; j < kNumJoints; ++j) {
     e.action[j] = std::clamp(e.action[j], -clip, clip);
-    e.drive.target[j] = static_cast<float>(robot_.nominal_rad[j]) + scale * e.action[j];
+    const float target = static_cast<float>(robot_.nominal_rad[j]) + scale * e.action[j];
+    e.drive.target[j] = a_step_late ? e.newest_target[j] : target;
+    e.newest_target[j] = target;
   }
   batch_.set_drive(env, e.drive);
 }

@@ -35,6 +35,16 @@ struct CommandRange {
   double forward_mps = 0, backward_mps = 0, lateral_mps = 0, yaw_radps = 0;
 };
 
+/// What an oracle and the critic see of a ground.
+using TerrainFeatures = std::array<float, learner::kTerrainSize>;
+
+/// Those of a ground, scaled to about +-1; the critic sees the first six. `factor`: added mass and
+/// drag of a soil over the usual ones, or the damping ratio of a spring. Hard ground: 1, 2, 2,
+/// friction, factor, roughness and zeros. Soil: 0, both stress gradients (logarithms), friction,
+/// factor, 0, recruitment, cone angle, stiffness and damping of a stroke. Spring: 0, stiffness
+/// (logarithm), factor, friction and zeros.
+TerrainFeatures terrain_features(const sim::GroundParameters& ground, double factor);
+
 /// How many environments there are, and how many of them make a block, a multiple of 16; how many
 /// of them a core steps at once.
 struct TaskShape {
@@ -60,6 +70,7 @@ struct Trial {
   std::array<float, 3> command{};                ///< vx, vy (m/s), yaw rate (rad/s)
   double stand_s = 0.0;                          ///< before the command rises
   double latency_s = 0.0;                        ///< of the action
+  TerrainFeatures features{};                    ///< of the ground
   bool nominal_start = false;  ///< exactly in the nominal pose, at rest; else disturbed
 };
 
@@ -79,7 +90,8 @@ class Task {
   /// Left and right exchanged: the robot and its task are the same in the mirror.
   static learner::Symmetry symmetry();
 
-  /// Writes observation(t), privileged(t) and estimate_target(t) of a block.
+  /// Writes observation(t), privileged(t), estimate_target(t) and, if the rollout has rows for it,
+  /// insight(t) of a block.
   void observe(int block, int t, learner::Rollout& rollout);
   /// Takes action(t) of a block and advances its robots by 10 ms. Writes reward(t), end(t) and, at
   /// a timeout, final_privileged(t); resets robots whose episode is over; writes reset(t + 1) and
@@ -119,7 +131,7 @@ class Task {
   static constexpr int kPrivileged =
       kObservationSize + kEstimateSize + 4 * kNumLegs + kNumJoints + 8;
 
-  static constexpr int kGroundFeatures = 6;
+  static constexpr int kGroundFeatures = 6;     // that the critic sees
   static constexpr std::size_t kSigmaFlat = 1;  // of them: rises with the stiffness
   static constexpr int kUnloadedSteps = 2;  // after which a foot without a load counts as lifted
 
@@ -137,8 +149,10 @@ class Task {
     std::array<float, 3> drift{};  // vx, vy, yaw rate, low-passed
     float noise_level = 1.0f;
     // For the critic: of each patch of ground, and of the robot.
-    std::array<std::array<float, kGroundFeatures>, sim::kMaxRegions> ground_features{};
+    std::array<TerrainFeatures, sim::kMaxRegions> ground_features{};
     std::array<float, 2> robot_features{};
+    std::int32_t latency_ticks = 0;     // of the action, in steps of the simulation
+    JointArray<float> newest_target{};  // of the latest action, rad
     sim::BatchDrive<float> drive;
     sim::Terrain<float> terrain;
   };
@@ -155,16 +169,18 @@ class Task {
   }
   void new_command(int env, Env& e) const;
   void approach_target(Env& e) const;
-  sim::Ground<double> draw_ground(int env, Env& e, bool rigid,
-                                  std::array<float, kGroundFeatures>& features) const;
+  sim::Ground<double> draw_ground(int env, Env& e, bool rigid, TerrainFeatures& features) const;
   void new_ground(int env, Env& e, float x_m);
   void new_robot(int env, Env& e);
+  void new_joints(int env, Env& e, sim::RobotModel<double>& model) const;
+  static void set_latency(Env& e, double latency_s);
   void hard_reset(int env, Env& e, double nominal_share);
   void soft_reset(int env, Env& e, float x_m);
   bool push(int env, Env& e, sim::RobotState<float>& state) const;
   bool loosen(int env, Env& e, sim::RobotState<float>& state) const;
 
   // observe.cpp: what is shown.
+  const TerrainFeatures& features_under(const Env& e, const sim::RobotState<float>& state) const;
   std::array<float, kEstimateSize> truth(const Env& e, const sim::RobotState<float>& state) const;
   void observe_env(int env, int t, learner::Rollout& rollout);
   void policy_input(int env, Env& e, const sim::RobotState<float>& state, float* out) const;

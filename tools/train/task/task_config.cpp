@@ -106,6 +106,9 @@ constexpr Setting<R> kRobot[] = {
     {"kp_spread", &R::kp_spread, 0.0, 0.9},
     {"kd_spread", &R::kd_spread, 0.0, 0.9},
     {"torque_spread", &R::torque_spread, 0.0, 0.9},
+    {"friction_spread", &R::friction_spread, 0.0, 1.0},
+    {"rotor_inertia_low", &R::rotor_inertia_low, 0.1, 10.0},
+    {"rotor_inertia_high", &R::rotor_inertia_high, 0.1, 10.0},
 };
 
 using N = NoiseSettings;
@@ -162,7 +165,9 @@ RobotSettings read_robot_settings(ConfigTree& config) {
   RobotSettings r;
   read_numbers(config, "robot", kRobot, r);
   read_array(config, "robot.base_com_m", 0.0, 1.0, r.base_com_m);
-  read_array(config, "robot.latency_s", 0.0, 1.0 / kPolicyHz, r.latency_s);
+  read_array(config, "robot.latency_s", 0.0, 2.0 / kPolicyHz, r.latency_s);
+  require_order("robot.rotor_inertia_low", r.rotor_inertia_low, "robot.rotor_inertia_high",
+                r.rotor_inertia_high);
   require_key(config, "robot.torque_speed_line");
   r.torque_speed_line = config.flag("robot.torque_speed_line", true);
   return r;

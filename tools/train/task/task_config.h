@@ -61,8 +61,8 @@ struct CommandSettings {
   double change_s = 0;              ///< mean time between commands
   double ramp_share = 0;  ///< of the changes that come as ramps, after a draw not forward ...
   double forward_ramp_share = 0;  ///< ... and forward; the others come at once
-  double start_stand_s = 0;      ///< longest time that a start in the nominal pose is told to stand
-  double acceleration_mps2 = 0;  ///< of a ramp, and of the command after a start, of vx and of vy
+  double start_stand_s = 0;       ///< longest command to stand after a start in the nominal pose
+  double acceleration_mps2 = 0;   ///< of a ramp, and of the command after a start, of vx and of vy
   double yaw_acceleration_radps2 = 0;  ///< likewise
   double centripetal_mps2 = 0;         ///< limit of speed times yaw rate
   double gate_kernel = 0;  ///< least velocity kernel, 0 to 1, at which the top speed rises
@@ -118,12 +118,15 @@ inline double spring_damping_nspm(double stiffness_npm, double ratio, double rob
 
 /// How robots differ from the one in the robot's file.
 struct RobotSettings {
-  double base_mass_spread = 0;         ///< relative
-  double link_mass_spread = 0;         ///< relative
-  double foot_position_m = 0;          ///< largest deviation, each axis
-  double kp_spread = 0;                ///< relative
-  double kd_spread = 0;                ///< relative
-  double torque_spread = 0;            ///< of delivered over commanded torque, relative
+  double base_mass_spread = 0;    ///< relative
+  double link_mass_spread = 0;    ///< relative
+  double foot_position_m = 0;     ///< largest deviation, each axis
+  double kp_spread = 0;           ///< relative
+  double kd_spread = 0;           ///< relative
+  double torque_spread = 0;       ///< of delivered over commanded torque, relative
+  double friction_spread = 0;     ///< of the joints' dry friction, relative
+  double rotor_inertia_low = 0;   ///< least factor of a rotor's inertia
+  double rotor_inertia_high = 0;  ///< largest factor; HAA, HFE and KFE have factors of their own
   std::array<double, 3> base_com_m{};  ///< largest deviation of the base's centre of mass, x, y, z
   std::array<double, 3> latency_s{};   ///< delays of the action, rounded to steps of the simulation
   bool torque_speed_line = false;      ///< whether drives lose torque towards their top speed

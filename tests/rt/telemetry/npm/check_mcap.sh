@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# check_mcap.sh MCAP_SAMPLE SANDRUNNER FOLDER: has the packages of package-lock.json installed in FOLDER and lets
-# @mcap/core read what MCAP_SAMPLE writes and what SANDRUNNER records. Exit code 77, with a line that says why: skipped.
+# check_mcap.sh MCAP_SAMPLE SANDRUNNER FOLDER: has the packages of package-lock.json installed in
+# FOLDER and lets @mcap/core read what MCAP_SAMPLE writes and what SANDRUNNER records. Exit code 77,
+# with a line that says why: skipped.
 set -euo pipefail
 
 sample=$1

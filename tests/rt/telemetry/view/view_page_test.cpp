@@ -135,6 +135,9 @@ TEST(ViewHelloTest, FeetAreTheLinksBelowTheLastJoints) {
   const ProcessConfig small = config_of("dry-sand", {"robot=" + write_small_robot(folder)});
   EXPECT_EQ(Json::parse(view_hello(scene_of(small, ""), "")).at("feet"),
             (Json{"fl_ball", "fr_ball", "rl_ball", "rr_ball"}));
+  const ProcessConfig go2 = config_of("dry-sand", {"robot=go2"});
+  EXPECT_EQ(Json::parse(view_hello(scene_of(go2, ""), "")).at("feet"),
+            (Json{"FL_foot", "FR_foot", "RL_foot", "RR_foot"}));
   EXPECT_EQ(hello.at("base"), "base_link");
   EXPECT_EQ(hello.at("modes").at(4), "walk");
   EXPECT_EQ(hello.at("faults").size(), static_cast<std::size_t>(kNumFaults));

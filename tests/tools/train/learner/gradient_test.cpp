@@ -19,16 +19,24 @@ constexpr int kFirstEnv = 2;
 constexpr int kChunkSteps = 2;
 const RolloutShape kShape{5, 5, 9};
 constexpr int kSamples = kEnvs * 5;
-const LossConfig kLoss{0.2, 0.7, 1.3, 0.01, 0.3};
+const LossConfig kLoss{0.2, 0.7, 1.3, 0.01, 0.3, 0.8, 0.6, 0.4};
 const AdvantageScale kScale{0.1, 1.4};
 
 NetworkSizes sizes() { return {5, {7, 6}, {8, 7}, {6, 5}}; }
 
-class GradientTest : public testing::Test {
+RolloutShape shape_for(const NetworkSizes& sizes) {
+  RolloutShape shape = kShape;
+  shape.insight = sizes.see_insight() ? kInsightSize : 0;
+  shape.teacher = sizes.hidden;
+  return shape;
+}
+
+/// Networks, a rollout, and the loss of it.
+class Gradients {
  protected:
-  GradientTest()
-      : layout_(sizes(), kShape.privileged),
-        rollout_(random_rollout<double>(kShape, layout_.hidden())),
+  explicit Gradients(const NetworkSizes& sizes)
+      : layout_(sizes, kShape.privileged),
+        rollout_(random_rollout<double>(shape_for(sizes), layout_.memory())),
         pass_(layout_, kShape.steps, kEnvs, kChunkSteps),
         weights_(layout_),
         parameters_(random_parameters(layout_)) {}
@@ -46,8 +54,9 @@ class GradientTest : public testing::Test {
     if (sums_out != nullptr) *sums_out = sums;
     double estimate = 0.0;
     for (const double square : sums.estimate_square) estimate += square / kEstimateSize;
-    return (sums.policy + config.value_weight * sums.value + config.estimate_weight * estimate +
-            config.symmetry_weight * sums.asymmetry) /
+    return (config.policy_weight * sums.policy + config.value_weight * sums.value +
+            config.estimate_weight * estimate + config.symmetry_weight * sums.asymmetry +
+            config.imitation_weight * sums.imitation + config.encoding_weight * sums.encoding) /
                kSamples -
            config.entropy_weight * entropy(parameters_.data() + layout_.log_std());
   }
@@ -104,10 +113,48 @@ class GradientTest : public testing::Test {
   std::vector<double> parameters_;
 };
 
-TEST_F(GradientTest, EveryTensorMatchesDifferencesWithResetsInsideTheWindow) {
+class GradientTest : public testing::Test, protected Gradients {
+ protected:
+  GradientTest() : Gradients(sizes()) {}
+};
+
+struct Wiring {
+  const char* name;
+  EncoderKind encoder;
+  ActorInputs actor;
+};
+
+NetworkSizes wired(const Wiring& wiring) {
+  NetworkSizes networks = sizes();
+  networks.encoder = wiring.encoder;
+  networks.actor_sees = wiring.actor;
+  networks.insight = {6};
+  networks.channels = 4;
+  return networks;
+}
+
+class WiringGradientTest : public testing::TestWithParam<Wiring>, protected Gradients {
+ protected:
+  WiringGradientTest() : Gradients(wired(GetParam())) {}
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    Study, WiringGradientTest,
+    testing::Values(Wiring{"robot", EncoderKind::kLstm, {true, true, false, false}},
+                    Wiring{"tcn", EncoderKind::kTcn, {true, true, false, false}},
+                    Wiring{"oracle_h", EncoderKind::kLstm, {true, true, false, true}},
+                    Wiring{"oracle_o", EncoderKind::kLstm, {false, true, true, true}},
+                    Wiring{"teacher", EncoderKind::kInsight, {true, false, true, false}},
+                    Wiring{"student", EncoderKind::kLstm, {true, false, true, false}}),
+    [](const auto& param) { return std::string(param.param.name); });
+
+TEST_P(WiringGradientTest, EveryTensorMatchesDifferencesWithResetsInsideTheWindow) {
   // The actor's gradient stops at the estimate, which differences cannot know: take its influence
   // away.
-  clear_columns("actor.0.weight", kCommandSize + layout_.hidden(), kEstimateSize);
+  if (GetParam().actor.estimate) {
+    clear_columns("actor.0.weight",
+                  kCommandSize + (GetParam().actor.encoding ? layout_.hidden() : 0), kEstimateSize);
+  }
   LossSums sums;
   loss(kLoss, &sums);
   ASSERT_GT(sums.clipped, 0.0);  // both branches of the clipped objective
@@ -154,8 +201,9 @@ TEST_F(GradientTest, FloatMatchesDouble) {
   BlockPass<float> pass(layout_, kShape.steps, kEnvs, kChunkSteps);
   Weights<float> weights(layout_);
   weights.set(parameters.data());
-  pass.loss_and_gradient(weights, random_rollout<float>(kShape, layout_.hidden()), kFirstEnv, kLoss,
-                         kScale, kSamples, actual.data());
+  pass.loss_and_gradient(weights,
+                         random_rollout<float>(shape_for(layout_.sizes()), layout_.memory()),
+                         kFirstEnv, kLoss, kScale, kSamples, actual.data());
   for (const TensorView& tensor : layout_.tensors()) {
     double error_square = 0.0;
     double norm_square = 0.0;

@@ -145,17 +145,16 @@ TEST(BlockPassTest, ActsAsAPlainPolicyOnTheExportedTensorsDoes) {
   const ParameterLayout layout(sizes, shape.privileged);
   const std::vector<double> exact = random_parameters(layout);
   const std::vector<float> parameters(exact.begin(), exact.end());
-  Rollout rollout = random_rollout<float>(shape, sizes.hidden);
+  Rollout rollout = random_rollout<float>(shape, layout.memory());
   BlockPass<float> pass(layout, 1, 2, 1);
   Weights<float> weights(layout);
   weights.set(parameters.data());
   const int first = 2;  // block: environments 2 and 3
-  Matrix<float> h = Matrix<float>::Zero(sizes.hidden, 2);
-  Matrix<float> c = Matrix<float>::Zero(sizes.hidden, 2);
+  Matrix<float> memory = Matrix<float>::Zero(layout.memory(), 2);
   PlainPolicy plain(policy_tensors(layout, parameters));
   const int env = 3;
   for (int t = 0; t < shape.steps; ++t) {
-    pass.act(weights, rollout, t, first, h, c);
+    pass.act(weights, rollout, t, first, memory);
     if (rollout.reset(t, env) != 0) {
       plain.h.assign(plain.h.size(), 0.0);
       plain.c.assign(plain.c.size(), 0.0);
@@ -167,8 +166,8 @@ TEST(BlockPassTest, ActsAsAPlainPolicyOnTheExportedTensorsDoes) {
       EXPECT_NEAR(rollout.mean(t)(k, env), expected[static_cast<std::size_t>(k)], 1e-5);
     }
   }
-  EXPECT_NEAR(h(0, 1), plain.h[0], 1e-5);
-  EXPECT_NEAR(c(0, 1), plain.c[0], 1e-5);
+  EXPECT_NEAR(memory(0, 1), plain.h[0], 1e-5);
+  EXPECT_NEAR(memory(sizes.hidden, 1), plain.c[0], 1e-5);
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ class NormalSource {
 /// A rollout in which every input of the loss is random, as if a policy near the present one had
 /// acted, with resets inside the window. The same for every Scalar up to rounding.
 template <typename Scalar>
-BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int hidden) {
-  BasicRollout<Scalar> rollout(shape, hidden);
+BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int memory) {
+  BasicRollout<Scalar> rollout(shape, memory);
   NormalSource normal(7);
   const auto fill = [&](auto matrix, double scale) {
     for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
@@ -38,8 +38,13 @@ BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int hidden) {
       }
     }
   };
-  fill(rollout.initial_h(0), 0.5);
-  fill(rollout.initial_c(0), 0.5);
+  fill(rollout.initial_memory(0), 0.5);
+  // If it ends in the number of observations that count, a TCN's: few, some and all.
+  if (memory == kTcnPast * kProprioceptionSize + 1) {
+    for (int env = 0; env < shape.envs; ++env) {
+      rollout.initial_memory(0)(memory - 1, env) = static_cast<Scalar>((env % 3) * kTcnPast / 2);
+    }
+  }
   for (int k = 0; k < kActionSize; ++k) {
     rollout.log_std(k) = static_cast<Scalar>(static_cast<float>(-0.4 + 0.1 * normal()));
   }
@@ -49,6 +54,9 @@ BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int hidden) {
     fill(rollout.estimate_target(t), 1.0);
     fill(rollout.mean(t), 0.05);
     fill(rollout.symmetric_mean(t), 0.3);
+    fill(rollout.insight(t), 1.0);
+    fill(rollout.teacher_mean(t), 0.3);
+    fill(rollout.teacher_encoding(t), 0.3);
     for (int env = 0; env < shape.envs; ++env) {
       double log_prob = -0.5 * kActionSize * std::log(2.0 * std::numbers::pi);
       for (int k = 0; k < kActionSize; ++k) {

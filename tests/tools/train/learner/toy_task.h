@@ -31,7 +31,7 @@ inline Symmetry toy_symmetry() {
 /// A task that only a memory solves, embedded in the robot's interface: x' = x + 0.25 gain u with
 /// |u| <= 2, to be kept at 0. The gain, of random sign and size, is drawn anew in each episode and
 /// not observed: which way an action pushes shows only in what happened to x. Observed: x, and the
-/// last action. Estimate 0: the gain.
+/// last action. Estimate 0 and insight 0: the gain.
 class ToyTask {
  public:
   ToyTask(Learner& learner, WorkerPool& pool, bool memory = true)
@@ -102,6 +102,7 @@ class ToyTask {
     rollout.observation(t)(kCommandSize + 1, env) = state.time == 0 ? state.gain : 0.0f;
     rollout.estimate_target(t)(0, env) = state.gain;
     privileged(state, &rollout.privileged(t)(0, env));
+    if (rollout.shape.insight > 0) rollout.insight(t)(0, env) = state.gain;
     rollout.reset(t, env) = new_episode || !memory_ ? 1 : 0;
   }
 

@@ -7,11 +7,15 @@
 
 #include <csignal>
 #include <filesystem>
+#include <sstream>
+#include <string>
 #include <string_view>
 
 #include "policy/policy_file.h"
+#include "rt/base/errors.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
+#include "tools/train/model/model_file.h"
 
 namespace sandrunner {
 namespace {
@@ -161,10 +165,50 @@ TEST_F(TrainCommandTest, HardGroundAloneCanBeTrainedOn) {
             0);
 }
 
-TEST_F(TrainCommandTest, SettingsThatHaveOneValueRefuseAnother) {
-  expect_refused("a", {"--set", "network.encoder=tcn"}, "network.encoder = 'tcn', expected 'lstm'");
-  expect_refused("a", {"--set", "network.actor=encoding"}, "network.actor = 'encoding'");
-  expect_refused("a", {"--set", "imitation.teacher=teacher.safetensors"}, "imitation.teacher");
+TEST_F(TrainCommandTest, UnknownWiringIsRefused) {
+  expect_refused("a", {"--set", "network.encoder=gru"}, "network.encoder: found 'gru', expected");
+  expect_refused("a", {"--set", "network.actor=\"estimate, sight\""},
+                 "network.actor: found 'sight', expected some of encoding, estimate");
+  expect_refused("a", {"--set", "imitation.teacher=teacher.safetensors"}, "teacher.safetensors");
+}
+
+TEST_F(TrainCommandTest, AStudentThatIsKilledResumesToTheWeightsOfAnUninterruptedRun) {
+  const std::string actor = "network.actor=\"encoding, proprioception\"";
+  ASSERT_EQ(run("teacher", {"--set", actor, "--set", "network.encoder=insight"}), 0);
+  std::vector<std::string> words = {
+      "--set", actor, "--set",
+      "imitation.teacher=" + folder_.path("teacher") + "/best.safetensors"};
+  ASSERT_EQ(run("whole", words), 0);
+  words.insert(words.end(), kOften.begin(), kOften.end());
+  CheckpointWatch watch(folder_.path("killed"));
+  ChildProcess child(training("killed", words));
+  EXPECT_TRUE(watch.wait_for(2));
+  child.signal(SIGKILL);
+  EXPECT_EQ(child.wait().code, 128 + SIGKILL) << "the run was over before the kill";
+  words.emplace_back("--resume");
+  ASSERT_EQ(run("killed", words), 0);
+  const auto model = [&](const std::string& out) {
+    return train::read_study_model(folder_.path(out) + "/policy.safetensors");
+  };
+  EXPECT_EQ(model("killed").parameters, model("whole").parameters);
+  EXPECT_NE(model("whole").spec.provenance.at("origin").find("imitating 'raibo'"),
+            std::string::npos);
+}
+
+TEST_F(TrainCommandTest, AnotherWiringEndsInAStudyModelThatIsNoPolicy) {
+  ASSERT_EQ(run("a", {"--set", "network.actor=\"encoding, estimate, terrain\""}), 0);
+  const train::StudyModelFile model =
+      train::read_study_model(folder_.path("a") + "/best.safetensors");
+  EXPECT_TRUE(model.sizes.actor_sees.terrain);
+  EXPECT_NE(model.spec.provenance.at("battery").find("alive"), std::string::npos);
+  try {
+    policy("a");
+    FAIL() << "read as a policy";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'sandrunner.format' is 'study 1', expected '1'"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(TrainCommandTest, WeightsDoNotDependOnTheNumberOfThreads) {
@@ -217,12 +261,25 @@ TEST_F(TrainCommandTest, ASeedBelowZeroIsRefused) {
 TEST_F(TrainCommandTest, LinesOfProgressAreShortAndExplained) {
   const Ended ended = run_process(training("a", {}));
   EXPECT_EQ(ended.code, 0);
-  EXPECT_LE(ended.out.find('\n'), 100u) << ended.out;
+  std::istringstream lines(ended.out);
+  std::string hint, progress;
+  std::getline(lines, hint);
+  std::getline(lines, progress);
+  EXPECT_NE(hint.find("--explain"), std::string::npos) << ended.out;
+  EXPECT_LE(progress.size(), 100u) << ended.out;
   const Ended explained = run_process({SANDRUNNER_TRAIN_PROGRAM, "--explain"});
   EXPECT_EQ(explained.code, 0);
   for (const char* word : {"k/s", "Hz", "trot", "alive", "error", "cost", "fast", "late", "min"}) {
     EXPECT_NE(explained.out.find(word), std::string::npos) << word;
   }
+}
+
+TEST_F(TrainCommandTest, TheLastLineSaysHowToRunThePolicy) {
+  const Ended ended = run_process(training("a", {}));
+  const auto found = ended.out.find("run it with sandrunner --policy ");
+  ASSERT_NE(found, std::string::npos) << ended.out;
+  const auto path = ended.out.rfind(' ') + 1;
+  EXPECT_TRUE(std::filesystem::exists(ended.out.substr(path, ended.out.size() - path - 1)));
 }
 
 TEST_F(TrainCommandTest, BadInputIsRefusedInOneLine) {
@@ -261,6 +318,15 @@ TEST_F(TrainCommandTest, PolicyFileNamesTheRobotOfTheMapAndItsTorqueLimit) {
   ASSERT_EQ(run("raibo", brief), 0);
   EXPECT_EQ(policy("raibo").spec.name, "raibo");
   EXPECT_EQ(policy("raibo").spec.torque_limit_nm, 63.45);
+}
+
+TEST_F(TrainCommandTest, ARobotThatShipsIsTrainedByItsName) {
+  ASSERT_EQ(run("go2", {"--set", "run.transitions=600", "--robot", "go2"}), 0);
+  const PolicySpec spec = policy("go2").spec;
+  EXPECT_EQ(spec.provenance.at("robot"), "go2");
+  EXPECT_EQ(spec.joint_names[0], "FL_hip_joint");
+  EXPECT_EQ(spec.torque_limit_nm, 45.43);
+  EXPECT_EQ(spec.kp_nmprad, 30.0);
 }
 
 TEST_F(TrainCommandTest, CheckpointOfAnotherRobotIsRefused) {

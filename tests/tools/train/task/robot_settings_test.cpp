@@ -25,6 +25,13 @@ TEST(RobotSettingsTest, TheShippedRobotGetsTheFiguresItsTrainingWasTunedWith) {
   EXPECT_NEAR(config.reward.penalties.Height::target_m, 0.475, 1e-9);
 }
 
+TEST(RobotSettingsTest, Go2HasSettingsOfItsOwnOverTheDerivedOnes) {
+  const TaskConfig config = settings_of(sim::load_robot("go2"));
+  EXPECT_EQ(config.policy.kp_nmprad, 30.0);        // derived
+  EXPECT_EQ(config.command.speed_max_mps, 2.5);    // its own
+  EXPECT_EQ(config.robot.latency_s.back(), 0.02);  // likewise
+}
+
 TEST(RobotSettingsTest, SensorsAreAsNoisyAsThoseOfAnEvaluation) {
   const NoiseSettings training = settings_of(sim::load_raibo()).noise;
   const sim::ObservationNoise evaluation;

@@ -124,7 +124,8 @@ TEST(SymmetryShapeTest, ReflectionsAreTheirOwnInverse) {
   const learner::Symmetry s = Task::symmetry();
   EXPECT_EQ(s.observation.index.size(), std::size_t{kObservationSize});
   EXPECT_EQ(s.action.index.size(), std::size_t{kNumJoints});
-  for (const Reflection& r : {s.observation, s.action}) {
+  EXPECT_EQ(s.insight.index.size(), std::size_t{learner::kInsightSize});
+  for (const Reflection& r : {s.observation, s.action, s.insight}) {
     for (std::size_t i = 0; i < r.index.size(); ++i) {
       EXPECT_EQ(r.index[r.index[i]], static_cast<int>(i));
       EXPECT_EQ(r.sign[i] * r.sign[r.index[i]], 1.0f);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# check_rtps.sh DDS_PEER FOLDER: has the packages of package-lock.json installed in FOLDER and lets @foxglove/rtps receive
-# what DDS_PEER publishes. Exit code 77, with a line that says why: skipped.
+# check_rtps.sh DDS_PEER FOLDER: has the packages of package-lock.json installed in FOLDER and lets
+# @foxglove/rtps receive what DDS_PEER publishes. Exit code 77, with a line that says why: skipped.
 set -euo pipefail
 
 peer=$1

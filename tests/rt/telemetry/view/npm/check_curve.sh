@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# check_curve.sh SANDRUNNER_TRAIN FOLDER: has the packages of package-lock.json installed in FOLDER, lets SANDRUNNER_TRAIN
-# train there for a moment and looks at curve.html in Chromium. Exit code 77, with a line that says why: skipped.
+# check_curve.sh SANDRUNNER_TRAIN FOLDER: has the packages of package-lock.json installed in FOLDER,
+# lets SANDRUNNER_TRAIN train there for a moment and looks at curve.html in Chromium. Exit code 77,
+# with a line that says why: skipped.
 set -euo pipefail
 
 train=$1

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# check_page.sh SANDRUNNER FOLDER: has the packages of package-lock.json installed in FOLDER, lets SANDRUNNER write
-# run.html there and looks at it in Chromium, with WebGL and without. Exit code 77, with a line that says why: skipped.
+# check_page.sh SANDRUNNER FOLDER: has the packages of package-lock.json installed in FOLDER, lets
+# SANDRUNNER write run.html there and looks at it in Chromium, with WebGL and without. Exit code 77,
+# with a line that says why: skipped.
 set -euo pipefail
 
 sandrunner=$1

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# To be sourced: prepare WHAT FOLDER sets `browser`, has the packages of package-lock.json installed in FOLDER and puts the
-# scripts there. Ends the script with 77 and a line that says why if they are not to be had: WHAT is skipped.
+# To be sourced: prepare WHAT FOLDER sets `browser`, has the packages of package-lock.json installed
+# in FOLDER and puts the scripts there. Ends the script with 77 and a line that says why if they are
+# not to be had: WHAT is skipped.
 prepare() {
   local what=$1 folder=$2 here name
   here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program sandrunner-study, as a user runs it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "policy/policy_file.h"
+#include "tests/support/program_test.h"
+
+namespace sandrunner {
+namespace {
+
+class StudyProgramTest : public ProgramTest {
+ protected:
+  StudyProgramTest() : ProgramTest(SANDRUNNER_STUDY_PROGRAM) {
+    std::filesystem::create_directory(folder_.path("models"));
+    put("ours-1");
+    put("env-rigid-1");
+  }
+  void put(const std::string& name) const {
+    write_file(folder_.path("models/" + name + ".safetensors"), shipped_policy_text());
+  }
+  std::string read(const std::string& name) const { return read_file(folder_.path(name)); }
+};
+
+TEST_F(StudyProgramTest, WritesThePageAndItsNumbersTheSameForAnyThreads) {
+  const std::string common = "--from models --only E1,E5 --runs 1 ";
+  ASSERT_EQ(run(common + "--threads 1 --out one"), 0) << error();
+  ASSERT_EQ(run(common + "--threads 2 --out two"), 0) << error();
+  for (const std::string& name : files_in("one")) {
+    if (std::filesystem::is_directory(folder_.path("one/" + name))) continue;
+    EXPECT_EQ(read("one/" + name), read("two/" + name)) << name;
+  }
+  const auto json = nlohmann::json::parse(read("one/results.json"));
+  for (const char* controller : {"ours", "env-rigid"}) {
+    std::set<double> commands;
+    for (const auto& group : json["experiments"]["E1"][controller]["1"]) {
+      if (group["scenario"] == "") commands.insert(group["command"].get<double>());
+    }
+    EXPECT_EQ(commands.size(), 8u) << controller;
+  }
+  const std::string page = read("one/report.html");
+  EXPECT_LT(page.size(), 4'000'000u);
+  EXPECT_EQ(page.find("src=\"http"), std::string::npos);
+  EXPECT_EQ(page.find("href=\"http"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_NE(page.find("Not run: PL/Env-GM, PL/Env-Rigid"), std::string::npos);
+}
+
+TEST_F(StudyProgramTest, AKilledRunGoesOnAndEndsInTheSameBytes) {
+  const std::string common = "--from models --only E5 --runs 2 ";
+  ASSERT_EQ(run(common + "--out whole"), 0) << error();
+  {
+    ChildProcess killed({SANDRUNNER_STUDY_PROGRAM, "--from", "models", "--only", "E5", "--runs",
+                         "2", "--out", "killed"},
+                        {.folder = folder_.path("")});
+    const std::string first = folder_.path("killed/cache/fairness-ours-1.json");
+    for (int i = 0; i < 6000 && !std::filesystem::exists(first); ++i) usleep(10'000);
+    ASSERT_TRUE(std::filesystem::exists(first));
+  }  // SIGKILL
+  ASSERT_FALSE(std::filesystem::exists(folder_.path("killed/report.html")));
+  ASSERT_EQ(run(common + "--out killed"), 0) << error();
+  EXPECT_NE(output().find("taken from an earlier run"), std::string::npos) << output();
+  for (const char* name : {"report.html", "results.json", "claims.csv", "figures/fig3h.png"}) {
+    EXPECT_EQ(read(std::string("whole/") + name), read(std::string("killed/") + name)) << name;
+  }
+}
+
+TEST_F(StudyProgramTest, KeepsWhatIsDoneAndTakesADamagedFileAgain) {
+  const std::string line = "--from models --only E6 --runs 1 --out dir";
+  ASSERT_EQ(run(line), 0) << error();
+  const std::string before = read("dir/results.json");
+  write_file(folder_.path("dir/cache/E6-ours-1.json"), "{\"key\": ");
+  ASSERT_EQ(run(line), 0) << error();
+  EXPECT_NE(output().find("E6: 1 models run, 1 taken"), std::string::npos) << output();
+  EXPECT_EQ(read("dir/results.json"), before);
+}
+
+TEST_F(StudyProgramTest, RefusesBadInputInOneLine) {
+  std::filesystem::create_directory(folder_.path("broken"));
+  write_file(folder_.path("broken/ours-1.safetensors"), "no policy");
+  write_file(folder_.path("other.json"), "{}");
+  const std::pair<const char*, const char*> cases[] = {
+      {"--from models", "--out"},
+      {"--out dir", "--from"},
+      {"--from absent --out dir", "--from: found no folder 'absent'"},
+      {"--from broken --out dir", "ours-1.safetensors"},
+      {"--from models --out models/ours-1.safetensors", "--out"},
+      {"--from models --out dir --only E99", "--only: found 'E99'"},
+      {"--from models --out dir --runs 0", "--runs: found 0"},
+      {"--from models --out dir --seeds 7", "--from: found no trained controller"},
+      {"--from models --out dir --contact other.json", "--contact other.json"},
+  };
+  for (const auto& [arguments, cause] : cases) expect_refused(arguments, cause);
+}
+
+}  // namespace
+}  // namespace sandrunner

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/study/controllers.h"
+
+#include <algorithm>
+
+namespace sandrunner::study {
+
+const std::vector<Controller>& controllers() {
+  static const std::vector<Controller> kAll = {
+      {"ours", "Ours", {{0.05, 0.32, 0.70}}, true},
+      {"env-rigid", "Env-Rigid", {{0.84, 0.37, 0.00}, {9.0, 4.0}}, true},
+      {"env-quasistatic", "Env-Quasistatic", {{0.00, 0.55, 0.40}, {3.0, 3.0}}, true},
+      {"env-linear", "Env-Linear", {{0.58, 0.25, 0.65}, {9.0, 3.0, 2.0, 3.0}}, true},
+      {"pl-gm", "PL/Env-GM", {{0.80, 0.10, 0.20}, {14.0, 4.0}}, false},
+      {"pl-rigid", "PL/Env-Rigid", {{0.45, 0.29, 0.15}, {5.0, 5.0}}, false},
+      {"teacher-gm", "Teacher/Env-GM", {{0.35, 0.35, 0.38}}, false},
+      {"teacher-rigid", "Teacher/Env-Rigid", {{0.60, 0.60, 0.62}, {9.0, 4.0}}, false},
+      {"oracle-h", "Oracle(H)", {{0.00, 0.60, 0.75}, {12.0, 3.0, 2.0, 3.0}}, false},
+      {"oracle-o", "Oracle(O)", {{0.85, 0.60, 0.05}, {3.0, 3.0}}, false},
+      {"tcn", "TCN", {{0.75, 0.25, 0.50}, {2.0, 4.0}}, false},
+  };
+  return kAll;
+}
+
+const Controller* find_controller(std::string_view key) {
+  const auto& all = controllers();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Controller& c) { return key == c.key; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+const std::vector<const char*>& beach_controllers() {
+  static const std::vector<const char*> kKeys = {"ours",       "env-rigid", "env-quasistatic",
+                                                 "env-linear", "pl-gm",     "pl-rigid"};
+  return kKeys;
+}
+
+const std::vector<const char*>& mattress_controllers() {
+  static const std::vector<const char*> kKeys = {"ours", "env-rigid", "pl-gm", "pl-rigid"};
+  return kKeys;
+}
+
+}  // namespace sandrunner::study

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's controllers: their names, and how each looks in every figure.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "rt/plot/chart.h"
+
+namespace sandrunner::study {
+
+struct Controller {
+  const char* key;   ///< of its files and in results.json
+  const char* name;  ///< the paper's
+  plot::Style style;
+  bool is_policy;  ///< its files are policy files; others cannot be run yet
+};
+
+/// All of them, in the order of the tables.
+const std::vector<Controller>& controllers();
+/// The one with this key; null: there is none.
+const Controller* find_controller(std::string_view key);
+
+/// The six of the paper's Table 1 and Fig. 2.
+const std::vector<const char*>& beach_controllers();
+/// The four on the air mattress (paper, Fig. 3 H).
+const std::vector<const char*>& mattress_controllers();
+
+}  // namespace sandrunner::study

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/study/experiments.h"
+
+#include <algorithm>
+
+namespace sandrunner::study {
+namespace {
+
+std::vector<const char*> all_keys() {
+  std::vector<const char*> keys;
+  for (const Controller& c : controllers()) keys.push_back(c.key);
+  return keys;
+}
+
+}  // namespace
+
+const std::vector<Experiment>& experiments() {
+  static const std::vector<Experiment> kAll = {
+      {"fairness", "Fairness: each controller on the ground of its own training", all_keys(),
+       run_fairness},
+      {"E1", "Dry sand (Table 1, Fig. 2 C to F)", beach_controllers(), run_beach},
+      {"E2", "Recovery and transition (Fig. 2 A, B, movie S1)", {"ours"}, run_recovery},
+      {"E3", "Vinyl, track and grass; turns (Fig. 3 D, E)", {"ours", "env-rigid"}, run_grounds},
+      {"E4", "Hidden state (Fig. 3 F)", {"ours"}, run_hidden_state},
+      {"E5", "Air mattress (Fig. 3 G, H)", mattress_controllers(), run_mattress},
+      {"E6", "Memory foam (fig. S8)", {"ours", "env-rigid"}, run_foam},
+  };
+  return kAll;
+}
+
+const Experiment* find_experiment(std::string_view key) {
+  const auto& all = experiments();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Experiment& e) { return key == e.key; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace sandrunner::study

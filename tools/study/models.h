@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The trained controllers of a study: files NAME-SEED.safetensors of one folder.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "policy/policy.h"
+#include "sim/robot/robot_model.h"
+#include "tools/study/controllers.h"
+
+namespace sandrunner::study {
+
+struct Model {
+  const Controller* controller;
+  int seed;
+  Policy policy;
+  std::uint64_t hash;  ///< of its file
+};
+
+/// "ours-1"
+std::string model_name(const Model& model);
+
+/// 64 bits that change with any byte: to find out whether a file is the same.
+std::uint64_t hash_of(std::string_view bytes);
+
+/// The models of `folder` with these seeds (none: all seeds), by controller, then seed. Those of
+/// controllers that cannot be run yet are left out. Throws InputError if there is none, if a file's
+/// name is not that of a controller with a seed, or if a file is no policy for `robot`.
+std::vector<Model> load_models(const std::string& folder, const std::vector<int>& seeds,
+                               const sim::Robot& robot);
+
+}  // namespace sandrunner::study

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an experiment measured of one controller with one seed, as numbers with names: in memory and
+// in results.json.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace sandrunner::study {
+
+using Json = nlohmann::ordered_json;
+
+/// Runs that differ only in start, random numbers and, on the beach, in the sand.
+struct RunGroup {
+  std::string ground;
+  std::string scenario;  ///< what else is particular; may be empty
+  double command = 0.0;  ///< m/s or rad/s
+  /// A figure's value in each run; nan where it is not defined.
+  std::map<std::string, std::vector<double>> runs;
+  /// Other lists: a run over time, points of a picture.
+  std::map<std::string, std::vector<double>> lists;
+
+  /// The values of a figure, which must be there.
+  const std::vector<double>& values(const std::string& figure) const;
+  std::size_t size() const { return runs.empty() ? 0 : runs.begin()->second.size(); }
+};
+
+struct Measured {
+  std::vector<RunGroup> groups;
+
+  /// Those with this ground and scenario.
+  std::vector<const RunGroup*> select(const std::string& ground,
+                                      const std::string& scenario = "") const;
+};
+
+Json to_json(const Measured& measured);
+/// The reverse of to_json. Throws nlohmann::json::exception if `json` is something else.
+Measured measured_from(const Json& json);
+
+/// Mean of the values that are not nan; nan if there is none.
+double mean_of(const std::vector<double>& values);
+/// Mean of the values for which the flag is 1.
+double mean_where(const std::vector<double>& values, const std::vector<double>& flags);
+double least_of(const std::vector<double>& values);
+double greatest_of(const std::vector<double>& values);
+
+}  // namespace sandrunner::study

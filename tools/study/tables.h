@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tables of the page, as HTML, and claims.csv.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/study/claims.h"
+#include "tools/study/models.h"
+
+namespace sandrunner::study {
+
+struct JudgedClaim {
+  Claim claim;
+  Judgement judgement;
+};
+
+std::vector<JudgedClaim> judge_all(const Evidence& evidence);
+
+std::string verdict_counts(const std::vector<JudgedClaim>& judged);
+std::string verdict_tables(const std::vector<JudgedClaim>& judged);
+std::string claims_csv(const std::vector<JudgedClaim>& judged);
+std::string fairness_table(const Evidence& evidence);
+/// Table 1 of the paper.
+std::string beach_table(const Evidence& evidence);
+std::string recovery_table(const Evidence& evidence);
+std::string hidden_state_table(const Evidence& evidence);
+std::string foam_table(const Evidence& evidence);
+std::string contact_table(const Evidence& evidence);
+std::string anchor_table();
+/// Where the models come from.
+std::string methods_table(const std::vector<Model>& models);
+
+}  // namespace sandrunner::study
