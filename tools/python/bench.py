@@ -27,7 +27,7 @@ def ratio(envs: int, threads: int, rounds: int, steps: int) -> float:
         seconds[1].append(loop.run(actions, steps))
     rates = [envs * steps / statistics.median(s) for s in seconds]
     print(f"{envs} environments, {threads} threads: Python {rates[0]:,.0f} transitions/s, C++ {rates[1]:,.0f}, "
-          f"ratio {rates[0] / rates[1]:.3f}", flush=True)  # fmt: skip
+          f"ratio {rates[0] / rates[1]:.3f}", flush=True)
     return rates[0] / rates[1]
 
 

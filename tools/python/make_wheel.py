@@ -43,7 +43,7 @@ def main() -> None:
     info = f"sandrunner-{version}.dist-info"
     contents[f"{info}/METADATA"] = (
         f"Metadata-Version: 2.1\nName: sandrunner\nVersion: {version}\nSummary: Legged robots on sand as numpy arrays\n"
-        "License: BSD-3-Clause\nRequires-Python: >=3.11\nRequires-Dist: numpy<2\n"  # as pybind11 2.10
+        "License: BSD-3-Clause\nRequires-Python: >=3.11\nRequires-Dist: numpy<2\n"
     ).encode()
     contents[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: sandrunner\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     record = ""

@@ -21,9 +21,9 @@ draw = random.Random(SEED)
 numbers = np.random.default_rng(SEED)
 FOLDER = pathlib.Path(tempfile.mkdtemp())
 ODD = [None, True, -1, 0, 1, 3, 2**70, 0.5, math.nan, math.inf, "", "a\nb", "raibo", "dry-sand", "\0", b"x", [], [1, 2],
-       {}, {"a": 1}, (), object(), np.zeros(0), np.zeros((2, 2)), np.array("x"), np.float32(1), int]  # fmt: skip
+       {}, {"a": 1}, (), object(), np.zeros(0), np.zeros((2, 2)), np.array("x"), np.float32(1), int]
 KEYS = ["command.yaw_radps", "episode.length_s", "learner.window", "learner.block_envs", "ground.rigid_envs",
-        "noise.level_high", "no.such.key", "terrain.friction", "terrain.kind", "", "policy.action_clip"]  # fmt: skip
+        "noise.level_high", "no.such.key", "terrain.friction", "terrain.kind", "", "policy.action_clip"]
 
 
 def odd():
@@ -68,7 +68,7 @@ def new_envs():
         robot=mostly("raibo"), num_envs=mostly(count), seed=mostly(draw.randrange(9)), threads=mostly(draw.choice([1, 2])),
         settings=draw.choice([usual, usual, usual, settings()]),
         curriculum=draw.choice([True, False, {"speed_mps": 4.0, "ground": 1.0, "late": 1.0}, odd()]),
-        actions=mostly(draw.choice(["joints", "modes"])), copy=draw.random() < 0.2, width=draw.choice([0, 1, 8, 16, 7]))  # fmt: skip
+        actions=mostly(draw.choice(["joints", "modes"])), copy=draw.random() < 0.2, width=draw.choice([0, 1, 8, 16, 7]))
 
 
 def use_envs(envs, kept):
@@ -105,7 +105,7 @@ def use_envs(envs, kept):
 def new_batch():
     ground = draw.choice([*sandrunner.terrain_preset_names(), "moon"])
     return Batch(mostly("raibo"), mostly(draw.choice([1, 7, 20])), mostly(ground), settings(),
-                 step_hz=mostly(draw.choice([2000.0, 4000.0])), threads=mostly(2))  # fmt: skip
+                 step_hz=mostly(draw.choice([2000.0, 4000.0])), threads=mostly(2))
 
 
 def use_batch(batch, kept):

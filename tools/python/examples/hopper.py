@@ -20,7 +20,8 @@ class Hopper:
         settings = {"terrain.sigma_flat_npm3": 1e6 * sigma_mnpm3, "terrain.sigma_cone_npm3": 0.5e6 * sigma_mnpm3}
         self.ground = Ground("dry-sand", settings, foot_radius_m=0.04)
         self.contacts = self.ground.contacts(1)
-        self.x, self.height, self.speed = 0.0, np.array([0.1 + LENGTH, 0.1]), np.zeros(2)  # of body, foot
+        # Heights and speeds of body and foot.
+        self.x, self.height, self.speed = 0.0, np.array([0.1 + LENGTH, 0.1]), np.zeros(2)
         self.push = 0.0
 
     def step(self) -> tuple[float, float]:

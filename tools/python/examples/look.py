@@ -22,7 +22,7 @@ def main() -> None:
         settings={"episode.length_s": options.seconds, "command.forward_share": 1.0, "command.zero_share": 0.0,
                   "command.in_place_share": 0.0},
         curriculum={"speed_mps": options.speed, "ground": 0.5},
-    )  # fmt: skip
+    )
     policy = Policy(options.policy)
     observation, info = envs.reset()
     # Episodes begin out of step: wait for the start of one.

@@ -72,7 +72,7 @@ def collect(envs, network, now, memory):
             row = dict(now, action=action, mean=mean, value=network.critic(now["privileged"])[:, 0])
             observation, reward, terminated, truncated, info = envs.step(action.numpy())
             final = torch.zeros(envs.num_envs)
-            if truncated.any():  # the future of an episode that was cut is what the critic expects of it
+            if truncated.any():  # the future of an episode that was cut: what the critic expects
                 final[truncated] = network.critic(torch.tensor(info["final_privileged"][truncated]))[:, 0]
         row.update(reward=torch.tensor(reward), end=torch.tensor(terminated | truncated), final=final)
         rows.append(row)
@@ -153,7 +153,7 @@ def main() -> None:
             s, done = envs.statistics, update * WINDOW * envs.num_envs
             print(f"{done / 1e6:6.2f} M transitions, {time.time() - start:5.0f} s: reward {s['reward']:.3f}, "
                   f"speed {s['speed_ratio_hard']:.2f} of the commanded, {s['falls_per_4s_hard']:.2f} falls in 4 s, "
-                  f"commands up to {envs.curriculum['speed_mps']:.2f} m/s", flush=True)  # fmt: skip
+                  f"commands up to {envs.curriculum['speed_mps']:.2f} m/s", flush=True)
             write_policy(options.out, average, envs, name="raibo, ppo.py")
 
 

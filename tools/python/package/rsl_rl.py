@@ -30,7 +30,8 @@ class RslRlVecEnv(_Base):
         self.envs, self.device, self.cfg = envs, device, {"settings": envs.effective_settings}
         self.num_envs, self.num_actions = envs.num_envs, ACTION_SIZE
         self.max_episode_length = envs.max_episode_length
-        # Steps since each episode began, as far as this object has seen; they begin out of step by themselves.
+        # Steps since each episode began, as far as this object has seen. Episodes begin out of
+        # step by themselves.
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long, device=device)
         observation, info = envs.reset()
         self.num_obs, self.num_privileged_obs = observation.shape[1], info["privileged"].shape[1]

@@ -43,7 +43,7 @@ class VectorEnv(_Base):
     Arrays that `reset` and `step` return are views of the simulator's own memory: the next step
     overwrites them. Copy what you keep, or make the environment with `copy=True`.
 
-    robot       "raibo", or the path of a robot file (sim/robot/README.md)
+    robot       "raibo", "go2", or the path of a robot file (sim/robot/README.md)
     num_envs    a multiple of the setting learner.block_envs, 64
     seed        of all that is drawn
     threads     worker threads; the bits do not depend on them
