@@ -17,7 +17,7 @@ class TaskLoop {
         block_envs_(like.block_envs()),
         window_(like.window_steps()),
         pool_(like.threads()),
-        task_(like.config(), like.robot(), {envs_, block_envs}, seed),
+        task_(like.config(), like.robot(), {envs_, block_envs_}, seed),
         rollout_({.envs = envs_, .steps = 1, .privileged = train::Task::privileged_size()}, 1) {}
 
   /// Seconds of so many steps, with these actions in each.
