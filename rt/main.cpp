@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "drivers/check/check.h"
+#include "drivers/check/unitree_check.h"
 #include "drivers/robot/bus_plan.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
@@ -43,11 +44,21 @@ namespace {
 
 constexpr int kLastWords_ms = 2000;
 
+int check_unitree(const Options& options, const ProcessConfig& config) {
+  const Options::Check& c = options.check;
+  if (c.plan || c.move || c.nudge || !c.zero.empty()) {
+    throw InputError(
+        fmt::format("check: {}: found hardware.kind \"unitree\", expected \"can\" with --plan, "
+                    "--move, --nudge or --zero",
+                    options.hardware_path));
+  }
+  return run_unitree_check(
+      *config.unitree, unitree::figures_of(config.robot.description, config.controller.gate, 0.0));
+}
+
 int check(const Options& options) {
   const ProcessConfig config = read_config(options, nullptr);
-  if (!config.hardware) {
-    throw InputError(fmt::format("check: {}: found no table [hardware]", options.hardware_path));
-  }
+  if (config.unitree) return check_unitree(options, config);
   if (options.check.plan) {
     const std::vector<PlannedBus> plan = plan_buses(*config.hardware);
     fmt::print("{}", plan_table(*config.hardware, plan));
@@ -124,6 +135,7 @@ int run(const Options& options) {
   }
   warn_of(config, policy.runner);
   if (!options.out_dir.empty()) prepare_folder(options.out_dir, "--out");
+  if (config.driver) config.driver->fork_processes();
   flush_denormals_to_zero();
   SignalWatch signals;
   Operators operators(options, config, command, !policy.runner.is_none());

@@ -15,10 +15,10 @@ import sys
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
-    ["rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
+    ["rt/dds", "rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/drives"],
     ["drivers/drives/*"],
-    ["drivers/robot"],
+    ["drivers/robot", "drivers/unitree"],
     ["drivers/check"],
     ["sim/lanes"],
     ["sim/robot"],

@@ -12,7 +12,7 @@ namespace sandrunner {
 CanDriver::CanDriver(HardwareConfig config, RobotDescription robot, const GateConfig& gate)
     : config_(std::move(config)), robot_(std::move(robot)), gate_(gate) {}
 
-std::unique_ptr<RobotIo> CanDriver::connect() const {
+std::unique_ptr<RobotIo> CanDriver::connect() {
   return std::make_unique<CanRobot>(config_, robot_, gate_);
 }
 

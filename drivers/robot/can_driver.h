@@ -17,7 +17,7 @@ class CanDriver final : public RobotDriver {
  public:
   CanDriver(HardwareConfig config, RobotDescription robot, const GateConfig& gate);
 
-  std::unique_ptr<RobotIo> connect() const override;
+  std::unique_ptr<RobotIo> connect() override;
   std::vector<std::string> warnings() const override;
   std::string dry_run(const StandConfig& stand) const override;
   std::string report(const RobotIo& robot) const override;

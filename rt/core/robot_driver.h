@@ -15,8 +15,11 @@ namespace sandrunner {
 class RobotDriver {
  public:
   virtual ~RobotDriver() = default;
+  /// Starts what needs a process of its own, before the program has a second thread. Throws
+  /// InputError.
+  virtual void fork_processes() {}
   /// Finds the robot; nothing moves. Throws InputError, one line.
-  virtual std::unique_ptr<RobotIo> connect() const = 0;
+  virtual std::unique_ptr<RobotIo> connect() = 0;
   /// A line for each thing that guards this robot less than it could.
   virtual std::vector<std::string> warnings() const { return {}; }
   /// What a robot that stands would be sent, for a person; opens nothing.

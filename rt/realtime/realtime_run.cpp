@@ -2,6 +2,7 @@
 #include "rt/realtime/realtime_run.h"
 
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -34,6 +35,7 @@ class Threads {
       if (start_ > 0) control.run(start_);
       done_ = true;
     });
+    pthread_setname_np(control_.native_handle(), "control");
     watchdog_ = std::thread([this] {
       prepare_this_thread();
       start_.wait(0);

@@ -6,6 +6,7 @@
 #include "rt/loop/tick_sink.h"
 #include "rt/run/process_config.h"
 #include "rt/telemetry/dds/command_inbox.h"
+#include "rt/telemetry/dds/ros_node.h"
 #include "rt/telemetry/dds/telemetry.h"
 
 namespace sandrunner {
@@ -23,7 +24,7 @@ class DdsBridge final : public TickSink {
     }
     telemetry_ = std::make_unique<Telemetry>(participant_, config.dds, config.robot.description,
                                              desk, clock);
-    participant_.announce_node("sandrunner");
+    announce_node(participant_, "sandrunner");
   }
 
   void begin(std::int64_t start_ns) override { telemetry_->begin(start_ns); }

@@ -193,7 +193,7 @@ struct ControllerDefaults {
 
 ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec* spec,
                                        std::uint64_t operator_hold_ticks,
-                                       const HardwareConfig* hardware) {
+                                       const ProcessConfig& process) {
   ControllerConfig c = controller_config(robot);
   if (spec) {
     c.walk.kp_nmprad = spec->kp_nmprad;
@@ -202,7 +202,8 @@ ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec
     c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;
   }
   c.shaping.operator_hold_ticks = operator_hold_ticks;
-  if (hardware) fit_gate_to(*hardware, c.gate);
+  if (process.hardware) fit_gate_to(*process.hardware, c.gate);
+  if (process.unitree) fit_gate_to(*process.unitree, c.gate);
   return {c};
 }
 
@@ -292,16 +293,17 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   if (spec) fit_robot_to(*spec, p.robot);
   p.dds = read_dds_config(config);
   read_settings(config, "view", kView, p);
-  if (config.has("hardware")) {
+  if (config.has("hardware") && is_unitree(config)) {
+    p.unitree = read_unitree_config(config);
+  } else if (config.has("hardware")) {
     p.hardware = read_hardware_config(config, p.robot.description, controller_config(p.robot).gate);
   }
   // Who commands from afar may be lost on the way: the robot then slows down and stands.
   const std::uint64_t hold_ticks = p.dds.enabled || p.view_drive ? p.dds.stale_ticks() : 0;
-  const ControllerDefaults defaults =
-      controller_defaults(p.robot, spec, hold_ticks, p.hardware ? &*p.hardware : nullptr);
+  const ControllerDefaults defaults = controller_defaults(p.robot, spec, hold_ticks, p);
   p.controller = read_controller(config, defaults, ranges_of(p.robot, robot != nullptr));
   if (p.hardware) fit_drives_to(p.controller.gate, *p.hardware);
-  p.driver = read_robot_driver(config, p);
+  p.driver = make_robot_driver(p);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   read_settings(config, "recording", kRecording, p.recording);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/robot/hardware_config.h"
+#include "drivers/unitree/unitree_config.h"
 #include "policy/policy.h"
 #include "rt/base/config_tree.h"
 #include "rt/base/settings.h"
@@ -28,10 +29,11 @@ struct ProcessConfig {
   RealtimeConfig realtime;
   RecordingLimits recording;
   DdsConfig dds;
-  std::optional<HardwareConfig> hardware;     ///< if there is a table [hardware]
-  std::shared_ptr<const RobotDriver> driver;  ///< of a real robot; null: no table of one
-  bool view_drive = false;                    ///< pages of --view that have the key may command
-  int view_port = 8765;                       ///< of --view; 0: one that is free
+  std::optional<HardwareConfig> hardware;  ///< if there is a table [hardware] of kind "can" ...
+  std::optional<UnitreeConfig> unitree;    ///< ... of kind "unitree"
+  std::shared_ptr<RobotDriver> driver;     ///< of a real robot; null: there is no such table
+  bool view_drive = false;                 ///< pages of --view that have the key may command
+  int view_port = 8765;                    ///< of --view; 0: one that is free
   LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   std::string effective;               ///< TOML of every setting with the value in effect
 };

@@ -3,15 +3,14 @@
 
 #include <memory>
 
-#include "rt/base/config_tree.h"
 #include "rt/core/robot_driver.h"
 
 namespace sandrunner {
 
 struct ProcessConfig;
 
-/// The driver whose table of settings is in `tree`, which reads it; null: there is none. Of
-/// `config`, robot, gate and [hardware] are known by then. Throws InputError.
-std::shared_ptr<const RobotDriver> read_robot_driver(ConfigTree& tree, const ProcessConfig& config);
+/// The driver of the robot that `config` names, whose robot, controller and hardware are known by
+/// then; null: there is none.
+std::shared_ptr<RobotDriver> make_robot_driver(const ProcessConfig& config);
 
 }  // namespace sandrunner

@@ -25,7 +25,7 @@ class RunRobot {
   std::string report() const;
 
  private:
-  std::shared_ptr<const RobotDriver> driver_;  // null: simulated
+  std::shared_ptr<RobotDriver> driver_;  // null: simulated
   std::unique_ptr<RobotIo> io_;
   sim::Simulator* simulator_ = nullptr;  // is io_
 };

@@ -50,8 +50,9 @@ constexpr Group kGroups[] = {
 
 std::vector<SettingLine> run_settings() {
   std::vector<SettingLine> all;
-  for (const auto& part : {process_settings(), sim::terrain_settings(), sim::simulator_settings(),
-                           realtime_settings(), dds_settings(), hardware_settings()}) {
+  for (const auto& part :
+       {process_settings(), sim::terrain_settings(), sim::simulator_settings(), realtime_settings(),
+        dds_settings(), hardware_settings(), unitree_settings()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -8,7 +8,8 @@
 #include <string_view>
 
 #include "rt/core/messages.h"
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
+#include "rt/telemetry/dds/dds_config.h"
 #include "rt/telemetry/dds/sandrunner.h"
 
 namespace sandrunner::ctl {

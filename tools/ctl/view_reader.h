@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
 #include "tools/ctl/robot_view.h"
 
 namespace sandrunner::ctl {

@@ -5,14 +5,31 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "rt/base/errors.h"
 
 namespace sandrunner::hil {
+namespace {
+
+// Of stop_thread(). A process is not gone before its tracer has seen the end of its threads.
+pid_t stopped_thread = 0;
+
+void see_stopped_thread(int options) {
+  int status = 0;
+  while (stopped_thread > 0 && waitpid(stopped_thread, &status, options | __WALL) > 0) {
+    if (WIFEXITED(status) || WIFSIGNALED(status)) stopped_thread = 0;
+  }
+}
+
+}  // namespace
 
 ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
                                      const std::string& folder) {
@@ -45,15 +62,41 @@ ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
 ControllerProcess::~ControllerProcess() {
   if (pid_ == 0 || ended()) return;
   kill(pid_, SIGKILL);
+  see_stopped_thread(0);
   waitpid(pid_, nullptr, 0);
 }
 
 std::optional<int> ControllerProcess::ended() noexcept {
   int status = 0;
+  see_stopped_thread(WNOHANG);
   if (!result_ && waitpid(pid_, &status, WNOHANG) == pid_) {
     result_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   return result_;
+}
+
+pid_t child_of(pid_t process) {
+  pid_t child = 0;
+  std::ifstream(fmt::format("/proc/{0}/task/{0}/children", process)) >> child;
+  return child;
+}
+
+void stop_thread(pid_t process, const std::string& name) {
+  for (const auto& task :
+       std::filesystem::directory_iterator(fmt::format("/proc/{}/task", process))) {
+    std::string found;
+    std::getline(std::ifstream(task.path() / "comm"), found);
+    if (found != name) continue;
+    const pid_t thread = std::stoi(task.path().filename());
+    if (ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) == 0 &&
+        ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) == 0) {
+      stopped_thread = thread;
+      return;
+    }
+    throw InputError(
+        fmt::format("controller: its thread {} cannot be stopped ({})", name, strerror(errno)));
+  }
+  throw InputError(fmt::format("controller: found no thread {}", name));
 }
 
 }  // namespace sandrunner::hil

@@ -28,4 +28,11 @@ class ControllerProcess {
   std::optional<int> result_;
 };
 
+/// The first child of a process; 0: it has none.
+pid_t child_of(pid_t process);
+
+/// Stops one thread of a process that this one has started, for good: as long as this process
+/// lives. Throws InputError if it has none of this name.
+void stop_thread(pid_t process, const std::string& name);
+
 }  // namespace sandrunner::hil

@@ -7,17 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
-#include <sstream>
 
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "tools/hil/bench.h"
 #include "tools/hil/bench_config.h"
 #include "tools/hil/controller_process.h"
+#include "tools/hil/diagnosis.h"
 
 namespace sandrunner::hil {
 namespace {
@@ -25,41 +22,6 @@ namespace {
 constexpr double kSpeedTolerance = 0.05;
 constexpr std::uint64_t kQuestionsAfterwards = 20;  // 0.2 s: the drives' time-outs are over
 constexpr std::uint64_t kMostQuestions = 12'000;    // 120 s
-
-std::set<std::string> words_of(const std::string& text) {
-  std::istringstream in(text);
-  std::set<std::string> words;
-  for (std::string word; in >> word;) words.insert(word);
-  return words;
-}
-
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
-/// What it printed of the end: "FAILED: joints_stale (LF_KFE) in walk, after 0.00 s of Walk".
-struct Diagnosis {
-  std::string fault;
-  std::set<std::string> joints;
-};
-
-Diagnosis diagnosis(const std::string& printed) {
-  constexpr std::string_view kFailed = "FAILED: ";
-  Diagnosis d;
-  const std::size_t at = printed.find(kFailed);
-  if (at == std::string::npos) return d;
-  std::string line =
-      printed.substr(at + kFailed.size(), printed.find('\n', at) - at - kFailed.size());
-  d.fault = line.substr(0, line.find(' '));
-  const std::size_t open = line.find('('), close = line.find(')');
-  if (open == std::string::npos || close == std::string::npos) return d;
-  line = line.substr(open + 1, close - open - 1);
-  std::replace(line.begin(), line.end(), ',', ' ');
-  d.joints = words_of(line);
-  return d;
-}
 
 std::string ms(const std::optional<double>& time_s) {
   return time_s ? fmt::format("{:.2f} ms", 1e3 * *time_s) : "never";

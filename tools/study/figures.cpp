@@ -18,8 +18,11 @@ constexpr double kFastest_mps = 4.2;  // end of the axes of speed
 
 double median_of(const std::map<int, Measured>& seeds,
                  const std::function<double(const Measured&)>& of) {
-  Figure figure;
-  for (const auto& [seed, measured] : seeds) figure[seed] = {of(measured)};
+  Figure figure;  // of the seeds that have it: one may have no success at a command
+  for (const auto& [seed, measured] : seeds) {
+    const double value = of(measured);
+    if (!std::isnan(value)) figure[seed] = {value};
+  }
   return median(figure);
 }
 
@@ -188,7 +191,7 @@ std::vector<StudyFigure> beach_figures(const Evidence& evidence) {
       "Env-Linear 17.5 %; cost and clearance are not printed",
       "C: a dot is a successful run, the curve a e^(bx) + cx + d (the paper prints b twice). E: "
       "the line is the mean over feet and successful runs, the caps are the least and the "
-      "greatest foot of any run. Lines are medians over seeds.",
+      "greatest foot of any run. Lines are medians over the seeds that have a success.",
       {}};
   figure.page.title = "Dry sand (Fig. 2 C, D, E)";
   figure.page.width_px = 1240;

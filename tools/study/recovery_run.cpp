@@ -89,8 +89,9 @@ void draw_recovery(const RecoveryRun& run, const std::string& png_path) {
   const double from_m = row_at(run.record, run.met_s).position_m[0];
   int place = 0;
   for (const double t : kTimes_s) {
-    const double left = kGap_px + place % kColumns * kAcross_px;
-    const double top = place / kColumns * kDown_px + kHead_px;
+    const int column = place % kColumns, line = place / kColumns;
+    const double left = kGap_px + column * kAcross_px;
+    const double top = line * kDown_px + kHead_px;
     const RunRow& row = row_at(run.record, run.met_s + t);
     canvas.text(left, top - 9.0, fmt::format("{:.2f} s", t), 15.0, 0.0, plot::kInk, true);
     draw_side_view(canvas, run.record, row, row.position_m[0] - from_m, left, top);

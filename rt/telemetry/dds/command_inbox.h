@@ -8,10 +8,10 @@
 #include <string_view>
 #include <thread>
 
+#include "rt/dds/participant.h"
 #include "rt/operator/operator_desk.h"
 #include "rt/telemetry/dds/dds_config.h"
 #include "rt/telemetry/dds/neighbours.h"
-#include "rt/telemetry/dds/participant.h"
 #include "rt/telemetry/dds/trigger_services.h"
 
 namespace sandrunner {

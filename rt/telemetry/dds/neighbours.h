@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
 
 namespace sandrunner {
 

@@ -5,8 +5,8 @@
 
 #include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
+#include "rt/dds/participant.h"
 #include "rt/loop/tick_record.h"
-#include "rt/telemetry/dds/participant.h"
 #include "rt/telemetry/ros_messages.h"
 
 namespace sandrunner {

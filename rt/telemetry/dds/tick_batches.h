@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "rt/dds/participant.h"
 #include "rt/loop/tick_record.h"
-#include "rt/telemetry/dds/participant.h"
 
 namespace sandrunner {
 

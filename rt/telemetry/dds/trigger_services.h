@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "rt/dds/participant.h"
 #include "rt/operator/operator_desk.h"
-#include "rt/telemetry/dds/participant.h"
 
 namespace sandrunner {
 

@@ -78,6 +78,40 @@ TEST_F(HardwareTest, WhatCannotWorkIsRefusedBeforeAnyFrameIsSent) {
   expect_refused("check hardware.toml", "hardware.toml: found no table [hardware]");
 }
 
+TEST_F(HardwareTest, ARobotOfAnotherKindHasItsOwnKeys) {
+  const auto expect = [&](const std::string& text, const std::string& cause) {
+    write_file(folder_.path("hardware.toml"), text);
+    expect_refused("--hardware hardware.toml --arm", cause);
+  };
+  expect("hardware.kind = \"go2\"\n", "hardware.kind");
+  expect("hardware.kind = \"unitree\"\n", "hardware.unitree.interface: found none, expected the");
+  expect("[hardware]\nkind = \"unitree\"\nrate_hz = 500\nunitree.interface = \"lo\"\n",
+         "hardware.rate_hz");
+  write_changed("mit.toml", "[hardware]", "[hardware]\nunitree.interface = \"lo\"");
+  expect_refused("--hardware hardware.toml --arm", "hardware.unitree.interface");
+}
+
+TEST_F(HardwareTest, ARobotOfAnotherKindHasADryRunToo) {
+  write_file(folder_.path("hardware.toml"), read_file(SANDRUNNER_UNITREE_EXAMPLE));
+  ASSERT_EQ(run("--hardware hardware.toml --dry-run"), 0) << error();
+  EXPECT_THAT(output(), HasSubstr("rt/lowcmd on eth0, domain 0, 500 times a second\n"));
+  EXPECT_THAT(output(), HasSubstr("motor_cmd[ 4]  LF_HFE         q   0.5598\n"));
+}
+
+TEST_F(HardwareTest, TheGateWaitsForStatesThatCome500TimesASecond) {
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, "dry-sand");
+  tree.add_file(SANDRUNNER_UNITREE_EXAMPLE);
+  tree.set("hardware.torque_scale=0.5");
+  tree.set("hardware.hanging=true");
+  const ProcessConfig config = read_process_config(tree, nullptr);
+  EXPECT_FALSE(config.hardware);
+  EXPECT_EQ(config.controller.gate.joints_fault_ticks, 40);
+  EXPECT_EQ(config.controller.gate.imu_fault_ticks, 40);
+  EXPECT_TRUE(config.controller.gate.hanging);
+  EXPECT_DOUBLE_EQ(config.controller.gate.torque_limit_nm[0], 0.5 * 63.45);
+}
+
 TEST_F(HardwareTest, ARobotDoesNotMoveByItselfUnlessArmed) {
   write_changed("mit.toml", "", "");
   expect_refused("--hardware hardware.toml", "First look: sandrunner check hardware.toml");

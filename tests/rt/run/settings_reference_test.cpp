@@ -35,9 +35,12 @@ TEST_F(SettingsReferenceTest, TheReadmeHasWhatTheProgramPrints) {
 }
 
 TEST_F(SettingsReferenceTest, EveryKeyOfARunIsListed) {
-  for (const char* const name : {"mit", "damiao", "moteus"}) {
+  const std::string folder = SANDRUNNER_HARDWARE_EXAMPLES;
+  for (const std::string& file :
+       {folder + "/mit.toml", folder + "/damiao.toml", folder + "/moteus.toml",
+        std::string(SANDRUNNER_UNITREE_EXAMPLE)}) {
     ConfigTree tree;
-    tree.add_file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + name + ".toml");
+    tree.add_file(file);
     tree.set("terrain.patch=[{from_x_m=1.0}]");
     std::istringstream effective(read_process_config(tree, nullptr).effective);
     std::string table;
@@ -60,7 +63,7 @@ TEST_F(SettingsReferenceTest, EveryKeyOfARunIsListed) {
         ++keys;
       }
     }
-    EXPECT_GT(keys, 100) << name;
+    EXPECT_GT(keys, 100) << file;
   }
 }
 

@@ -21,7 +21,8 @@
 
 #include "rt/core/messages.h"
 #include "rt/core/mode_machine.h"
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
+#include "rt/telemetry/dds/dds_config.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/sandrunner.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "rt/base/errors.h"
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
 #include "tests/rt/telemetry/dds/support.h"
 
 namespace sandrunner {

@@ -15,7 +15,8 @@
 #include <string>
 #include <thread>
 
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
+#include "rt/telemetry/dds/dds_config.h"
 #include "rt/telemetry/dds/ros.h"
 #include "rt/telemetry/dds/sandrunner.h"
 #include "tests/rt/telemetry/dds/support.h"

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "rt/telemetry/dds/ros_node.h"
 #include "tests/rt/telemetry/dds/support.h"
 #include "tests/rt/telemetry/example_tick.h"
 #include "tests/support/child_process.h"
@@ -79,7 +80,7 @@ TEST(FastDdsTest, ReceivesEveryRosTopicWithTheRightValuesAndDrivesTheRobot) {
 
 TEST(FastDdsTest, ACallInTheBytesOfRmwCycloneddsIsAnsweredAndTheNodeIsListed) {
   LiveSetup setup;
-  setup.participant.announce_node("sandrunner");
+  announce_node(setup.participant, "sandrunner");
   const auto call = [&](const char* request) {
     ChildProcess fast({SANDRUNNER_FASTDDS_PEER, std::to_string(setup.config.domain), "call",
                        request, "loopback"});

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 
+#include "rt/telemetry/dds/ros_node.h"
 #include "tests/rt/telemetry/dds/support.h"
 #include "tests/rt/telemetry/example_tick.h"
 
@@ -139,7 +140,7 @@ TEST(RosToolsTest, TheNodeIsAnnouncedWithItsTopicsToThoseThatComeLater) {
   const DdsConfig config = test_config();
   DdsParticipant participant(config);
   const auto writer = participant.writer("rt/odom", nav_msgs_msg_dds__Odometry__desc, 1);
-  participant.announce_node("sandrunner");
+  announce_node(participant, "sandrunner");
   Peer peer(config);
   const auto reader = peer.reader("ros_discovery_info",
                                   rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc, true);

@@ -6,7 +6,8 @@
 #include <filesystem>
 
 #include "rt/base/errors.h"
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
+#include "rt/telemetry/dds/dds_config.h"
 #include "tests/rt/telemetry/dds/support.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/dds/participant.h"
+#include "rt/dds/participant.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -13,7 +11,6 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
-#include "rt/telemetry/dds/ros.h"
 
 namespace sandrunner {
 namespace {
@@ -102,21 +99,21 @@ dds_entity_t check_dds(dds_entity_t result, const std::string& what) {
       fmt::format("DDS: {}: found {}, expected success", what, dds_strretcode(result)));
 }
 
-DdsParticipant::DdsParticipant(const DdsConfig& config, const std::string& identity) {
-  const std::string where =
-      fmt::format("domain {} on interface {}{}", config.domain, config.interface,
-                  config.security_dir.empty() ? "" : ", security files of " + config.security_dir);
-  const std::string xml = cyclone_xml(config, identity);
+DdsParticipant::DdsParticipant(const DdsNetwork& network, const std::string& identity) {
+  const std::string where = fmt::format(
+      "domain {} on interface {}{}", network.domain, network.interface,
+      network.security_dir.empty() ? "" : ", security files of " + network.security_dir);
+  const std::string xml = cyclone_xml(network, identity);
   dds_set_log_sink(log_sink, nullptr);
   dds_log().keep();
-  domain_ = dds_create_domain(static_cast<dds_domainid_t>(config.domain), xml.c_str());
+  domain_ = dds_create_domain(static_cast<dds_domainid_t>(network.domain), xml.c_str());
   // As ROS 2's participants have it: tools then list ours beside those.
   const std::string enclave = "enclave=/;";
   const Qos qos(dds_create_qos());
   dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
   if (domain_ >= 0) {
     participant_ =
-        dds_create_participant(static_cast<dds_domainid_t>(config.domain), qos.get(), nullptr);
+        dds_create_participant(static_cast<dds_domainid_t>(network.domain), qos.get(), nullptr);
   }
   const std::string reason = dds_log().stop_keeping();
   const dds_entity_t result = domain_ < 0 ? domain_ : participant_;
@@ -158,37 +155,6 @@ dds_entity_t DdsParticipant::reader(const char* name, const dds_topic_descriptor
   readers_.push_back(
       check_dds(dds_create_reader(participant_, topic(name, type), qos.get(), nullptr), name));
   return readers_.back();
-}
-
-void DdsParticipant::announce_node(const std::string& name) {
-  const auto gid_of = [](dds_entity_t entity) {
-    dds_guid_t guid{};
-    dds_get_guid(entity, &guid);
-    rmw_dds_common_msg_dds__Gid_ gid;
-    std::copy(std::begin(guid.v), std::end(guid.v), gid.data);
-    return gid;
-  };
-  const auto gids = [&](const std::vector<dds_entity_t>& entities) {
-    std::vector<rmw_dds_common_msg_dds__Gid_> all;
-    for (const dds_entity_t entity : entities) all.push_back(gid_of(entity));
-    return all;
-  };
-  std::vector<rmw_dds_common_msg_dds__Gid_> readers = gids(readers_), writers = gids(writers_);
-  const auto sequence = [](std::vector<rmw_dds_common_msg_dds__Gid_>& of) {
-    const auto size = static_cast<std::uint32_t>(of.size());
-    return dds_sequence_rmw_dds_common_msg_dds__Gid_{size, size, of.data(), false};
-  };
-  std::string space = "/", own_name = name;
-  rmw_dds_common_msg_dds__NodeEntitiesInfo_ node{.node_namespace = space.data(),
-                                                 .node_name = own_name.data(),
-                                                 .reader_gid_seq = sequence(readers),
-                                                 .writer_gid_seq = sequence(writers)};
-  const rmw_dds_common_msg_dds__ParticipantEntitiesInfo_ info{gid_of(participant_),
-                                                              {1, 1, &node, false}};
-  constexpr const char* kTopic = "ros_discovery_info";
-  const dds_entity_t to =
-      writer(kTopic, rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc, 1, true);
-  check_dds(dds_write(to, &info), kTopic);
 }
 
 }  // namespace sandrunner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/telemetry/dds/security_files.h"
+#include "rt/dds/security_files.h"
 
 #include <fmt/format.h>
 #include <openssl/err.h>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dds/dds.h"
-#include "rt/telemetry/dds/dds_config.h"
+#include "rt/dds/network.h"
 
 namespace sandrunner {
 
@@ -16,7 +16,7 @@ class DdsParticipant {
  public:
   /// `identity`: whose security files are used: "robot", "operator" or "viewer". Settings of
   /// Cyclone DDS in the environment are ignored. Throws InputError.
-  explicit DdsParticipant(const DdsConfig& config, const std::string& identity = "robot");
+  explicit DdsParticipant(const DdsNetwork& network, const std::string& identity = "robot");
   ~DdsParticipant();  ///< deletes all writers and readers too
   DdsParticipant(const DdsParticipant&) = delete;
   DdsParticipant& operator=(const DdsParticipant&) = delete;
@@ -31,11 +31,10 @@ class DdsParticipant {
   dds_entity_t reader(const char* topic, const dds_topic_descriptor_t& type, int depth,
                       bool reliable, bool latched = false) const;
 
-  /// Tells ROS 2 that all writers and readers made so far belong to a node /`name`. Throws
-  /// InputError.
-  void announce_node(const std::string& name);
-
   dds_entity_t entity() const noexcept { return participant_; }
+  /// Made so far.
+  const std::vector<dds_entity_t>& writers() const noexcept { return writers_; }
+  const std::vector<dds_entity_t>& readers() const noexcept { return readers_; }
 
  private:
   dds_entity_t topic(const char* name, const dds_topic_descriptor_t& type) const;

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/unitree/wire_process.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <new>
+
+#include "drivers/unitree/command_watch.h"
+#include "rt/base/clock_ns.h"
+#include "rt/base/errors.h"
+
+namespace sandrunner::unitree {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 2'000'000;  // 500 Hz
+constexpr std::int64_t kModeLook_ns = 1'000'000'000;
+// Below the control thread, 80, and above the policy thread, 70.
+constexpr int kPriority = 76, kReceivePriority = 75;
+constexpr int kConnect_s = 30;
+
+void pause_ms(long milliseconds) {
+  const timespec pause{.tv_sec = 0, .tv_nsec = milliseconds * 1'000'000};
+  nanosleep(&pause, nullptr);
+}
+
+/// The wire, in its process.
+class Wire {
+ public:
+  Wire(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory, pid_t controller)
+      : config_(config), robot_(robot), memory_(memory), controller_(controller) {}
+
+  void run() {
+    while (!memory_.start) {
+      if (!may_go_on()) return;
+      pause_ms(5);
+    }
+    memory_.phase = WirePhase::kStarting;
+    RobotLink link(config_, become_real_time() ? kReceivePriority : 0);
+    bring_up(link, config_, robot_, [this] { return may_go_on(); });
+    if (!may_go_on()) return;
+    foreign_before_ = link.foreign_commands();
+    report(link);
+    memory_.phase = WirePhase::kReady;
+    send_until_silent(link);
+  }
+
+ private:
+  bool controller_is_there() const { return getppid() == controller_; }
+  bool may_go_on() const { return controller_is_there() && !memory_.ended; }
+
+  bool become_real_time() {
+    mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
+    const sched_param priority{.sched_priority = kPriority};
+    const bool obtained = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
+    memory_.real_time = obtained;
+    return obtained;
+  }
+
+  void report(RobotLink& link) {
+    const StateWatch& states = link.states();
+    memory_.report.write({.state = states.state(),
+                          .sampled_ns = states.sampled_ns(),
+                          .counters = states.counters()});
+  }
+
+  void send_until_silent(RobotLink& link) {
+    std::int64_t due_ns = clock_ns(CLOCK_MONOTONIC) + kPeriod_ns;
+    std::int64_t look_ns = due_ns;
+    while (!watch_.is_silent()) {
+      std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+      if (now_ns < due_ns) {
+        if (link.wait(due_ns)) report(link);
+        continue;
+      }
+      if (link.poll()) report(link);
+      look_for_others(link, now_ns, look_ns);
+      send(link, now_ns);
+      now_ns = clock_ns(CLOCK_MONOTONIC);
+      due_ns = std::max(due_ns + kPeriod_ns, now_ns - kPeriod_ns);  // it keeps its grid
+    }
+    // The controller still hears of the robot until it ends.
+    while (may_go_on()) {
+      if (link.wait(clock_ns(CLOCK_MONOTONIC) + 5 * kPeriod_ns)) report(link);
+    }
+  }
+
+  void look_for_others(RobotLink& link, std::int64_t now_ns, std::int64_t& look_ns) {
+    const std::uint64_t foreign = link.foreign_commands() - foreign_before_;
+    memory_.foreign_commands = foreign;
+    if (foreign > 0) memory_.foreign = true;
+    if (!config_.release_sport_mode) return;
+    if (const auto answer = link.switcher().take()) {
+      const auto mode = mode_name(answer->data);
+      if (mode && !mode->empty()) memory_.foreign = true;
+    }
+    if (now_ns < look_ns) return;
+    look_ns = now_ns + kModeLook_ns;
+    link.switcher().send(SwitcherRequest::kCheckMode);
+  }
+
+  void send(RobotLink& link, std::int64_t now_ns) {
+    const WireCommand& command = memory_.command.read();
+    const bool ended = memory_.ended;
+    const ControllerSigns signs{.sequence = memory_.command.sequence(),
+                                .written_ns = command.written_ns,
+                                .enabled = command.enabled != 0,
+                                .cut = memory_.cut || (!ended && !controller_is_there()),
+                                .ended = ended,
+                                .foreign = memory_.foreign};
+    const WireAction action = watch_.next(now_ns, signs);
+    memory_.gave_up = watch_.gave_up();
+    const auto mode = static_cast<std::uint8_t>(config_.motor_mode);
+    switch (action) {
+      case WireAction::kNothing:
+        return;
+      case WireAction::kFollow:
+        if (command.enabled == 0) {
+          encode_off(message_);
+        } else if (!encode_joints(mode, command.joints, command.blind_joints, message_)) {
+          encode_damping(mode, robot_.damping_kd_nmsprad, message_);
+        }
+        break;
+      case WireAction::kDamp:
+        encode_damping(mode, robot_.damping_kd_nmsprad, message_);
+        break;
+      case WireAction::kOff:
+        encode_off(message_);
+        break;
+    }
+    link.send(message_);
+    memory_.sent = link.sent();
+    memory_.not_sent = link.not_sent();
+  }
+
+  const UnitreeConfig& config_;
+  const RobotFigures& robot_;
+  WireMemory& memory_;
+  const pid_t controller_;
+  CommandWatch watch_;
+  LowCmd message_;
+  std::uint64_t foreign_before_ = 0;
+};
+
+void note_error(WireMemory& memory, const std::string& error) {
+  const std::size_t size = std::min(error.size(), memory.error.size() - 1);
+  std::copy_n(error.begin(), size, memory.error.begin());
+  memory.phase = WirePhase::kFailed;
+}
+
+/// The wire's whole life; never returns.
+[[noreturn]] void live(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory,
+                       pid_t controller) {
+  prctl(PR_SET_NAME, "sandrunner-wire");
+  // A terminal's signals are for the controller: it lets the robot down, for which it needs us.
+  setpgid(0, 0);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGPIPE}) {
+    signal(number, SIG_IGN);
+  }
+  try {
+    Wire(config, robot, memory, controller).run();
+    if (memory.phase != WirePhase::kFailed) memory.phase = WirePhase::kEnded;
+  } catch (const InputError& error) {
+    note_error(memory, error.what());
+  } catch (const std::exception& error) {
+    note_error(memory, fmt::format("hardware.unitree: {}", error.what()));
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+WireProcess::WireProcess(const UnitreeConfig& config, const RobotFigures& robot) {
+  void* const shared =
+      mmap(nullptr, sizeof(WireMemory), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) {
+    throw InputError(
+        fmt::format("hardware.unitree: found no memory to share ({})", std::strerror(errno)));
+  }
+  memory_ = new (shared) WireMemory;
+  const pid_t controller = getpid();
+  pid_ = fork();
+  if (pid_ == 0) live(config, robot, *memory_, controller);
+  if (pid_ < 0) {
+    const int error = errno;
+    munmap(shared, sizeof(WireMemory));
+    throw InputError(
+        fmt::format("hardware.unitree: no process can be started ({})", std::strerror(error)));
+  }
+  // glibc 2.36 declares pidfd_open for C only.
+  process_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+}
+
+WireProcess::~WireProcess() {
+  memory_->ended = true;
+  for (int i = 0; i < 200 && runs(); ++i) pause_ms(5);
+  if (runs()) kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+  close(process_);
+  munmap(memory_, sizeof(WireMemory));
+}
+
+bool WireProcess::runs() const noexcept {
+  pollfd file{.fd = process_, .events = POLLIN, .revents = 0};
+  return poll(&file, 1, 0) == 0;
+}
+
+void WireProcess::connect() {
+  memory_->start = true;
+  for (int i = 0; i < kConnect_s * 100; ++i) {
+    if (memory_->phase == WirePhase::kReady) return;
+    if (memory_->phase == WirePhase::kFailed) throw InputError(memory_->error.data());
+    if (!runs()) throw InputError("hardware.unitree: the process of the wire has ended");
+    pause_ms(10);
+  }
+  throw InputError(fmt::format("hardware.unitree: the robot is not ready after {} s", kConnect_s));
+}
+
+}  // namespace sandrunner::unitree

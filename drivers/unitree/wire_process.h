@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+#include "drivers/unitree/bring_up.h"
+#include "drivers/unitree/unitree_config.h"
+#include "drivers/unitree/wire_memory.h"
+
+namespace sandrunner::unitree {
+
+/// The process that owns the wire to a robot: it alone is in the robot's DDS domain. It sends the
+/// newest command 500 times a second, and what CommandWatch says where the controller falls silent,
+/// ends or is killed. So a controller that does not run any more leaves a damped robot, whatever
+/// the robot itself does when commands stop. Example: wire_process_test.cpp.
+class WireProcess {
+ public:
+  /// Forks it; it does nothing yet. To be called while this process has one thread. Throws
+  /// InputError.
+  WireProcess(const UnitreeConfig& config, const RobotFigures& robot);
+  /// Ends it; waits for that, or kills it after a second.
+  ~WireProcess();
+  WireProcess(const WireProcess&) = delete;
+  WireProcess& operator=(const WireProcess&) = delete;
+
+  /// Has it find the robot and prepare it (bring_up); seconds. Throws InputError.
+  void connect();
+  WireMemory& memory() noexcept { return *memory_; }
+  const WireMemory& memory() const noexcept { return *memory_; }
+  pid_t pid() const noexcept { return pid_; }
+  /// Whether it still runs.
+  bool runs() const noexcept;
+
+ private:
+  WireMemory* memory_ = nullptr;
+  pid_t pid_ = 0;
+  int process_ = -1;  // pidfd: readable once it has ended
+};
+
+}  // namespace sandrunner::unitree

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The deployed program and the emulated Unitree robot, two processes on this computer's loopback.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/unless_stalled.h"
+
+namespace sandrunner {
+namespace {
+
+using testing::HasSubstr;
+
+class UnitreeLoopbackTest : public testing::Test {
+ protected:
+  UnitreeLoopbackTest() {
+    // Each test its own domain: they may follow each other closely.
+    std::string text = read_file(SANDRUNNER_UNITREE_EXAMPLE);
+    text.replace(text.find("\"eth0\""), 6, "\"lo\"");
+    write_file(folder_.path("robot.toml"), text + "domain = 73\n");
+  }
+
+  Ended run(std::vector<std::string> words) const {
+    return run_process(std::move(words), {.folder = folder_.path("")});
+  }
+  nlohmann::json json(const std::string& file) const {
+    return nlohmann::json::parse(read_file(folder_.path(file)));
+  }
+  /// Speed of the same walk in the program's own simulator, m/s.
+  double speed_in_process() const {
+    const Ended ended =
+        run({SANDRUNNER_PROGRAM, "--command", "1,0,0", "--duration", "20", "--out", "alone"});
+    EXPECT_EQ(ended.code, 0) << ended;
+    return json("alone/summary.json").at("mean_velocity_mps").at(0);
+  }
+
+  const TemporaryFolder folder_;
+};
+
+/// The bench or the wire was held up: what the controller then found says nothing of it.
+std::string as_a_stall(double bench_late_ms, const std::string& said) {
+  const bool held_up = bench_late_ms > 4.0 || said.find("joints_stale") != std::string::npos;
+  return held_up ? said + "loop_stalled" : said;
+}
+
+TEST_F(UnitreeLoopbackTest, ChecksStandsWalksAndReplaysAsInProcess) {
+  const double expected_mps = speed_in_process();
+  unless_stalled([&](std::string& said) {
+    ChildProcess robot(
+        {SANDRUNNER_HIL, "--hardware", "robot.toml", "--walk", "20", "--out", "bench.json"},
+        {.folder = folder_.path("")});
+    const Ended check = run({SANDRUNNER_PROGRAM, "check", "robot.toml"});
+    const Ended walk = run({SANDRUNNER_PROGRAM, "--hardware", "robot.toml", "--arm", "--command",
+                            "1,0,0", "--duration", "20", "--record", "recording"});
+    robot.signal(SIGINT);
+    const Ended bench = robot.wait();
+    ASSERT_EQ(bench.code, 0) << bench;
+    const nlohmann::json report = json("bench.json");
+    said = as_a_stall(report.at("late_longest_ms"), check.out + walk.out);
+    EXPECT_EQ(check.code, 0) << check;
+    EXPECT_THAT(check.out, HasSubstr("all is well; nothing was powered"));
+    EXPECT_EQ(walk.code, 0) << walk;
+    EXPECT_EQ(report.at("commands").at("refused"), 0) << report;
+    EXPECT_TRUE(report.at("off_at_end"));
+    EXPECT_FALSE(report.at("walk").at("base_touched"));
+    const double speed_mps = report.at("walk").at("mean_speed_mps");
+    EXPECT_NEAR(speed_mps, expected_mps, 0.05 * expected_mps);
+    const Ended replay = run({SANDRUNNER_REPLAY, "recording/run.mcap"});
+    EXPECT_EQ(replay.code, 0) << replay;
+    EXPECT_THAT(replay.out, HasSubstr("every bit agrees"));
+  });
+}
+
+TEST_F(UnitreeLoopbackTest, WhatGoesWrongEndsAsTheTableSays) {
+  // A few of them, each of another kind; the whole list takes ten minutes.
+  const Ended ended = run({SANDRUNNER_HIL, "unitree-runs", "--controller", SANDRUNNER_PROGRAM,
+                           "--hardware", "robot.toml", "--out", "runs", "--only",
+                           "gap-20,hot,foreign,remote-stop,wrong-type,crash,stop,hang"});
+  EXPECT_EQ(ended.code, 0) << ended;
+}
+
+}  // namespace
+}  // namespace sandrunner
