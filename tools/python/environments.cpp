@@ -40,10 +40,10 @@ void require_count(const char* name, int found, int most) {
 
 sim::Robot load_robot_named(const std::string& robot) {
   if (embedded_robot_file(robot + ".toml").empty() && !std::filesystem::exists(robot)) {
-    throw InputError(fmt::format(
-        "robot: found '{}', expected 'raibo', 'go2' or the path of a robot file "
-        "(sim/robot/README.md)",
-        robot));
+    throw InputError(
+        fmt::format("robot: found '{}', expected 'raibo', 'go2' or the path of a robot file "
+                    "(sim/robot/README.md)",
+                    robot));
   }
   return sim::load_robot(robot);
 }

@@ -52,6 +52,7 @@ py::dtype model_type() {
       .add_struct("base", offsetof(M, base), body_type())
       .add_struct("legs", offsetof(M, legs), leg_type(), kNumLegs)
       .add("rotor_inertia", offsetof(M, rotor_inertia), kNumJoints)
+      .add("friction_nm", offsetof(M, friction_nm), kNumJoints)
       .add("lower_rad", offsetof(M, lower_rad), kNumJoints)
       .add("upper_rad", offsetof(M, upper_rad), kNumJoints)
       .add("torque_limit_nm", offsetof(M, torque_limit_nm), kNumJoints)
@@ -67,6 +68,8 @@ py::dtype model_type() {
 
 py::dtype drive_type() {
   using D = sim::BatchDrive<float>;
+  using L = sim::DriveLine<float>;
+  constexpr std::size_t kLine = offsetof(D, line);
   return RecordType<float>(sizeof(D))
       .add("target_before", offsetof(D, target_before), kNumJoints)
       .add("target", offsetof(D, target), kNumJoints)
@@ -74,8 +77,9 @@ py::dtype drive_type() {
       .add("kp", offsetof(D, kp))
       .add("kd", offsetof(D, kd))
       .add("torque_scale", offsetof(D, torque_scale))
-      .add("stall_torque_nm", offsetof(D, stall_torque_nm))
-      .add("inverse_no_load_speed", offsetof(D, inverse_no_load_speed))
+      .add("stall_torque_nm", kLine + offsetof(L, stall_torque_nm), kJointsPerLeg)
+      .add("inverse_no_load_speed", kLine + offsetof(L, inverse_no_load_speed), kJointsPerLeg)
+      .add("heat_factor", offsetof(D, heat_factor), kJointsPerLeg)
       .dtype();
 }
 

@@ -8,9 +8,11 @@
 #include <bit>
 #include <cmath>
 
+#include "estimator/cost_of_transport.h"
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
 #include "sim/ground/terrain_description.h"
+#include "sim/step/actuator.h"
 #include "tools/python/environments.h"
 
 namespace sandrunner::python {
@@ -134,6 +136,10 @@ void Robots::stand(const std::vector<int>& robots) {
         static_cast<float>(robot_.nominal_height_m) + sim::surface_at(terrain, 0.0f, 0.0f).height;
     drive.kp = static_cast<float>(robot_.stand_kp_nmprad);
     drive.kd = static_cast<float>(robot_.stand_kd_nmsprad);
+    if (robot_.obeys_torque_speed_line) {
+      drive.line = sim::drive_line<float>(robot_.torque_speed_line);
+    }
+    drive.heat_factor = heat_factors<float>(robot_.motor_constant_nmpsqrtw);
     states_[i] = state;
     drives_[i] = drive;
     reports_[i] = {};

@@ -60,7 +60,21 @@ class Standing(unittest.TestCase):
         self.assertGreater(soft.report["penetration"].mean(), hard.report["penetration"].mean() + 0.005)
 
 
+def bytes_of_fields(dtype):
+    """Bytes of all numbers in a record, but not of gaps between them."""
+    if dtype.subdtype:
+        return bytes_of_fields(dtype.subdtype[0]) * int(np.prod(dtype.shape))
+    if dtype.names:
+        return sum(bytes_of_fields(dtype[name]) for name in dtype.names)
+    return dtype.itemsize
+
+
 class Bits(unittest.TestCase):
+    def test_every_number_of_a_robot_has_a_name(self):
+        batch = Batch(num_robots=1)
+        for array in (batch.state, batch.drive, batch.report, batch.sums, batch.model):
+            self.assertEqual(bytes_of_fields(array.dtype), array.dtype.itemsize)
+
     def test_do_not_depend_on_the_number_of_threads(self):
         states = []
         for threads in (1, 2):

@@ -22,8 +22,8 @@ class Batch:
              joint_velocity, contacts (4 feet), and the impulses from which the solver starts. Read-only:
              `set_state` writes
     drive    target, target_before and switch_tick (ticks of an `advance` after which `target` holds),
-             kp, kd, torque_scale, stall_torque_nm (0: no torque-speed line), inverse_no_load_speed.
-             Write it: `advance` reads it
+             kp, kd, torque_scale; of HAA, HFE, KFE: stall_torque_nm (0: no torque-speed line),
+             inverse_no_load_speed, heat_factor (of a torque in sums). Write it: `advance` reads it
     report   of the latest tick: foot_velocity, penetration, foot_force
     sums     over the ticks of the latest `advance`: torque_squared, power, slip, foot_load, base_contact, ...
 
