@@ -284,13 +284,17 @@ PolicyFile read_policy_file(const std::string& path) {
   return decode(path, read_safetensors(path));
 }
 
+PolicyFile parse_policy_file(std::string_view content, const std::string& name) {
+  return decode(name, parse_safetensors(content, name));
+}
+
 Policy load_policy(const std::string& path) {
   PolicyFile file = read_policy_file(path);
   return {std::move(file.spec), Network(file.parameters)};
 }
 
 Policy load_policy_text(std::string_view content, const std::string& name) {
-  PolicyFile file = decode(name, parse_safetensors(content, name));
+  PolicyFile file = parse_policy_file(content, name);
   return {std::move(file.spec), Network(file.parameters)};
 }
 

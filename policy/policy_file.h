@@ -23,6 +23,8 @@ struct PolicyFile {
 /// names the file and the tensor or key, if anything is missing, unknown, of the wrong size or out
 /// of range.
 PolicyFile read_policy_file(const std::string& path);
+/// The same from the bytes of a file; `name` stands for it in errors.
+PolicyFile parse_policy_file(std::string_view content, const std::string& name);
 
 /// The policy of a file, ready to run. Errors as read_policy_file.
 Policy load_policy(const std::string& path);

@@ -36,6 +36,7 @@ LAYERS = [
     ["tools/train/model"],
     ["tools/evaluate", "tools/hil/emulated"],
     ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
+    ["tools/python"],
 ]
 # The loop, telemetry and report know a robot, never the simulator.
 NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/operator/", "rt/realtime/", "rt/report/", "rt/telemetry/")

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rt/base/errors.h"
+#include "tools/train/policy_spec.h"
 #include "tools/train/task/leg_modes.h"
 #include "tools/train/training.h"
 
@@ -37,11 +38,9 @@ void require_scales(const PolicySpec& spec, const ObservationScales& network,
 
 /// As files have them.
 ObservationScales observation_scales(const InputScales& scales) {
-  ObservationScales file{{scales.mean.begin(), scales.mean.end()}, {}, scales.clip};
-  for (const float d : scales.inverse_deviation) {
-    file.variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
-  }
-  return file;
+  NetworkParameters p;
+  set_normalisation(scales, p);
+  return {p.observation_mean, p.observation_variance, p.observation_clip};
 }
 
 }  // namespace
@@ -82,31 +81,9 @@ void Training::imitate(const std::string& teacher_file) {
 }
 
 PolicySpec Training::policy_spec(const Snapshot& snapshot) const {
-  const PolicySettings& policy = config_.task.policy;
-  PolicySpec spec;
-  spec.name = robot_.description.name;
-  spec.joint_names = robot_.description.joint_names;
-  spec.nominal_position_rad = robot_.nominal_rad;
-  spec.action_scale_rad = policy.action_scale_rad;
-  spec.action_clip = policy.action_clip;
-  spec.kp_nmprad = policy.kp_nmprad;
-  spec.kd_nmsprad = policy.kd_nmsprad;
-  // One limit for all joints; where the robot's own are lower, they hold besides.
-  spec.torque_limit_nm = *std::ranges::max_element(robot_.model.torque_limit_nm);
-  spec.yaw_command_clip_mps2 = config_.task.command.centripetal_mps2;
-  const CommandRange commands = task_.command_range();
-  spec.envelope = {.forward_mps = snapshot.command_speed_mps,
-                   .backward_mps = commands.backward_mps,
-                   .lateral_mps = commands.lateral_mps,
-                   .yaw_radps = commands.yaw_radps,
-                   .acceleration_mps2 = config_.task.command.acceleration_mps2,
-                   .yaw_acceleration_radps2 = config_.task.command.yaw_acceleration_radps2};
-  spec.has_envelope = true;
-  const InputScales& scales = task_.scales();
-  for (int i = 0; i < kEstimateSize; ++i) {
-    spec.estimate_mean[i] = scales.estimate_mean[i];
-    spec.estimate_variance[i] = scales.estimate_deviation[i] * scales.estimate_deviation[i];
-  }
+  CommandRange commands = task_.command_range();
+  commands.forward_mps = snapshot.command_speed_mps;
+  PolicySpec spec = train::policy_spec(config_.task, robot_, task_.scales(), commands);
   spec.provenance = {{"config", config_.effective},
                      {"robot", robot_.description.name},
                      {"seed", std::to_string(options_.seed)},
@@ -123,21 +100,13 @@ PolicyFile Training::policy_file(PolicySpec spec, const std::vector<float>& para
   PolicyFile file;
   file.spec = std::move(spec);
   NetworkParameters& p = file.parameters;
-  const ObservationScales scales = observation_scales(task_.scales());
-  p.observation_clip = scales.clip;
-  p.observation_mean = scales.mean;
-  p.observation_variance = scales.variance;
+  set_normalisation(task_.scales(), p);
   const auto tensors = learner::policy_tensors(learner_.layout(), parameters);
   for (const NamedTensor& to : tensors_of(p)) {
     const auto from = std::ranges::find(tensors, to.name, &learner::PolicyTensor::name);
     if (from != tensors.end()) *to.values = from->values;
   }
-  // The robot's network answers in joints.
-  for (std::vector<float>* rows : {&p.actor.back().weight, &p.actor.back().bias}) {
-    const std::vector<float> modes = *rows;
-    joints_from_modes(config_.task.policy.mode_gain, modes.data(), modes.size() / kNumJoints,
-                      rows->data());
-  }
+  answer_in_joints(config_.task.policy.mode_gain, p);
   file.golden = make_golden_example(p);
   return file;
 }

@@ -48,18 +48,22 @@ void Task::privileged(const Env& e, const sim::RobotState<float>& state,
   for (float f : e.robot_features) *out++ = f;
 }
 
-void Task::observe_env(int env, int t, learner::Rollout& rollout) {
-  Env& e = envs_[static_cast<std::size_t>(env)];
-  const sim::RobotState<float> state = batch_.state(env);
-  const sim::BatchReport<float> report = batch_.report(env);
+// What sensors that err show the policy, normalised.
+void Task::policy_input(int env, Env& e, const sim::RobotState<float>& state, float* out) const {
   sim::SensorReading seen = sim::read_sensors(state.rigid, e.sensors);
   sim::add_noise(seen, config_.noise, [&](int, double sigma) {
     return e.noise_level * static_cast<float>(sigma * normal(env, e));
   });
   const auto raw = make_observation<float>(e.command, seen.up, seen.angular_velocity, seen.position,
                                            seen.velocity);
-  auto observation = rollout.observation(t).col(env);
-  for (int i = 0; i < kObservationSize; ++i) observation[i] = normalised(scales_, i, raw[i]);
+  for (int i = 0; i < kObservationSize; ++i) out[i] = normalised(scales_, i, raw[i]);
+}
+
+void Task::observe_env(int env, int t, learner::Rollout& rollout) {
+  Env& e = envs_[static_cast<std::size_t>(env)];
+  const sim::RobotState<float> state = batch_.state(env);
+  const sim::BatchReport<float> report = batch_.report(env);
+  policy_input(env, e, state, rollout.observation(t).col(env).data());
   privileged(e, state, report, rollout.privileged(t).col(env).data());
   const auto estimate = truth(e, state);
   auto target = rollout.estimate_target(t).col(env);

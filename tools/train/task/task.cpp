@@ -36,17 +36,24 @@ Task::Task(const TaskConfig& config, const sim::Robot& robot, const TaskShape& s
       scales_(make_scales(robot_.nominal_rad, config.policy.body_height_m,
                           config.policy.observation_clip)),
       foot_(sim::make_foot_profile({}, robot_.model)),
-      batch_(shape.envs, foot_, batch_settings()),
+      batch_(shape.envs, foot_, batch_settings(), shape.width),
       envs_(static_cast<std::size_t>(shape.envs)),
       sums_(static_cast<std::size_t>(shape.envs / shape.block_envs)),
       curriculum_{config.command.speed_start_mps, 0.0},
       schedule_(schedule_at(config.reward, 0.0, 0.0)),
       tilt_end_cos_(std::cos(config.episode.tilt_end_deg * std::numbers::pi / 180.0)) {
-  for (int env = 0; env < shape.envs; ++env) {
+  restart(seed);
+}
+
+void Task::restart(std::uint64_t seed) {
+  seed_ = seed;
+  for (WindowSums& sums : sums_) sums = {};
+  for (int env = 0; env < batch_.size(); ++env) {
     Env& e = envs_[static_cast<std::size_t>(env)];
+    e = {};
     hard_reset(env, e, config_.episode.reset_nominal_share);
     // Episodes out of step with each other.
-    e.step = static_cast<std::int32_t>(uniform(env, e) * config.episode.length_s * kPolicyHz);
+    e.step = static_cast<std::int32_t>(uniform(env, e) * config_.episode.length_s * kPolicyHz);
   }
 }
 
@@ -63,7 +70,7 @@ void Task::step(int block, int t, learner::Rollout& rollout) {
   }
 }
 
-void Task::set_targets(int env, const float* modes) {
+void Task::set_targets(int env, const float* action) {
   Env& e = envs_[static_cast<std::size_t>(env)];
   const auto clip = static_cast<float>(config_.policy.action_clip);
   const auto scale = static_cast<float>(config_.policy.action_scale_rad);
@@ -71,7 +78,11 @@ void Task::set_targets(int env, const float* modes) {
   e.action_1 = e.action;
   e.drive.target_before = e.drive.target;
   const bool a_step_late = e.latency_ticks > kStepsPerAction;
-  joints_from_modes(config_.policy.mode_gain, modes, 1, e.action.data());
+  if (config_.policy.in_joints) {
+    std::copy_n(action, kNumJoints, e.action.begin());
+  } else {
+    joints_from_modes(config_.policy.mode_gain, action, 1, e.action.data());
+  }
   for (int j = 0; j < kNumJoints; ++j) {
     e.action[j] = std::clamp(e.action[j], -clip, clip);
     const float target = static_cast<float>(robot_.nominal_rad[j]) + scale * e.action[j];
@@ -150,20 +161,32 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
     const penalty::Fall& fall = config_.reward.unbounded_penalties;
     const double value = fall.value(s, schedule_);
     rollout.reward(t, env) = static_cast<float>(-config_.reward.scale * value);
+    if (details_ != nullptr) details_->terms[static_cast<std::size_t>(env)] = {};
   } else {
     const Reward earned = reward_of(s, config_.reward, schedule_);
     rollout.reward(t, env) = earned.value;
     window.add_step(s, earned, kind, decisive_kind(), curriculum_.speed_mps,
                     config_.reward.rewards);
+    if (details_ != nullptr) {
+      std::ranges::copy(earned.terms, details_->terms[static_cast<std::size_t>(env)].begin());
+    }
   }
   ++e.step;
   rollout.reset(t + 1, env) = 0;
+  const bool timeout = e.step >= static_cast<std::int32_t>(config_.episode.length_s * kPolicyHz);
+  if (details_ != nullptr && (fell || timeout)) {
+    auto& last = details_->final_observation[static_cast<std::size_t>(env)];
+    last = {};
+    const std::uint64_t draws = e.draws;  // the noise is drawn on the side
+    if (!absurd) policy_input(env, e, state, last.data());
+    e.draws = draws;
+  }
   if (fell) {
     rollout.end(t, env) = learner::End::kTerminated;
     window.add_fall(kind);
     hard_reset(env, e, config_.episode.reset_nominal_share);
     rollout.reset(t + 1, env) = 1;
-  } else if (e.step >= static_cast<std::int32_t>(config_.episode.length_s * kPolicyHz)) {
+  } else if (timeout) {
     rollout.end(t, env) = learner::End::kTimeout;
     privileged(e, state, report, rollout.final_privileged(t).col(env).data());
     if (uniform(env, e) < config_.episode.soft_reset_share) {
@@ -191,6 +214,11 @@ WindowStats Task::end_window(double transitions, double late) {
   advance_curriculum(w);
   schedule_ = schedule_at(config_.reward, transitions, late);
   return w;
+}
+
+void Task::set_curriculum(const Curriculum& curriculum, double transitions, double late) {
+  curriculum_ = curriculum;
+  schedule_ = schedule_at(config_.reward, transitions, late);
 }
 
 void Task::advance_curriculum(const WindowStats& w) {

@@ -45,9 +45,22 @@ using TerrainFeatures = std::array<float, learner::kTerrainSize>;
 /// (logarithm), factor, friction and zeros.
 TerrainFeatures terrain_features(const sim::GroundParameters& ground, double factor);
 
-/// How many environments there are, and how many of them make a block, a multiple of 16.
+/// How many environments there are, and how many of them make a block, a multiple of 16; how many
+/// of them a core steps at once.
 struct TaskShape {
   int envs = 0, block_envs = 0;
+  sim::BatchWidth width = sim::best_batch_width();
+};
+
+/// What a step tells of each environment besides the rollout, for a learner that is not ours.
+struct StepDetails {
+  explicit StepDetails(int envs)
+      : terms(static_cast<std::size_t>(envs)), final_observation(static_cast<std::size_t>(envs)) {}
+
+  std::vector<std::array<float, kRewardTerms>> terms;  ///< Reward::terms; 0 of a diverged robot
+  /// Where the step ended an episode: observation of the state in which it was cut, 0 of a diverged
+  /// robot. Elsewhere as it was.
+  std::vector<std::array<float, kObservationSize>> final_observation;
 };
 
 /// An episode whose command and ground are given instead of drawn: the robot starts near its
@@ -68,6 +81,9 @@ class Task {
  public:
   Task(const TaskConfig& config, const sim::Robot& robot, const TaskShape& shape,
        std::uint64_t seed);
+
+  /// Starts all episodes anew with the draws of this seed. The curricula stay as they are.
+  void restart(std::uint64_t seed);
 
   static constexpr int privileged_size() { return kPrivileged; }
   const InputScales& scales() const { return scales_; }
@@ -90,12 +106,20 @@ class Task {
     return envs_[static_cast<std::size_t>(env)].command;
   }
   const sim::Batch& batch() const { return batch_; }
+  const sim::Terrain<float>& terrain(int env) const {
+    return envs_[static_cast<std::size_t>(env)].terrain;
+  }
+  /// From the next step on, steps fill `details`, which is as large as the task; null: none. The
+  /// bits of the rollout do not depend on it.
+  void watch(StepDetails* details) { details_ = details; }
 
   /// Means over the window just done; clears its sums and advances the curricula and the
   /// schedule of the reward. `transitions`: since the start of the training; `late`: share of the
   /// late penalties from now on, 0 to 1.
   WindowStats end_window(double transitions, double late);
   const Curriculum& curriculum() const { return curriculum_; }
+  /// As if a training had got this far; what was drawn stays until it is drawn again.
+  void set_curriculum(const Curriculum& curriculum, double transitions, double late);
   CommandRange command_range() const;
   /// Of the episodes that end in time, those whose robot goes on as it is.
   void set_soft_reset_share(double share) { config_.episode.soft_reset_share = share; }
@@ -159,11 +183,12 @@ class Task {
   const TerrainFeatures& features_under(const Env& e, const sim::RobotState<float>& state) const;
   std::array<float, kEstimateSize> truth(const Env& e, const sim::RobotState<float>& state) const;
   void observe_env(int env, int t, learner::Rollout& rollout);
+  void policy_input(int env, Env& e, const sim::RobotState<float>& state, float* out) const;
   void privileged(const Env& e, const sim::RobotState<float>& state,
                   const sim::BatchReport<float>& report, float* out) const;
 
   // task.cpp: a step.
-  void set_targets(int env, const float* modes);
+  void set_targets(int env, const float* action);
   StepOutcome follow(Env& e, const sim::RobotState<float>& state,
                      const sim::BatchReport<float>& report,
                      const sim::BatchSums<float>& sums) const;
@@ -182,6 +207,7 @@ class Task {
   Curriculum curriculum_;
   RewardSchedule schedule_;
   double tilt_end_cos_;
+  StepDetails* details_ = nullptr;
 };
 
 }  // namespace sandrunner::train

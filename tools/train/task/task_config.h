@@ -25,6 +25,8 @@ struct PolicySettings {
   double observation_clip = 0;               ///< largest |input of the network|
   double body_height_m = 0;                  ///< mean of the scale of the estimated body height
   std::array<double, kNumLegs> mode_gain{};  ///< of HFE and KFE in each of the modes of leg_modes.h
+  /// Actions are those of the joints, not of the modes. No setting: the trainer's are of modes.
+  bool in_joints = false;
 };
 
 /// Lengths, ends and starts of episodes, and pushes.

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/python/feet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "rt/base/config_tree.h"
+#include "rt/base/errors.h"
+#include "sim/ground/terrain_description.h"
+
+namespace sandrunner::python {
+namespace {
+
+double checked(const char* name, double found, double least, double most) {
+  if (found >= least && found <= most) return found;
+  throw InputError(fmt::format("{}: found {}, expected {} to {}", name, found, least, most));
+}
+
+FootForce force_of(const sim::Terrain<double>& terrain, const sim::FootProfile<double>& foot,
+                   const double* position, const double* velocity, double rate_hz,
+                   sim::FootContact<double>& contact) noexcept {
+  if (contact.active == 0.0) contact.region = terrain.region_at(position[0]);
+  const sim::Ground<double>& ground = terrain.ground[static_cast<std::size_t>(contact.region)];
+  const double depth = -position[2], rate = -velocity[2];
+  const sim::GranularForce<double> f =
+      sim::granular_step(ground, foot, position[0], position[1], depth, rate, velocity[0],
+                         velocity[1], rate_hz, contact);
+  if (ground.is_linear == 1.0) {
+    const double spring =
+        depth >= 0.0 ? std::max(ground.stiffness * depth + ground.damping * rate, 0.0) : 0.0;
+    return {.normal = spring, .raw = spring, .friction_bound = ground.friction * spring};
+  }
+  return {.normal = f.normal,
+          .raw = f.raw,
+          .friction_bound = f.friction_bound,
+          .stroke_x = -f.stroke * f.direction_x,
+          .stroke_y = -f.stroke * f.direction_y};
+}
+
+}  // namespace
+
+Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
+           double foot_radius_m, double foot_width_m) {
+  sim::RobotModel<double> model;
+  model.foot_radius_m = checked("foot_radius_m", foot_radius_m, 1e-3, 1.0);
+  model.foot_width_m = checked("foot_width_m", foot_width_m, 0.0, 1.0);
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, ground);
+  for (const std::string& setting : settings) tree.set(setting);
+  const sim::TerrainDescription description = sim::read_terrain(tree);
+  tree.reject_unknown();
+  for (const sim::TerrainPatch& patch : description.patches) {
+    if (patch.ground.kind == sim::GroundKind::kRigid) {
+      throw InputError(fmt::format(
+          "ground: found '{}', which is hard: expected one that yields, with a law of force",
+          description.name));
+    }
+    if (patch.ground.coupling_npm > 0.0) {
+      throw InputError(fmt::format(
+          "ground: found '{}', which couples the feet of a robot: expected one with a law for each",
+          description.name));
+    }
+  }
+  foot_ = sim::make_foot_profile(description, model);
+  terrain_ = sim::make_terrain(description, foot_, model);
+}
+
+void Feet::step(std::size_t count, const double* position, const double* velocity, double step_s,
+                sim::FootContact<double>* contacts, FootForce* forces) const noexcept {
+  sim::Terrain<double> terrain = terrain_;
+  // The filter's constant is meant for the simulator's own step.
+  for (auto& ground : terrain.ground) ground.filter_step *= step_s / kControlPeriod_s;
+  for (std::size_t i = 0; i < count; ++i, position += 3, velocity += 3) {
+    forces[i] = force_of(terrain, foot_, position, velocity, 1.0 / step_s, contacts[i]);
+  }
+}
+
+}  // namespace sandrunner::python

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim/ground/granular.h"
+#include "sim/ground/terrain.h"
+
+namespace sandrunner::python {
+
+/// Force of the ground on a foot's deepest point; the ground lies flat at z = 0.
+struct FootForce {
+  double normal = 0.0;                    ///< along +z, >= 0, N
+  double raw = 0.0;                       ///< before the filter of the granular law, N
+  double friction_bound = 0.0;            ///< largest tangential force, N
+  double stroke_x = 0.0, stroke_y = 0.0;  ///< of the crater's wall, N
+};
+
+/// The contact law of one kind of foot, for a simulator that is not ours.
+class Feet {
+ public:
+  /// `ground`: a preset or terrain file; `settings`: PATH=VALUE of its table. A width of 0 is a
+  /// ball. Throws InputError, also for ground without a law of force: hard ground, and springs that
+  /// couple the feet of a robot.
+  Feet(const std::string& ground, const std::vector<std::string>& settings, double foot_radius_m,
+       double foot_width_m);
+
+  /// One time step of `count` feet, whose deepest points are at `position` (m) and move with
+  /// `velocity` (m/s), three numbers each.
+  void step(std::size_t count, const double* position, const double* velocity, double step_s,
+            sim::FootContact<double>* contacts, FootForce* forces) const noexcept;
+
+ private:
+  sim::FootProfile<double> foot_;
+  sim::Terrain<double> terrain_;
+};
+
+}  // namespace sandrunner::python

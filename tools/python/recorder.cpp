@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/python/recorder.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "rt/base/errors.h"
+#include "rt/base/output_files.h"
+#include "rt/telemetry/view/view_page.h"
+#include "sim/step/ground_truth.h"
+
+namespace sandrunner::python {
+namespace {
+
+Vector3 vector_of(const sim::Vec3<float>& v) { return {v.x, v.y, v.z}; }
+
+RunScene scene_of(const Environments& environments, int env) {
+  const sim::Robot& robot = environments.robot();
+  const sim::RobotModel<double>& model = robot.model;
+  const auto array = [](const sim::Vec3<double>& v) { return Vector3{v.x, v.y, v.z}; };
+  RunScene scene;
+  scene.terrain = "training ground";
+  scene.robot = robot.description;
+  scene.mass_kg = model.mass();
+  scene.motor_constant = robot.motor_constant_nmpsqrtw;
+  scene.base_box_size_m = array(2.0 * model.base_box_half_m);
+  scene.base_box_center_m = array(model.base_box_centre_m);
+  scene.foot_radius_m = model.foot_radius_m;
+  const sim::Terrain<float> terrain = environments.task().terrain(env);
+  scene.granular_ground = terrain.ground[0].is_granular > 0.0f;
+  if (terrain.highest > 0.0f) {
+    scene.ground_height_m = [terrain](double x_m, double y_m) -> double {
+      return sim::surface_at(terrain, static_cast<float>(x_m), static_cast<float>(y_m)).height;
+    };
+  }
+  return scene;
+}
+
+int checked(const Environments& environments, int env) {
+  if (env >= 0 && env < environments.envs()) return env;
+  throw InputError(fmt::format("env: found {}, expected 0 to {}", env, environments.envs() - 1));
+}
+
+}  // namespace
+
+Recorder::Recorder(Environments& environments, int env)
+    : environments_(environments),
+      env_(checked(environments, env)),
+      record_{.scene = scene_of(environments, env_)},
+      rows_(record_.scene) {}
+
+TickRecord Recorder::tick_now() const {
+  const sim::Batch& batch = environments_.task().batch();
+  const sim::RobotState<float> state = batch.state(env_);
+  const sim::BatchReport<float> report = batch.report(env_);
+  const sim::RigidState<float>& x = state.rigid;
+  const std::array<float, 3>& command = environments_.task().command(env_);
+  TickRecord tick;
+  tick.has_truth = tick.counts = 1;
+  tick.input.sensors.tick = tick_;
+  tick.output.mode = Mode::kWalk;
+  tick.output.policy_input.command = {command[0], command[1], command[2]};
+  tick.input.command.velocity = tick.output.policy_input.command;
+  RobotTruth& truth = tick.truth;
+  truth.position_m = vector_of(x.position);
+  truth.orientation_wxyz = {x.orientation.w, x.orientation.x, x.orientation.y, x.orientation.z};
+  truth.velocity_mps = vector_of(x.velocity);
+  truth.angular_velocity_radps = vector_of(x.angular_velocity);
+  for (int j = 0; j < kNumJoints; ++j) {
+    truth.joint_position_rad[j] = x.q[j];
+    truth.joint_velocity_radps[j] = tick.before.joint_velocity_radps[j] = x.qd[j];
+  }
+  truth.joint_torque_nm.fill(std::numeric_limits<double>::quiet_NaN());  // a batch keeps sums alone
+  truth.state =
+      sim::ground_truth(environments_.robot().model, state, environments_.task().terrain(env_));
+  tick.before.state = truth.state;
+  Kinematics kinematics(environments_.robot().description);
+  kinematics.place({truth.position_m, truth.orientation_wxyz}, truth.joint_position_rad);
+  for (std::size_t l = 0; l < kNumLegs; ++l) {
+    truth.foot_centre_m[l] = kinematics.legs()[l].foot;
+    truth.foot_penetration_m[l] = report.penetration[l];
+    for (std::size_t i = 0; i < 3; ++i) truth.foot_force_n[l][i] = report.foot_force[l][i];
+  }
+  tick.input.sensors.imu.orientation_wxyz = truth.orientation_wxyz;
+  tick.input.sensors.imu.angular_velocity_radps = truth.angular_velocity_radps;
+  tick.input.sensors.joints.position_rad = truth.joint_position_rad;
+  tick.input.sensors.joints.velocity_radps = truth.joint_velocity_radps;
+  return tick;
+}
+
+// A foot that has left the ground leaves its footprint.
+void Recorder::add_row(const RunRow& row) {
+  if (!record_.rows.empty()) {
+    const RunRow& before = record_.rows.back();
+    for (std::size_t l = 0; l < kNumLegs; ++l) {
+      const auto& [x_m, y_m, depth_m] = before.stance_m[l];
+      if (depth_m > 0.0f && row.stance_m[l][2] == 0.0f) {
+        record_.add(Footprint{.t_s = row.t_s,
+                              .x_m = x_m,
+                              .y_m = y_m,
+                              .depth_m = depth_m,
+                              .leg = static_cast<std::uint32_t>(l)});
+      }
+    }
+  }
+  record_.add(row);
+}
+
+bool Recorder::add() {
+  over_ = over_ || environments_.ended()[static_cast<std::size_t>(env_)] != 0;
+  if (over_) return false;
+  if (const auto row = rows_.add(tick_now())) add_row(*row);
+  tick_ += kTicksPerPolicyStep;
+  return true;
+}
+
+void Recorder::write(const std::string& path, const std::string& title) {
+  if (const auto row = rows_.take_last()) add_row(*row);
+  if (record_.rows.empty()) {
+    throw InputError("Recorder: found no step, expected some before the page is written");
+  }
+  RunRecord record = record_;
+  record.scene.policy = title;
+  write_file(path, run_page(std::move(record)));
+}
+
+}  // namespace sandrunner::python

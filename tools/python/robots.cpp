@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/python/robots.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "estimator/cost_of_transport.h"
+#include "rt/base/config_tree.h"
+#include "rt/base/errors.h"
+#include "sim/ground/terrain_description.h"
+#include "sim/step/actuator.h"
+#include "tools/python/environments.h"
+
+namespace sandrunner::python {
+namespace {
+
+constexpr int kMostRobots = 1 << 20, kMostTicks = 1'000'000;
+
+template <typename Record>
+void require_finite(const char* what, int robot, const Record& record) {
+  static_assert(sizeof(Record) % sizeof(float) == 0);
+  const auto values = std::bit_cast<std::array<float, sizeof(Record) / sizeof(float)>>(record);
+  if (std::ranges::all_of(values, [](float v) { return std::isfinite(v); })) return;
+  throw InputError(
+      fmt::format("{}: found a number that is not finite at robot {}, expected none", what, robot));
+}
+
+int checked(const char* name, int found, int most) {
+  if (found >= 1 && found <= most) return found;
+  throw InputError(fmt::format("{}: found {}, expected 1 to {}", name, found, most));
+}
+
+sim::StepSettings settings_at(double step_hz) {
+  if (!(step_hz >= 500.0 && step_hz <= 100'000.0)) {
+    throw InputError(fmt::format("step_hz: found {}, expected 500 to 100000", step_hz));
+  }
+  sim::StepSettings settings;
+  settings.dt_s = 1.0 / step_hz;
+  return settings;
+}
+
+}  // namespace
+
+Robots::Robots(const std::string& robot, int count, const std::string& ground,
+               const std::vector<std::string>& settings, double step_hz, int threads)
+    : robot_(load_robot_named(robot)),
+      foot_(sim::make_foot_profile({}, robot_.model)),
+      batch_(checked("num_robots", count, kMostRobots), foot_, settings_at(step_hz)),
+      pool_(checked("threads", threads, 256)),
+      process_(getpid()),
+      states_(static_cast<std::size_t>(count)),
+      drives_(states_.size()),
+      reports_(states_.size()),
+      sums_(states_.size()) {
+  const sim::Terrain<float> terrain = make_ground(ground, settings);
+  std::vector<int> all;
+  for (int r = 0; r < count; ++r) {
+    batch_.set_model(r, sim::convert_model<float>(robot_.model));
+    batch_.set_terrain(r, terrain);
+    all.push_back(r);
+  }
+  stand(all);
+}
+
+sim::Terrain<float> Robots::make_ground(const std::string& ground,
+                                        const std::vector<std::string>& settings) {
+  ConfigTree tree;
+  sim::add_terrain_layer(tree, ground);
+  for (const std::string& setting : settings) tree.set(setting);
+  const sim::TerrainDescription description = sim::read_terrain(tree);
+  tree.reject_unknown();
+  const sim::TerrainDescription usual;
+  if (description.foot_shape != usual.foot_shape ||
+      description.hydraulic_factor != usual.hydraulic_factor) {
+    throw InputError(
+        "terrain: found another foot, expected that of the robot's file: a batch has one kind");
+  }
+  return sim::convert_terrain<float>(sim::make_terrain(description, foot_, robot_.model));
+}
+
+void Robots::require_robot(int robot) const {
+  if (robot >= 0 && robot < batch_.size()) return;
+  throw InputError(
+      fmt::format("robots: found index {}, expected 0 to {}", robot, batch_.size() - 1));
+}
+
+void Robots::set_ground(const std::string& ground, const std::vector<std::string>& settings,
+                        const std::vector<int>& robots) {
+  const sim::Terrain<float> terrain = make_ground(ground, settings);
+  for (const int r : robots) require_robot(r);
+  for (const int r : robots) {
+    batch_.set_terrain(r, terrain);
+    auto& state = states_[static_cast<std::size_t>(r)];
+    state.feet = {};
+    batch_.set_state(r, state);
+  }
+}
+
+void Robots::set_state(int robot, const sim::RobotState<float>& state) {
+  require_robot(robot);
+  require_finite("state", robot, state);
+  for (const auto& foot : state.feet) {
+    if (foot.region >= 0.0f && foot.region < float(sim::kMaxRegions) &&
+        foot.region == std::floor(foot.region)) {
+      continue;
+    }
+    throw InputError(fmt::format("state: found contacts.region = {} at robot {}, expected 0 to {}",
+                                 foot.region, robot, sim::kMaxRegions - 1));
+  }
+  states_[static_cast<std::size_t>(robot)] = state;
+  batch_.set_state(robot, state);
+}
+
+void Robots::set_model(int robot, const sim::RobotModel<float>& model) {
+  require_robot(robot);
+  require_finite("model", robot, model);
+  batch_.set_model(robot, model);
+}
+
+void Robots::stand(const std::vector<int>& robots) {
+  for (const int r : robots) require_robot(r);
+  for (const int r : robots) {
+    const auto i = static_cast<std::size_t>(r);
+    sim::RobotState<float> state;
+    sim::BatchDrive<float> drive;
+    for (int j = 0; j < kNumJoints; ++j) {
+      const auto nominal = static_cast<float>(robot_.nominal_rad[j]);
+      state.rigid.q[j] = drive.target[j] = drive.target_before[j] = nominal;
+    }
+    const sim::Terrain<float> terrain = batch_.robot(r).terrain;
+    state.rigid.position.z =
+        static_cast<float>(robot_.nominal_height_m) + sim::surface_at(terrain, 0.0f, 0.0f).height;
+    drive.kp = static_cast<float>(robot_.stand_kp_nmprad);
+    drive.kd = static_cast<float>(robot_.stand_kd_nmsprad);
+    if (robot_.obeys_torque_speed_line) {
+      drive.line = sim::drive_line<float>(robot_.torque_speed_line);
+    }
+    drive.heat_factor = heat_factors<float>(robot_.motor_constant_nmpsqrtw);
+    states_[i] = state;
+    drives_[i] = drive;
+    reports_[i] = {};
+    sums_[i] = {};
+    batch_.set_state(r, state);
+  }
+}
+
+void Robots::advance(int ticks) {
+  checked("ticks", ticks, kMostTicks);
+  if (getpid() != process_) {
+    throw InputError(
+        "Batch: found a process that was forked after the batch was made, expected the one that "
+        "made it: its threads do not live on in a fork");
+  }
+  for (int r = 0; r < batch_.size(); ++r) {
+    require_finite("drive", r, drives_[static_cast<std::size_t>(r)]);
+  }
+  pool_.run(batch_.packs(), [&](int pack, int) {
+    const int first = pack * batch_.width(), end = std::min(first + batch_.width(), batch_.size());
+    for (int r = first; r < end; ++r) batch_.set_drive(r, drives_[static_cast<std::size_t>(r)]);
+    batch_.advance(pack, ticks);
+    for (int r = first; r < end; ++r) {
+      const auto i = static_cast<std::size_t>(r);
+      states_[i] = batch_.state(r);
+      reports_[i] = batch_.report(r);
+      sums_[i] = batch_.sums(r);
+    }
+  });
+}
+
+std::vector<sim::RobotModel<float>> Robots::models() const {
+  std::vector<sim::RobotModel<float>> models;
+  for (int r = 0; r < batch_.size(); ++r) models.push_back(batch_.robot(r).model);
+  return models;
+}
+
+}  // namespace sandrunner::python
