@@ -158,8 +158,9 @@ inline GroundParameters ground_of_kind(GroundKind kind) {
 
 /// RobotStepper with all that one step needs.
 struct Bench {
-  explicit Bench(const GroundParameters& ground = ground_of_kind(GroundKind::kRigid))
-      : robot(load_raibo()) {
+  explicit Bench(const GroundParameters& ground = ground_of_kind(GroundKind::kRigid),
+                 const Robot& of = load_raibo())
+      : robot(of) {
     const TerrainDescription description = one_patch(ground);
     foot = make_foot_profile(description, robot.model);
     terrain = make_terrain(description, foot, robot.model);

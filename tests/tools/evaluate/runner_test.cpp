@@ -159,14 +159,28 @@ TEST_F(RunnerTest, FactsAreTheRobotsWithTheLowerOfTwoTorqueLimits) {
 }
 
 // The control process in double and the evaluation in float are two programs around the same steps.
-TEST_F(RunnerTest, AgreesWithTheControlProcess) {
+class EachRobotTest : public testing::TestWithParam<std::string> {
+ protected:
+  Study study_{{.runs = 3, .grid_runs = 2, .seed = 7}, sim::load_robot(GetParam())};
+  const Policy policy_ = load_shipped_policy(GetParam());
+
+  Trial walk(const char* ground, double speed_mps) {
+    Trial trial;
+    trial.terrain = study_.add(Study::preset(ground));
+    trial.start = &study_.start(0);
+    trial.command = {{speed_mps, 0.0, 0.0}, 0.0, policy_.spec().envelope.acceleration_mps2};
+    trial.duration_s = 5.0;
+    return trial;
+  }
+};
+
+TEST_P(EachRobotTest, AgreesWithTheControlProcess) {
   flush_denormals_to_zero();
-  const Policy policy = load_shipped_policy();
   for (const char* ground : {"dry-sand", "rigid"}) {
     SCOPED_TRACE(ground);
-    const ProcessConfig config = config_of(ground, {}, &policy.spec());
+    const ProcessConfig config = config_of(ground, {"robot=" + GetParam()}, &policy_.spec());
     const RunResult process = simulate({.config = config,
-                                        .policy = PolicyRunner(policy),
+                                        .policy = PolicyRunner(policy_),
                                         .command = "1.5,0,0",
                                         .plan = {.walk_s = 5.0, .start_walking = true}});
     ASSERT_TRUE(process.survived);
@@ -174,13 +188,9 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     const MotionFigures& motion = p.motion.value();
     const EstimateErrors& estimate = p.estimate.value();
 
-    Trial trial;
-    trial.terrain = study_.add(Study::preset(ground));
-    trial.start = &study_.start(0);
-    trial.command = {{1.5, 0.0, 0.0}, 0.0, policy.spec().envelope.acceleration_mps2};
-    trial.duration_s = 5.0;
     const TrialFigures e =
-        run_trials(study_.robot(), study_.foot(), policy, {trial}, {.torque_speed_line = false})[0];
+        run_trials(study_.robot(), study_.foot(), policy_, {walk(ground, 1.5)},
+                   {.torque_speed_line = study_.robot().obeys_torque_speed_line})[0];
     ASSERT_FALSE(e.fell);
     EXPECT_NEAR(e.vx_mps, motion.mean_velocity_mps[0], 0.02);
     EXPECT_NEAR(e.vy_mps, motion.mean_velocity_mps[1], 0.02);
@@ -194,6 +204,23 @@ TEST_F(RunnerTest, AgreesWithTheControlProcess) {
     EXPECT_NEAR(e.foot_height_rmse_m, estimate.foot_height_rmse_m, 0.002);
   }
 }
+
+TEST_P(EachRobotTest, WalksWithTheSameBitsInEveryWidth) {
+  const std::vector<Trial> trials = {walk("dry-sand", 1.0), walk("rigid", 1.5),
+                                     walk("dry-sand", 0.5)};
+  const auto run = [&](sim::BatchWidth width) {
+    std::vector<std::vector<std::uint64_t>> bits;
+    for (const TrialFigures& f :
+         run_trials(study_.robot(), study_.foot(), policy_, trials, {1, true, width})) {
+      bits.push_back(bits_of(f));
+    }
+    return bits;
+  };
+  EXPECT_EQ(run(sim::BatchWidth::kEight), run(sim::BatchWidth::kOne));
+}
+
+INSTANTIATE_TEST_SUITE_P(Robot, EachRobotTest, testing::Values("raibo", "go2"),
+                         [](const auto& param_info) { return param_info.param; });
 
 }  // namespace
 }  // namespace sandrunner::evaluate

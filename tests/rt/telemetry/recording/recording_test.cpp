@@ -97,6 +97,15 @@ TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
   EXPECT_NE(content["/tf"].find("base_link"), std::string::npos);
 }
 
+TEST_F(RecordingTest, OfGo2WithItsOwnPolicyReplaysBitForBitAndIsDrawn) {
+  record("--robot go2 --set dds.enabled=false");
+  EXPECT_EQ(read_ticks(path(), [](const TickRecord&) { return true; }).info.policy,
+            shipped_policy_text("go2"));
+  EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --plot " + folder_.path("plots")), 0) << output();
+  EXPECT_NE(output().find("every bit agrees"), std::string::npos) << output();
+  EXPECT_NE(read_file(folder_.path("plots/run.html")).find("FL_calf"), std::string::npos);
+}
+
 TEST_F(RecordingTest, ReplaysWithTheRobotThatItCarries) {
   std::string map;
   {
