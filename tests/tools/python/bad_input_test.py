@@ -40,6 +40,8 @@ class BadInput(unittest.TestCase):
             r"command.yaw_radps": {"settings": ["command.yaw_radps=fast"]},
             r"^settings: found command.yaw_radps = ": {"settings": {"command.yaw_radps": object()}},
             r"^settings: found 3": {"settings": 3},
+            r"^settings: found array\('x'": {"settings": np.array("x")},
+            r"command.yaw_radps.*'x'|command.yaw_radps.*\"x\"": {"settings": {"command.yaw_radps": np.array("x")}},
             r"no-such-file.toml": {"settings": "no-such-file.toml"},
         }.items():
             with self.subTest(arguments=arguments):

@@ -57,7 +57,9 @@ def _toml(key: str, value: object) -> str:
         escaped = value.replace("\\", "\\\\").replace('"', '\\"')
         if escaped.isprintable():
             return f'"{escaped}"'
-    if isinstance(value, (list, tuple, np.ndarray)):
+    if isinstance(value, np.ndarray):
+        return _toml(key, value.tolist())
+    if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml(key, element) for element in value) + "]"
     raise ValueError(f"settings: found {key} = {shown(value)}, expected a number, truth value, text or list")
 
@@ -80,9 +82,12 @@ def settings_lines(settings: Settings) -> list[str]:
         return []
     if isinstance(settings, Mapping):
         return _flat("", settings)
-    if isinstance(settings, (str, bytes)) or not isinstance(settings, Iterable):
+    try:
+        lines = None if isinstance(settings, (str, bytes)) else list(settings)
+    except TypeError:
+        lines = None
+    if lines is None:
         raise ValueError(f"settings: found {shown(settings)}, expected a dictionary or a list of PATH=VALUE")
-    lines = list(settings)
     for line in lines:
         if not isinstance(line, str) or not line.isprintable():
             raise ValueError(f"settings: found {shown(line)}, expected PATH=VALUE")

@@ -79,7 +79,7 @@ class VectorEnv(_Base):
         copy: bool = False,
         width: int = 0,
     ) -> None:
-        if actions not in ("joints", "modes"):
+        if not isinstance(actions, str) or actions not in ("joints", "modes"):
             raise ValueError(f"actions: found {_check.shown(actions)}, expected 'joints' or 'modes'")
         if not isinstance(curriculum, (bool, Mapping)):
             raise ValueError(f"curriculum: found {_check.shown(curriculum)}, expected True, False or a dictionary")
