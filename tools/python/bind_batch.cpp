@@ -68,19 +68,21 @@ void bind_batch(py::module_& module) {
            py::kw_only(), py::arg("robot"), py::arg("count"), py::arg("ground"),
            py::arg("settings"), py::arg("step_hz"), py::arg("threads"))
       .def("states",
-           [](py::object self) {
+           [](const py::object& self) {
              return records(self.cast<Robots&>().states(), state_type(), self);
            })
       .def("drives",
-           [](py::object self) {
+           [](const py::object& self) {
              return records(self.cast<Robots&>().drives(), drive_type(), self);
            })
       .def("reports",
-           [](py::object self) {
+           [](const py::object& self) {
              return records(self.cast<Robots&>().reports(), report_type(), self);
            })
       .def("sums",
-           [](py::object self) { return records(self.cast<Robots&>().sums(), sums_type(), self); })
+           [](const py::object& self) {
+             return records(self.cast<Robots&>().sums(), sums_type(), self);
+           })
       .def("models", &models)
       .def("set_states", &set_states)
       .def("set_models", &set_models)

@@ -11,7 +11,7 @@ namespace sandrunner::python {
 namespace {
 
 /// Views of all arrays that a step writes, by name.
-py::dict arrays(py::object self) {
+py::dict arrays(const py::object& self) {
   auto& e = self.cast<Environments&>();
   const py::ssize_t n = e.envs();
   learner::Rollout& r = e.rollout();

@@ -163,7 +163,7 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   write("raibo.urdf", urdf);
   write("map.toml", map + "[wheels]\nradius_m = 0.1\n");
   expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
-  expect_refused("--robot map.toml", "map.toml:65: unknown key 'wheels.radius_m'");
+  expect_refused("--robot map.toml", "map.toml:68: unknown key 'wheels.radius_m'");
   expect_refused("--robot absent.toml", "absent.toml: cannot be read");
   expect_refused("--robot /dev/null",
                  "/dev/null: cannot be read (not a regular file), expected a robot file");
