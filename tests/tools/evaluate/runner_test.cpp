@@ -95,12 +95,13 @@ TEST_F(RunnerTest, AnObserverSeesEveryStepOfEachTrial) {
   trial.terrain = study_.add(Study::preset("dry-sand"));
   trial.duration_s = 0.5;
   std::vector<Trial> trials(11, trial);
-  for (std::size_t i = 0; i < trials.size(); ++i) trials[i].start = &study_.start(static_cast<int>(i % 3));
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    trials[i].start = &study_.start(static_cast<int>(i % 3));
   std::vector<int> steps(trials.size());
   std::vector<float> first_q(trials.size()), greatest_torque_nm(trials.size());
   const auto figures = run_trials(
-      study_.robot(), study_.foot(), standing_policy(), trials,
-      {2, true, sim::BatchWidth::kEight}, {}, [&](std::size_t i, const ObservedStep& step) {
+      study_.robot(), study_.foot(), standing_policy(), trials, {2, true, sim::BatchWidth::kEight},
+      {}, [&](std::size_t i, const ObservedStep& step) {
         if (steps[i]++ == 0) first_q[i] = step.state.rigid.q[2];
         for (const double torque : step.torque_nm) {
           greatest_torque_nm[i] =
