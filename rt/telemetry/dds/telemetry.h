@@ -11,6 +11,7 @@
 #include "rt/loop/clock.h"
 #include "rt/loop/tick_record.h"
 #include "rt/operator/operator_desk.h"
+#include "rt/telemetry/dds/dds_config.h"
 #include "rt/telemetry/dds/neighbours.h"
 #include "rt/telemetry/dds/ros_publisher.h"
 #include "rt/telemetry/dds/tick_batches.h"

@@ -73,7 +73,8 @@ std::pair<int, float> arrival(double latency_s) {
     rollout.action(t).setOnes();
     task.step(0, t, rollout);
     if (rollout.reset(t + 1, 0) != 0) return {-1, 0.0f};
-    const sim::BatchDrive<float>& drive = robots_of(task)[0].drive;
+    const auto robots = robots_of(task);
+    const sim::BatchDrive<float>& drive = robots[0].drive;
     if (drive.target == drive.target_before) continue;
     const float share = drive.switch_tick / kStepsPerAction;
     if (share < 1.0f) return {t, share};
