@@ -28,7 +28,7 @@ std::int64_t after_s(double time_s) {
   return clock_ns(CLOCK_MONOTONIC) + static_cast<std::int64_t>(1e9 * time_s);
 }
 
-/// Listens for so long; false: it should not go on.
+/// Listens for this long; false: it should not go on.
 bool pass(RobotLink& link, double time_s, const std::function<bool()>& may_go_on) {
   const std::int64_t end_ns = after_s(time_s);
   while (clock_ns(CLOCK_MONOTONIC) < end_ns) {

@@ -24,8 +24,8 @@ struct KindRow {
 };
 
 constexpr auto kKinds = std::to_array<KindRow>({
-    {Kind::kGap, "gap", false, true, "MS: no states for so long"},
-    {Kind::kBurst, "burst", false, true, "MS: states are held up for so long, then come at once"},
+    {Kind::kGap, "gap", false, true, "MS: no states for this long"},
+    {Kind::kBurst, "burst", false, true, "MS: states are held up for this long, then come at once"},
     {Kind::kJitter, "jitter", false, true, "MS: each state is late by up to this, by chance"},
     {Kind::kLate, "late", false, true, "MS: each state is late by this"},
     {Kind::kLoses, "loses", false, true, "N: one of N states is lost"},
