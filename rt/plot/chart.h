@@ -49,7 +49,7 @@ struct ChartPage {
   std::string title;
   std::vector<Chart> charts;
   int columns = 2;
-  int width_px = 1200;
+  int width_px = 1240;
   int chart_height_px = 330;
 };
 

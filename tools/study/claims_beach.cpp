@@ -20,12 +20,6 @@ const char* const kOthers[] = {"env-rigid", "env-quasistatic", "env-linear", "pl
 
 std::string percent(const Figure& share) { return printed(share, 100.0, 1) + " %"; }
 
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 Figure overall_success(const Case& c, const char* controller) {
   return c.success(controller, kSand, kSlowest, kFastest);
 }

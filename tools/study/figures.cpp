@@ -77,7 +77,6 @@ StudyFigure torque_figure(const Evidence& evidence) {
                      "Extension is positive for HFE and KFE. One second at 100 Hz, first seed.",
                      {}};
   figure.page.title = "Torques of the right legs at about 1 m/s on dry sand (Fig. 2 F)";
-  figure.page.width_px = 1240;
   figure.page.chart_height_px = 250;
   for (const char* leg : {"RF", "RH"}) {
     int columns = 0;
@@ -194,7 +193,6 @@ std::vector<StudyFigure> beach_figures(const Evidence& evidence) {
       "greatest foot of any run. Lines are medians over the seeds that have a success.",
       {}};
   figure.page.title = "Dry sand (Fig. 2 C, D, E)";
-  figure.page.width_px = 1240;
   figure.page.columns = 3;
   figure.page.chart_height_px = 380;
   figure.page.charts = {cost_chart(evidence, "E1", "beach", "Cost of transport (Fig. 2 C)"),
@@ -206,7 +204,6 @@ std::vector<StudyFigure> beach_figures(const Evidence& evidence) {
 StudyFigure summary_figure(const Evidence& evidence) {
   StudyFigure figure{"summary", "", "", {}};
   figure.page.title = "Simulated dry sand: controllers trained on different grounds";
-  figure.page.width_px = 1240;
   figure.page.columns = 2;
   figure.page.charts = {command_chart(evidence, success_chart()),
                         command_chart(evidence, {"E1", "beach", "Average speed over 5 m", "m/s",

@@ -94,7 +94,6 @@ std::vector<StudyFigure> ground_figures(const Evidence& evidence) {
       "vinyl) and on soils of the kind of our grass, never on springs (as the track).",
       {}};
   straight.page.title = "Vinyl tile, athletic track and grass (Fig. 3 D, E)";
-  straight.page.width_px = 1240;
   straight.page.columns = 3;
   for (const Ground& ground : kHarder) {
     straight.page.charts.push_back(
@@ -112,7 +111,6 @@ std::vector<StudyFigure> ground_figures(const Evidence& evidence) {
                     "10 s on the spot, as many runs each way; caps: least and greatest run.",
                     {}};
   turns.page.title = "Yaw rate at a command of 1 rad/s";
-  turns.page.width_px = 1240;
   turns.page.columns = 1;
   const std::vector<Ground> grounds(std::begin(kTurned), std::end(kTurned));
   turns.page.charts = {turn_chart(
@@ -129,7 +127,6 @@ std::vector<StudyFigure> mattress_figures(const Evidence& evidence) {
                      "in 10 s without a contact of base or thigh.",
                      {}};
   figure.page.title = "Air mattress at a command of 1 rad/s (Fig. 3 H)";
-  figure.page.width_px = 1240;
   figure.page.columns = 3;
   const std::vector<Ground> mattress = {{"air-mattress", "air mattress"}};
   const auto bars = [&](const char* name, double scale, bool of_successes, bool caps) {
@@ -150,7 +147,6 @@ std::vector<StudyFigure> foam_figures(const Evidence& evidence) {
                      "spring; no foam was measured.",
                      {}};
   figure.page.title = "From hard ground onto memory foam at 0.5 m/s (fig. S8)";
-  figure.page.width_px = 1240;
   plot::Chart depth, speed;
   depth.title = "Deepest foot";
   depth.y_label = "mm";
@@ -185,7 +181,6 @@ std::vector<StudyFigure> estimator_figures(const Evidence& evidence) {
                      "without a fall.",
                      {}};
   figure.page.title = "The estimate of Ours (section S4)";
-  figure.page.width_px = 1240;
   figure.page.columns = 3;
   struct Part {
     const char *name, *title, *unit;

@@ -70,7 +70,6 @@ std::vector<StudyFigure> hidden_state_figures(const Evidence& evidence) {
       "the phase of the left front foot. The numbers below the picture can fail; it cannot.",
       {}};
   figure.page.title = "Hidden states of Ours (Fig. 3 F)";
-  figure.page.width_px = 1240;
   figure.page.chart_height_px = 520;
   plot::Chart by_ground, by_phase;
   by_ground.title = "By ground";
@@ -103,7 +102,6 @@ std::vector<StudyFigure> hidden_state_figures(const Evidence& evidence) {
 std::vector<StudyFigure> anchor_figures() {
   StudyFigure figure{"ball", "", "", {}};
   figure.page.title = "A steel ball of 25.4 mm dropped on glass beads";
-  figure.page.width_px = 1240;
   plot::Chart depth, time;
   depth.title = "Final depth";
   depth.y_label = "mm";
@@ -149,7 +147,6 @@ std::vector<StudyFigure> learning_figures(const std::string& folder,
                      "A line for each seed; the battery is run on the grounds of each training.",
                      {}};
   figure.page.title = "Learning curves";
-  figure.page.width_px = 1240;
   figure.page.columns = 3;
   for (const Column& column : kColumns) {
     plot::Chart chart;

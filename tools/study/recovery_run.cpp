@@ -107,7 +107,6 @@ StudyFigure recovery_curves(const RecoveryRun& run) {
   StudyFigure figure{
       "fig2b", "", "Time from the touchdown of the left front foot on the strip.", {}};
   figure.page.title = "Around the loose stance";
-  figure.page.width_px = 1240;
   figure.page.columns = 3;
   plot::Chart speed, tilt, feet;
   speed.title = "Forward speed";

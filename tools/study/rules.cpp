@@ -7,10 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <limits>
 
-#include "rt/base/quantile.h"
 #include "tools/evaluate/statistics.h"
+#include "tools/study/runs.h"
 
 namespace sandrunner::study {
 namespace {
@@ -64,14 +63,7 @@ const char* verdict_name(Verdict verdict) noexcept {
   return "";
 }
 
-double median(const Figure& figure) {
-  std::vector<double> values = values_of(figure);
-  if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
+double median(const Figure& figure) { return median_of(values_of(figure)); }
 
 std::string printed(const Figure& figure, double scale, int digits) {
   const double middle = median(figure);

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
+
+#include "rt/base/quantile.h"
 
 namespace sandrunner::study {
 namespace {
@@ -79,6 +82,12 @@ double mean_of(const std::vector<double>& values) {
     ++n;
   }
   return n > 0 ? sum / n : kNan;
+}
+
+double median_of(std::vector<double> values) {
+  if (std::ranges::any_of(values, [](double v) { return std::isnan(v); })) return kNan;
+  std::ranges::sort(values);
+  return quantile(values, 0.5);
 }
 
 double mean_where(const std::vector<double>& values, const std::vector<double>& flags) {
