@@ -2,7 +2,6 @@
 #include "tools/hil/unitree_bench.h"
 
 #include <signal.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "rt/base/clock_ns.h"
 #include "rt/core/split_mix.h"
+#include "rt/realtime/clock.h"
 #include "sim/step/actuator.h"
 #include "tools/hil/controller_process.h"
 
@@ -23,11 +23,6 @@ constexpr std::uint64_t kCyclesPerQuestion = 5;
 constexpr double kFirmwareTimeout_s = 0.1, kFirmwareDamping_nmsprad = 3.0;
 constexpr double kHealthyBattery_percent = 80, kHealthy_degc = 35;
 constexpr double kSupply_v = 29.0;
-
-void sleep_until(std::int64_t until_ns) {
-  const timespec until{.tv_sec = until_ns / 1'000'000'000, .tv_nsec = until_ns % 1'000'000'000};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-}
 
 bool has(const std::vector<TimedUnitreeFault>& script, UnitreeFaultKind kind) {
   return std::ranges::any_of(script, [&](const TimedUnitreeFault& f) { return f.kind == kind; });

@@ -47,8 +47,8 @@ class UnitreeBench {
   /// `walk_s`: how long the walk will be whose speed is measured; 0: all of it. Throws InputError.
   UnitreeBench(const ProcessConfig& config, std::vector<TimedUnitreeFault> faults, double walk_s);
 
-  /// Plays as long as `more` says so, which is asked in every fifth cycle. `controller`: whom to
-  /// kill, 0: nobody.
+  /// Plays as long as `more`, called in every fifth cycle, returns true. `controller`: the process
+  /// that faults kill or stop; 0: none.
   UnitreeReport play(const std::function<bool()>& more, pid_t controller = 0);
   bool all_faults_made() const noexcept { return made_ == script_.size(); }
 
@@ -95,7 +95,7 @@ class UnitreeBench {
   int nan_joint_ = -1, lost_joint_ = -1, foreign_left_ = 0;
   std::uint32_t back_ms_ = 0;
   unitree::RobotState state_;
-  JointArray<std::optional<int>> mode_;  ///< that a motor reports, whatever it is told
+  JointArray<std::optional<int>> mode_;  ///< that a motor reports, whatever is commanded
 
   std::deque<QueuedState> queue_;
   pid_t controller_ = 0;
