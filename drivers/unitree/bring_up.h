@@ -46,7 +46,7 @@ bool lies(const RobotFigures& robot, const RobotState& state) noexcept;
 
 /// Prepares the robot for commands: looks at its states, switches its own controller off, listens
 /// for other programs, finds who reads commands. Sends none itself. Seconds. Throws InputError, one
-/// line. `may_go_on` is asked now and then: false ends it.
+/// line. It calls `may_go_on` now and then, and ends where that is false.
 void bring_up(RobotLink& link, const UnitreeConfig& config, const RobotFigures& robot,
               const std::function<bool()>& may_go_on);
 

@@ -31,7 +31,7 @@ struct StudyModelFile {
 };
 
 /// Encoder, estimator and actor, whose tensors have the same places as in the layout of a training;
-/// the critic is a single layer that nobody uses.
+/// the critic is a single layer that is not used.
 learner::ParameterLayout model_layout(const learner::NetworkSizes& sizes);
 
 /// Takes over encoder, estimator and actor from the parameters of a training, with the actor's
