@@ -6,6 +6,7 @@
 # NAME-SEED.safetensors, NAME-SEED.csv. A student (pl-*) imitates the teacher of this seed in DIR.
 # TRANSITIONS: length of each training, the same for all controllers that are compared; a student's
 # is two thirds of it, on top of its teacher's.
+# THREADS: worker threads of a training, without it all cores; weights do not depend on it.
 set -eu
 for word; do
   case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
@@ -43,7 +44,7 @@ for name in "$@"; do
   resume=
   [ ! -f "$run/checkpoint.bin" ] || resume=--resume
   "$program" --config "$here/trainings/$name.toml" --set run.transitions="$length" \
-    ${teacher:+--set "imitation.teacher=$teacher"} --seed "$seed" --out "$run" $resume
+    ${teacher:+--set "imitation.teacher=$teacher"} --seed "$seed" ${THREADS:+--threads "$THREADS"} --out "$run" $resume
   if ! awk -F, -v all="$length" 'END { exit !($2 + 0 >= all + 0) }' "$run/curve.csv"; then
     echo "train.sh: $run is not complete: run the same command again" >&2
     exit 1

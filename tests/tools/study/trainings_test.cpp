@@ -86,7 +86,8 @@ class TrainScriptTest : public testing::Test {
  protected:
   /// The script with a trainer that writes down its arguments and the files of a training of
   /// `rows` updates.
-  Ended run(int rows, const std::vector<std::string>& arguments) const {
+  Ended run(int rows, const std::vector<std::string>& arguments,
+            const std::string& threads = "") const {
     const std::string trainer = folder_.path("trainer");
     write_file(trainer,
                "#!/bin/sh\necho \"$@\" >> \"$LOG\"\n"
@@ -102,6 +103,7 @@ class TrainScriptTest : public testing::Test {
                                       "LOG=" + folder_.path("log"),
                                       "ROWS=" + std::to_string(rows),
                                       "TRANSITIONS=300",
+                                      "THREADS=" + threads,
                                       kStudy + "/train.sh"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     return run_process(words);
@@ -145,6 +147,11 @@ TEST_F(TrainScriptTest, AStudentImitatesTheTeacherOfItsSeedForTwoThirdsOfTheLeng
                 "/trainings/pl-gm.toml --set run.transitions=200 --set "
                 "imitation.teacher=" +
                 out + "/teacher-gm-2.safetensors --seed 2 --out " + out + "/pl-gm-2\n");
+}
+
+TEST_F(TrainScriptTest, PassesTheNumberOfThreadsOn) {
+  EXPECT_EQ(run(30, {folder_.path("out"), "1", "tcn"}, "1").code, 0);
+  EXPECT_NE(read_file(folder_.path("log")).find("--seed 1 --threads 1 --out"), std::string::npos);
 }
 
 TEST_F(TrainScriptTest, RefusesAnUnknownNameBeforeItTrains) {
