@@ -11,6 +11,7 @@
 #include "tools/study/figures.h"
 #include "tools/study/html.h"
 #include "tools/study/measurements.h"
+#include "tools/study/methods.h"
 #include "tools/study/recovery_run.h"
 #include "tools/study/tables.h"
 
@@ -230,7 +231,7 @@ void write_report(const Options& options, const std::vector<Model>& models,
       fmt::format("<p>{} runs for each ground and command; sensor noise of the training; targets "
                   "5 ms late; torque-speed line of the drives; 4 kHz.</p>\n",
                   options.lab.runs));
-  page.add(methods_table(models));
+  page.add(methods_tables(models, sim::load_raibo()));
   page.section("What a simulation cannot show");
   page.add(kLimits);
   write_file(options.out + "/results.json", results_json(options, models, evidence));

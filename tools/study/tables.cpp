@@ -287,19 +287,4 @@ std::string anchor_table() {
   return table.html();
 }
 
-std::string methods_table(const std::vector<Model>& models) {
-  HtmlTable table{{"model", "transitions", "core-hours", "processor", "commit", "file"}, {}};
-  for (const Model& model : models) {
-    const auto& provenance = model.network.spec.provenance;
-    std::vector<std::string> row = {model_name(model)};
-    for (const char* key : {"transitions", "core_hours", "processor", "commit"}) {
-      const auto found = provenance.find(key);
-      row.push_back(found == provenance.end() ? "" : escaped(found->second));
-    }
-    row.push_back(fmt::format("{:016x}", model.hash));
-    table.rows.push_back(row);
-  }
-  return table.html();
-}
-
 }  // namespace sandrunner::study

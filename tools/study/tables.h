@@ -28,7 +28,5 @@ std::string hidden_state_table(const Evidence& evidence);
 std::string foam_table(const Evidence& evidence);
 std::string contact_table(const Evidence& evidence);
 std::string anchor_table();
-/// Where the models come from.
-std::string methods_table(const std::vector<Model>& models);
 
 }  // namespace sandrunner::study
