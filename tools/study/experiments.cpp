@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "tools/study/oracles.h"
+
 namespace sandrunner::study {
 namespace {
 
@@ -26,6 +28,7 @@ const std::vector<Experiment>& experiments() {
       {"E4", "Hidden state (Fig. 3 F)", {"ours"}, run_hidden_state},
       {"E5", "Air mattress (Fig. 3 G, H)", mattress_controllers(), run_mattress},
       {"E6", "Memory foam (fig. S8)", {"ours", "env-rigid"}, run_foam},
+      {"E8", "Attribution (Fig. 4 E to G, figs. S9, S11)", oracle_controllers(), run_attribution},
   };
   return kAll;
 }

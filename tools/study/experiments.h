@@ -36,6 +36,8 @@ Measured run_hidden_state(Lab& lab, const Model& model);
 Measured run_mattress(Lab& lab, const Model& model);
 /// E6, S8: from hard ground onto memory foam.
 Measured run_foam(Lab& lab, const Model& model);
+/// E8, Fig. 4 E to G and S11: what the answers of an oracle depend on (oracles.h).
+Measured run_attribution(Lab& lab, const Model& model);
 
 /// The ground of a run on the beach: run 0 has the preset, the others have stiffnesses that differ
 /// by up to 35 %, a friction of 0.6 to 0.9 and 0.8 to 1.2 times the inertia.

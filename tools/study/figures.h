@@ -29,6 +29,8 @@ std::vector<StudyFigure> hidden_state_figures(const Evidence& evidence);
 /// Fig. 3 H: E5; S8: E6.
 std::vector<StudyFigure> mattress_figures(const Evidence& evidence);
 std::vector<StudyFigure> foam_figures(const Evidence& evidence);
+/// Fig. 4 E, F, G and S11: E8.
+std::vector<StudyFigure> attribution_figures(const Evidence& evidence);
 /// S4: the network's estimate in the runs of E1 and E3.
 std::vector<StudyFigure> estimator_figures(const Evidence& evidence);
 /// The ball dropped on beads.

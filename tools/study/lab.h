@@ -39,6 +39,7 @@ struct Ran {
 
 struct LabSettings {
   int runs = 16;
+  int grid_runs = 360;
   int threads = 1;
 };
 

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "tools/study/lab.h"
+#include "tools/study/oracles.h"
 
 namespace sandrunner::study {
 namespace {
@@ -148,6 +150,78 @@ TEST(ClaimsTest, EveryClaimOfTheRobotHalfHasARule) {
   }
   EXPECT_EQ(claims().size(), 71u);
   EXPECT_EQ(claim("39a").section, "Other grounds");
+}
+
+// An oracle whose answers depend on T and e by this much, in the bins of sigma_flat by `bins`, and
+// on sigma_flat, sigma_cone and the inertial factor by `gradients`.
+struct MadeUpOracle {
+  double terrain = 0.1, estimate = 0.3;
+  std::vector<double> bins = {0.1, 0.2};
+  std::array<double, 3> gradients = {0.3, 0.2, 0.1};
+};
+
+void add_oracle(Evidence& evidence, const std::string& oracle, const MadeUpOracle& m) {
+  RunGroup group{kOracleGround, "", 0.0, {}, {}};
+  for (int i = 0; i < 10; ++i) {
+    group.runs["T"].push_back(m.terrain + 0.001 * i);
+    group.runs["e"].push_back(m.estimate);
+  }
+  group.lists["bin_T"] = m.bins;
+  for (const OracleJoint& joint : kOracleJoints) {
+    std::vector<double>& gradients = group.lists[joint.list];
+    gradients.assign(std::size(kTerrainParameters), 0.0);
+    gradients[kSigmaFlat] = m.gradients[0];
+    gradients[kSigmaCone] = m.gradients[1];
+    gradients[kInertia] = m.gradients[2];
+  }
+  evidence.measured["E8"][oracle][1] = {{group}};
+  evidence.measured["fairness"][oracle][1] = straight_runs({}, "own", {1.0, 2.0, 3.0}, 16);
+}
+
+std::string oracle_verdict(const std::string& id, const MadeUpOracle& h, const MadeUpOracle& o) {
+  Evidence evidence;
+  add_oracle(evidence, "oracle-h", h);
+  add_oracle(evidence, "oracle-o", o);
+  return verdict(id, evidence);
+}
+
+TEST(OracleClaimsTest, TheEstimateHasToCountTwiceAsMuchAsTheTerrainInBoth) {
+  const MadeUpOracle twice{.estimate = 0.3}, once{.estimate = 0.15}, less{.estimate = 0.05};
+  EXPECT_EQ(oracle_verdict("59", twice, twice), "agrees (1 seed)");
+  EXPECT_EQ(oracle_verdict("59", twice, once), "can't tell (1 seed)");
+  EXPECT_EQ(oracle_verdict("59", less, once), "can't tell (1 seed)");
+  EXPECT_EQ(oracle_verdict("59", less, less), "contradicts (1 seed)");
+}
+
+TEST(OracleClaimsTest, WithTheHistoryTheTerrainHasToCountLess) {
+  const MadeUpOracle little{.terrain = 0.1}, much{.terrain = 0.2};
+  EXPECT_EQ(oracle_verdict("63", little, much), "agrees (1 seed)");
+  EXPECT_EQ(oracle_verdict("63", much, much), "can't tell (1 seed)");
+  EXPECT_EQ(oracle_verdict("63", much, little), "contradicts (1 seed)");
+}
+
+TEST(OracleClaimsTest, WithoutTheHistoryTheTerrainHasToCountMoreUnevenly) {
+  const MadeUpOracle even{.bins = {0.9, 1.0, 1.1}}, little{.bins = {0.89, 1.0, 1.11}};
+  const MadeUpOracle much{.bins = {0.5, 1.0, 1.5}};
+  EXPECT_EQ(oracle_verdict("64", even, much), "agrees (1 seed)");
+  EXPECT_EQ(oracle_verdict("64", even, little), "can't tell (1 seed)");
+  EXPECT_EQ(oracle_verdict("64", much, little), "contradicts (1 seed)");
+}
+
+TEST(OracleClaimsTest, BothStiffnessesHaveToCountMoreThanTheInertia) {
+  const auto of = [](const std::array<double, 3>& gradients) {
+    return oracle_verdict("65", {}, {.gradients = gradients});
+  };
+  EXPECT_EQ(of({0.3, 0.2, 0.1}), "agrees (1 seed)");
+  EXPECT_EQ(of({0.3, 0.1, 0.2}), "can't tell (1 seed)");
+  EXPECT_EQ(of({0.1, 0.2, 0.3}), "contradicts (1 seed)");
+}
+
+TEST(OracleClaimsTest, AMissingOracleIsNotRun) {
+  Evidence evidence;
+  add_oracle(evidence, "oracle-h", {});
+  EXPECT_EQ(verdict("59", evidence), "can't tell (not run)");
+  EXPECT_EQ(verdict("65", evidence), "can't tell (not run)");
 }
 
 TEST(ClaimsTest, TheTableIsReadAsItIsWritten) {
