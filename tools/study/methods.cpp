@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <string_view>
@@ -48,15 +49,30 @@ std::string without_folders(const std::string& value) {
   return slash == std::string::npos ? value : fmt::format("\"{}", value.substr(slash + 1));
 }
 
+// A setting in the provenance of a model; empty if it is not there.
+std::string setting_of(const Model& model, const std::string& key) {
+  const auto config = model.network.spec.provenance.find("config");
+  if (config == model.network.spec.provenance.end()) return "";
+  const auto settings = settings_in(config->second);
+  const auto found = settings.find(key);
+  return found == settings.end() ? "" : found->second;
+}
+
+double length_of(const Model& model) {
+  return std::strtod(setting_of(model, "run.transitions").c_str(), nullptr);
+}
+
 std::string origin_table(const std::vector<Model>& models) {
   constexpr const char* kKeys[] = {"seed",      "transitions", "core_hours",
                                    "processor", "commit",      "origin"};
-  HtmlTable table{{"model", "seed", "transitions", "core-hours", "processor", "commit", "origin",
-                   "hash of the file"},
-                  {}};
+  HtmlTable table{
+      {"model", "length of the training, million transitions", "seed", "taken after transitions",
+       "core-hours until then", "processor", "commit", "origin", "hash of the file"},
+      {}};
   for (const Model& model : models) {
     const auto& provenance = model.network.spec.provenance;
-    std::vector<std::string> row = {model_name(model)};
+    std::vector<std::string> row = {model_name(model),
+                                    fmt::format("{:.0f}", 1e-6 * length_of(model))};
     for (const char* key : kKeys) {
       const auto found = provenance.find(key);
       row.push_back(found == provenance.end() ? "" : escaped(found->second));
@@ -87,6 +103,12 @@ std::vector<SettingDifference> settings_that_differ(const std::string& config,
     differences.push_back({key, without_folders(value), usual_value});
   }
   return differences;
+}
+
+double longest_training(const std::vector<Model>& models) {
+  double longest = 0.0;
+  for (const Model& model : models) longest = std::max(longest, length_of(model));
+  return longest;
 }
 
 std::string methods_tables(const std::vector<Model>& models, const sim::Robot& robot) {

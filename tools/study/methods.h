@@ -20,6 +20,9 @@ struct SettingDifference {
 std::vector<SettingDifference> settings_that_differ(const std::string& config,
                                                     const sim::Robot& robot);
 
+/// Length of the longest training of these, in transitions; 0 if none says it.
+double longest_training(const std::vector<Model>& models);
+
 /// Tables of the page: where each model comes from, and the settings of each controller's training
 /// that differ.
 std::string methods_tables(const std::vector<Model>& models, const sim::Robot& robot);

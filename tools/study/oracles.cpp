@@ -23,7 +23,8 @@ namespace {
 using learner::Matrix;
 
 constexpr int kBlockEnvs = 48;
-constexpr int kEnvsPerGridRun = 30;  // the paper's 10,800 for the 360 runs of a cell of its grid
+// The paper's 10,800 robots; fewer with fewer than the 360 runs of a cell of its grid.
+constexpr int kMostBlocks = 225, kPaperGridRuns = 360;
 constexpr int kSteps = 4 * kPolicyHz, kEvery = 20;  // a state every 20 steps
 constexpr int kStatesOfAnEnv = kSteps / kEvery;
 constexpr int kMostStates = 8192;
@@ -65,7 +66,7 @@ struct States {
 States collect(const train::TaskNetwork& network, const train::TaskConfig& task, int grid_runs,
                const sim::Robot& robot, WorkerPool& pool) {
   States states;
-  states.blocks = std::max(1, grid_runs * kEnvsPerGridRun / kBlockEnvs);
+  states.blocks = std::clamp(kMostBlocks * grid_runs / kPaperGridRuns, 1, kMostBlocks);
   const int envs = states.blocks * kBlockEnvs;
   const std::int64_t all = std::int64_t{envs} * kStatesOfAnEnv;
   states.selection = {all, std::min<std::int64_t>(all, kMostStates)};

@@ -20,7 +20,9 @@ class MethodsTest : public testing::Test {
   }
   Model model(const char* key, int seed, const std::string& settings) const {
     train::TaskNetwork network{{}, {}, train::model_layout({}), {}};
-    network.spec.provenance = {{"config", settings}, {"seed", "7"}, {"processor", "a <chip>"}};
+    network.spec.provenance = {{"config", settings + "run.transitions = 60000000.0\n"},
+                               {"seed", "7"},
+                               {"processor", "a <chip>"}};
     return {find_controller(key), seed, 0, network, std::nullopt};
   }
   const sim::Robot robot_ = sim::load_raibo();
@@ -65,7 +67,8 @@ TEST_F(MethodsTest, TheTablesHaveEachSettingOnceWithItsSeeds) {
                       "<td>1, 2</td>"),
             std::string::npos)
       << html;
-  EXPECT_NE(html.find("<td>env-rigid-2</td><td>7</td>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<td>env-rigid-2</td><td>60</td><td>7</td>"), std::string::npos) << html;
+  EXPECT_EQ(longest_training({model("ours", 1, "")}), 60e6);
   EXPECT_NE(html.find("a &lt;chip&gt;"), std::string::npos) << html;
 }
 
