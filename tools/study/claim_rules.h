@@ -75,5 +75,6 @@ struct ClaimRule {
 
 const std::vector<ClaimRule>& beach_rules();
 const std::vector<ClaimRule>& ground_rules();
+const std::vector<ClaimRule>& grid_rules();
 
 }  // namespace sandrunner::study

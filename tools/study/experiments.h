@@ -37,6 +37,10 @@ Measured run_mattress(Lab& lab, const Model& model);
 /// E6, S8: from hard ground onto memory foam.
 Measured run_foam(Lab& lab, const Model& model);
 
+/// E7, Fig. 4 A to D: rewards and clearances over a grid of stiffnesses, in the training's
+/// environments.
+Measured run_grid(Lab& lab, const Model& model);
+
 /// The ground of a run on the beach: run 0 has the preset, the others have stiffnesses that differ
 /// by up to 35 %, a friction of 0.6 to 0.9 and 0.8 to 1.2 times the inertia.
 sim::TerrainDescription beach(int run);
