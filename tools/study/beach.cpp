@@ -5,6 +5,9 @@
 
 #include "sim/lanes/random.h"
 #include "tools/study/experiments.h"
+#include "tools/study/simulated/plain_task.h"
+#include "tools/study/simulated/task_run.h"
+#include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::study {
 namespace {
@@ -37,6 +40,48 @@ void add_torques(const std::vector<Ran>& runs, double& nearest, RunGroup& group)
       }
     }
   }
+}
+
+// For a controller that sees the ground: in the training's environments, with its sensor noise.
+Measured run_fairness_on_task(const Lab& lab, const Model& model) {
+  constexpr int kBlock = 16, kSteps = 6 * kPolicyHz;
+  constexpr double kInertia = 1.0;  // of our sands: as usual
+  constexpr double kStart = 0.1;    // rad, m/s and rad/s; as in sandrunner-evaluate
+  constexpr double kLatency_s = static_cast<double>(kLatency_ticks) / kControlHz;
+  const sim::Robot& robot = lab.robot();
+  const sim::TerrainDescription ground = training_ground(*model.controller, robot);
+  const sim::FootProfile<double> foot = sim::make_foot_profile(ground, robot.model);
+  const sim::Terrain<float> terrain =
+      sim::convert_terrain<float>(sim::make_terrain(ground, foot, robot.model));
+  TaskRun run{plain_task(robot)};
+  run.task.noise.level_high = train::shipped_task_config(robot).noise.level_high;
+  train::EpisodeSettings& start = run.task.episode;
+  start.reset_joint_rad = start.reset_speed_mps = start.reset_rate_radps = kStart;
+  start.reset_tilt_rad = 0.0;
+  run.envs = (lab.settings().runs + kBlock - 1) / kBlock * kBlock;
+  run.block_envs = kBlock;
+  run.steps = kSteps;
+  WorkerPool pool(lab.settings().threads);
+  Measured measured;
+  for (const double command : {1.0, 2.0, 3.0}) {
+    train::Trial trial;
+    trial.terrain = &terrain;
+    trial.features = train::terrain_features(ground.patches[0].ground, kInertia);
+    trial.command = {static_cast<float>(command), 0.0f, 0.0f};
+    trial.stand_s = 0.5;
+    trial.latency_s = kLatency_s;
+    run.trials.assign(static_cast<std::size_t>(run.envs), trial);
+    std::vector<double> alive(static_cast<std::size_t>(run.envs), 1.0);
+    run_on_task(model.network, run, robot, pool, [&](const TaskStep& s) {
+      for (int env = s.first_env; env < s.first_env + s.envs; ++env) {
+        if (s.rollout.end(0, env) != learner::End::kNone)
+          alive[static_cast<std::size_t>(env)] = 0.0;
+      }
+    });
+    alive.resize(static_cast<std::size_t>(lab.settings().runs));
+    measured.groups.push_back({"own", "", command, {{"alive", alive}}, {}});
+  }
+  return measured;
 }
 
 }  // namespace
@@ -76,6 +121,7 @@ sim::TerrainDescription training_ground(const Controller& controller, const sim:
 }
 
 Measured run_fairness(Lab& lab, const Model& model) {
+  if (!model.subject) return run_fairness_on_task(lab, model);
   Measured measured;
   for (const double command : {1.0, 2.0, 3.0}) {
     const auto ground = training_ground(*model.controller, lab.robot());

@@ -75,6 +75,7 @@ struct ClaimRule {
 
 const std::vector<ClaimRule>& beach_rules();
 const std::vector<ClaimRule>& ground_rules();
+const std::vector<ClaimRule>& grid_rules();
 const std::vector<ClaimRule>& attribution_rules();
 
 }  // namespace sandrunner::study

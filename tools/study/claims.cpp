@@ -33,7 +33,7 @@ std::vector<std::string> cells_of(std::string_view line) {
 
 const ClaimRule* rule_of(const std::string& id) {
   for (const std::vector<ClaimRule>* rules :
-       {&beach_rules(), &ground_rules(), &attribution_rules()}) {
+       {&beach_rules(), &ground_rules(), &grid_rules(), &attribution_rules()}) {
     for (const ClaimRule& rule : *rules) {
       if (id == rule.id) return &rule;
     }

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 
+#include "tools/study/grid_evidence.h"
 #include "tools/study/oracles.h"
 
 namespace sandrunner::study {
 namespace {
 
-std::vector<const char*> sensing_keys() {
+std::vector<const char*> all_keys() {
   std::vector<const char*> keys;
-  for (const Controller& c : controllers()) {
-    if (c.kind != ModelKind::kSeesGround) keys.push_back(c.key);
-  }
+  for (const Controller& c : controllers()) keys.push_back(c.key);
   return keys;
 }
 
@@ -20,7 +19,7 @@ std::vector<const char*> sensing_keys() {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> kAll = {
-      {"fairness", "Fairness: each controller on the ground of its own training", sensing_keys(),
+      {"fairness", "Fairness: each controller on the ground of its own training", all_keys(),
        run_fairness},
       {"E1", "Dry sand (Table 1, Fig. 2 C to F)", beach_controllers(), run_beach},
       {"E2", "Recovery and transition (Fig. 2 A, B, movie S1)", {"ours"}, run_recovery},
@@ -28,6 +27,8 @@ const std::vector<Experiment>& experiments() {
       {"E4", "Hidden state (Fig. 3 F)", {"ours"}, run_hidden_state},
       {"E5", "Air mattress (Fig. 3 G, H)", mattress_controllers(), run_mattress},
       {"E6", "Memory foam (fig. S8)", {"ours", "env-rigid"}, run_foam},
+      {"E7", "Grid of stiffnesses (Fig. 4 A to D, table S1, fig. S10)", grid_controllers(),
+       run_grid},
       {"E8", "Attribution (Fig. 4 E to G, figs. S9, S11)", oracle_controllers(), run_attribution},
   };
   return kAll;

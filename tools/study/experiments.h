@@ -36,6 +36,9 @@ Measured run_hidden_state(Lab& lab, const Model& model);
 Measured run_mattress(Lab& lab, const Model& model);
 /// E6, S8: from hard ground onto memory foam.
 Measured run_foam(Lab& lab, const Model& model);
+/// E7, Fig. 4 A to D: rewards and clearances over a grid of stiffnesses, in the training's
+/// environments.
+Measured run_grid(Lab& lab, const Model& model);
 /// E8, Fig. 4 E to G and S11: what the answers of an oracle depend on (oracles.h).
 Measured run_attribution(Lab& lab, const Model& model);
 

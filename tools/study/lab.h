@@ -39,8 +39,9 @@ struct Ran {
 
 struct LabSettings {
   int runs = 16;
-  int grid_runs = 360;
   int threads = 1;
+  int grid_runs = 360;  ///< robots in each cell of E7's grid
+  int grid_cells = 10;  ///< of it, each way
 };
 
 class Lab {

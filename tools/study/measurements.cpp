@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include "rt/base/build.h"
 #include "rt/base/errors.h"
@@ -30,8 +31,15 @@ std::string cache_path(const Options& options, const Experiment& experiment, con
   return fmt::format("{}/cache/{}-{}.json", options.out, experiment.key, model_name(model));
 }
 
-std::string cache_key(const Options& options, const Model& model, std::uint64_t program) {
-  return fmt::format("{:016x} {:016x} {} runs", program, model.hash, options.lab.runs);
+std::string cache_key(const Options& options, const Experiment& experiment, const Model& model,
+                      std::uint64_t program) {
+  const LabSettings& lab = options.lab;
+  const std::string_view experiment_key = experiment.key;
+  const bool on_task = experiment_key == "E7" || experiment_key == "E8";
+  const std::string runs = on_task ? fmt::format("{} robots, {} x {} cells", lab.grid_runs,
+                                                 lab.grid_cells, lab.grid_cells)
+                                   : fmt::format("{} runs", lab.runs);
+  return fmt::format("{:016x} {:016x} {}", program, model.hash, runs);
 }
 
 // What the file holds under the key; nothing if it is absent, of another key or damaged.
@@ -74,7 +82,7 @@ Evidence measure(const Options& options, const std::vector<Model>& models) {
     for (const Model& model : models) {
       if (!takes_part(experiment, model)) continue;
       const std::string path = cache_path(options, experiment, model);
-      const std::string key = cache_key(options, model, program);
+      const std::string key = cache_key(options, experiment, model, program);
       std::optional<Measured> measured = read_cache(path, key);
       if (measured) {
         ++kept;
@@ -120,6 +128,7 @@ std::string results_json(const Options& options, const std::vector<Model>& model
   Json json;
   json["version"] = SANDRUNNER_VERSION;
   json["runs"] = options.lab.runs;
+  json["grid_runs"] = options.lab.grid_runs;
   for (const Model& model : models) {
     json["models"][model_name(model)] = {{"hash", fmt::format("{:016x}", model.hash)},
                                          {"provenance", model.network.spec.provenance}};

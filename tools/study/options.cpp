@@ -39,6 +39,15 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--runs", o.lab.runs, "runs of each ground and command")
       ->type_name("N")
       ->capture_default_str();
+  app.add_option(
+         "--grid-runs", o.lab.grid_runs,
+         "robots in each cell of E7's grid; with fewer than the paper's 360, E8 has fewer too")
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--grid-cells", o.lab.grid_cells,
+                 "cells of the grid each way; claims need the paper's 10")
+      ->type_name("N")
+      ->capture_default_str();
   app.add_option("--threads", o.lab.threads, "worker threads; the results do not depend on them")
       ->type_name("N")
       ->capture_default_str();
@@ -55,6 +64,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     throw InputError(fmt::format("{}: found {}, expected {} to {}", name, value, low, high));
   };
   check("--runs", o.lab.runs, 1, 1000);
+  check("--grid-runs", o.lab.grid_runs, 1, 100'000);
+  check("--grid-cells", o.lab.grid_cells, 2, 100);
   check("--threads", o.lab.threads, 1, 1024);
   for (const int seed : o.seeds) check("--seeds", seed, 1, 1'000'000'000);
   for (const std::string& key : only) {

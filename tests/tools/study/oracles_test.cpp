@@ -7,27 +7,21 @@
 #include <numeric>
 
 #include "rt/base/errors.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/tools/study/random_oracle.h"
 #include "tools/study/experiments.h"
-#include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::study {
 namespace {
 
-Model random_oracle(const char* key, const char* actor) {
-  const sim::Robot robot = sim::load_raibo();
-  ConfigTree settings;
-  train::add_training_layers(settings, robot);
-  train::read_task_config(settings);
-  learner::NetworkSizes sizes;
-  sizes.actor_sees = learner::parse_actor_inputs("actor", actor);
-  train::TaskNetwork network{{}, {}, train::model_layout(sizes), {}};
-  network.spec.provenance["config"] = settings.effective();
-  network.parameters = learner::initial_parameters(network.layout, 1, 0.5);
-  return {find_controller(key), 1, 0, network, std::nullopt};
+Model random_oracle(const std::string& key, const std::string& actor) {
+  const TemporaryFolder folder;
+  write_random_oracle(folder.path(key + "-1.safetensors"), actor);
+  return load_models(folder.path(""), {}, sim::load_raibo()).at(0);
 }
 
 RunGroup measure(const Model& model, int threads = 1) {
-  Lab lab({.runs = 1, .grid_runs = 1, .threads = threads});
+  Lab lab({.runs = 1, .threads = threads, .grid_runs = 1});
   const Measured measured = run_attribution(lab, model);
   EXPECT_EQ(measured.groups.size(), 1u);
   return measured.groups.at(0);
