@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "rt/base/config_tree.h"
+#include "rt/base/errors.h"
 #include "tools/study/html.h"
 #include "tools/train/task/robot_settings.h"
 
@@ -29,7 +30,7 @@ std::map<std::string, std::string> settings_in(std::string_view effective) {
   return settings;
 }
 
-// Asks for a setting, of the type that this value of it has.
+// Asks for a setting, of the type that this value of it has. Throws InputError if it has another.
 void ask(const std::string& key, const std::string& value, ConfigTree& settings) {
   constexpr double kAny = std::numeric_limits<double>::max();
   if (value.starts_with('"')) {
@@ -92,7 +93,12 @@ std::vector<SettingDifference> settings_that_differ(const std::string& config,
   train::add_training_layers(usual, robot);
   for (const auto& [key, value] : settings_in(config)) {
     ask(key, value, theirs);
-    if (usual.has(key)) ask(key, value, usual);
+    if (!usual.has(key)) continue;
+    try {
+      ask(key, value, usual);
+    } catch (const InputError&) {
+      // An older trainer's: here something else, such as a table, has this name.
+    }
   }
   const auto usual_values = settings_in(usual.effective());
   std::vector<SettingDifference> differences;

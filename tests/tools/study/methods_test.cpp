@@ -57,6 +57,13 @@ TEST_F(MethodsTest, TheLengthIsNoDifferenceAndAPathLosesItsFolders) {
   EXPECT_EQ(found[1].usual, "\"\"");
 }
 
+TEST_F(MethodsTest, ASettingThatIsATableByNowIsNoUsualOne) {
+  const auto found = settings_that_differ("reward.velocity = 3.0\n", robot_);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].value, "3.0");
+  EXPECT_EQ(found[0].usual, "");
+}
+
 TEST_F(MethodsTest, TheTablesHaveEachSettingOnceWithItsSeeds) {
   const std::string html = methods_tables(
       {model("ours", 1, config({})), model("env-rigid", 1, config({"ground.rigid_envs=64"})),
