@@ -7,6 +7,7 @@
 
 #include "policy/policy_file.h"
 #include "tests/support/program_test.h"
+#include "tests/tools/study/random_oracle.h"
 
 namespace sandrunner {
 namespace {
@@ -63,6 +64,30 @@ TEST_F(StudyProgramTest, AKilledRunGoesOnAndEndsInTheSameBytes) {
   ASSERT_EQ(run(common + "--out killed"), 0) << error();
   EXPECT_NE(output().find("taken from an earlier run"), std::string::npos) << output();
   for (const char* name : {"report.html", "results.json", "claims.csv", "figures/fig3h.png"}) {
+    EXPECT_EQ(read(std::string("whole/") + name), read(std::string("killed/") + name)) << name;
+  }
+}
+
+TEST_F(StudyProgramTest, ShowsWhatTheOraclesDependOnAndGoesOnWithTheSameBytes) {
+  std::filesystem::create_directory(folder_.path("oracles"));
+  write_random_oracle(folder_.path("oracles/oracle-h-1.safetensors"),
+                      "encoding, estimate, terrain");
+  write_random_oracle(folder_.path("oracles/oracle-o-1.safetensors"),
+                      "estimate, proprioception, terrain");
+  const std::string common = "--from oracles --only E8 --runs 1 --grid-runs 1 ";
+  ASSERT_EQ(run(common + "--threads 1 --out whole"), 0) << error();
+  const std::string page = read("whole/report.html");
+  EXPECT_NE(page.find("Run: Oracle(H) (1 seed), Oracle(O) (1 seed)."), std::string::npos);
+  EXPECT_NE(page.find("alt=\"What the oracles' actions"), std::string::npos);
+  // A run that was killed leaves what was done until then.
+  std::filesystem::create_directories(folder_.path("killed/cache"));
+  for (const char* name : {"fairness-oracle-h-1", "fairness-oracle-o-1", "E8-oracle-h-1"}) {
+    const std::string file = std::string("/cache/") + name + ".json";
+    std::filesystem::copy(folder_.path("whole" + file), folder_.path("killed" + file));
+  }
+  ASSERT_EQ(run(common + "--threads 2 --out killed"), 0) << error();
+  EXPECT_NE(output().find("E8: 1 models run, 1 taken"), std::string::npos) << output();
+  for (const char* name : {"report.html", "results.json", "claims.csv", "figures/fig4g.png"}) {
     EXPECT_EQ(read(std::string("whole/") + name), read(std::string("killed/") + name)) << name;
   }
 }
