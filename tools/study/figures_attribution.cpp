@@ -14,10 +14,8 @@ struct Bar {
   const char* label;
   const char* names[2];  ///< of the figure: in Oracle(H), in Oracle(O)
 };
-constexpr Bar kGroups[] = {{"command", {"cmd", "cmd"}},
-                           {"history h / observation o", {"h", "o"}},
-                           {"estimate e", {"e", "e"}},
-                           {"terrain T", {"T", "T"}}};
+constexpr Bar kGroups[] = {
+    {"cmd", {"cmd", "cmd"}}, {"h or o", {"h", "o"}}, {"e", {"e", "e"}}, {"T", {"T", "T"}}};
 
 /// Labels of kTerrainParameters on an axis; those that do not vary have no bars.
 constexpr const char* kShortNames[] = {"rigid", "flat",  "cone",      "friction", "inertia",
@@ -158,10 +156,11 @@ std::vector<StudyFigure> attribution_figures(const Evidence& evidence) {
       "\"much higher for the estimation group e_t compared with the terrain parameter group\"; "
       "\"Oracle(H) manifests less attribution for the terrain parameters than Oracle(O)\"; the "
       "values are not printed",
-      "Actions are joint targets less the nominal pose in units of the network's output, 12 of "
-      "them. A group is set to its mean over the states. Medians over the seeds; caps are the "
-      "least and the greatest seed. Ten bins over all stiffnesses that the training draws, equal "
-      "in the logarithm; the paper's axis is not printed.",
+      "cmd: command; h: encoded history of Oracle(H); o: observation of Oracle(O); e: estimate; "
+      "T: parameters of the ground. An action is a joint's target less its nominal position, in "
+      "units of the network. Medians over the seeds; caps are the least and the greatest seed. "
+      "Ten bins over all stiffnesses that the training draws, equal in the logarithm; the "
+      "paper's axis is not printed.",
       {}};
   groups.page.title = "What the oracles' actions depend on (Fig. 4 E, F)";
   groups.page.charts = {group_chart(evidence), stiffness_chart(evidence)};

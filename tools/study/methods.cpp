@@ -73,7 +73,7 @@ std::string origin_table(const std::vector<Model>& models) {
   for (const Model& model : models) {
     const auto& provenance = model.network.spec.provenance;
     std::vector<std::string> row = {model_name(model),
-                                    fmt::format("{:.0f}", 1e-6 * length_of(model))};
+                                    fmt::format("{:.4g}", 1e-6 * length_of(model))};
     for (const char* key : kKeys) {
       const auto found = provenance.find(key);
       row.push_back(found == provenance.end() ? "" : escaped(found->second));

@@ -97,10 +97,10 @@ as Bekker's dry sand, which was measured with larger plates.</p>
 constexpr std::string_view kTrainings =
     R"(
 <p>All trainings have the usual settings of the trainer, but for the differences in the second
-table, and all but those of students the same length. A student learns for two thirds of it after
-its teacher, so it rests on more transitions than Ours. Each controller is the best by the battery
-of its own training: runs on the grounds of that training, not on those of the experiments. Seeds
-are 1, 2 and 3, whatever they give.</p>
+table. <code>train.sh</code> gives them the same length; a student learns for two thirds of it
+after its teacher, so it rests on more transitions than Ours. Each controller is the best by the
+battery of its own training: runs on the grounds of that training, not on those of the
+experiments. Seeds are 1, 2 and 3, whatever they give.</p>
 )";
 
 constexpr std::string_view kLimits = R"(<ul>

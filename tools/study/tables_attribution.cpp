@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <string_view>
 
 #include "tools/study/controllers.h"
 #include "tools/study/html.h"
@@ -46,6 +47,27 @@ std::string states_table(const Evidence& evidence) {
   return table.html();
 }
 
+// The numbers of Fig. 4 E.
+std::string group_table(const Evidence& evidence) {
+  HtmlTable table{{"mean |change of an action| without", "cmd", "h or o", "e", "T", "e over T"},
+                  {}};
+  for (const char* oracle : oracle_controllers()) {
+    if (evidence.find("E8", oracle) == nullptr) continue;
+    const auto figure = [&](const char* group, const char* over = nullptr) {
+      return evidence.figure("E8", oracle, [&](const Measured& m) {
+        const auto& groups = m.select(kOracleGround);
+        const double value = mean_value(groups, group).value;
+        return SeedValue{over == nullptr ? value : value / mean_value(groups, over).value};
+      });
+    };
+    const char* const second = oracle == std::string_view("oracle-h") ? "h" : "o";
+    table.rows.push_back({find_controller(oracle)->name, printed(figure("cmd"), 1.0, 4),
+                          printed(figure(second), 1.0, 4), printed(figure("e"), 1.0, 4),
+                          printed(figure("T"), 1.0, 4), printed(figure("e", "T"), 1.0, 2)});
+  }
+  return table.html();
+}
+
 std::string parameter_table(const Evidence& evidence) {
   HtmlTable table{{"parameter", "as the actor sees it"}, {}};
   struct Column {
@@ -79,7 +101,9 @@ std::string parameter_table(const Evidence& evidence) {
 }  // namespace
 
 std::string attribution_tables(const Evidence& evidence) {
-  return states_table(evidence) + parameter_table(evidence);
+  return states_table(evidence) + group_table(evidence) + parameter_table(evidence) +
+         "<p class=\"note\">|IG|: magnitude of the integrated gradient; alone: ablation of this "
+         "parameter alone. Both are of an action.</p>\n";
 }
 
 }  // namespace sandrunner::study
