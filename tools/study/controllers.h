@@ -13,7 +13,7 @@ namespace sandrunner::study {
 enum class ModelKind {
   kPolicy,
   kStudyModel,  ///< other networks, which see what sensors measure
-  kSeesGround,  ///< networks that see the ground too: no experiment of this folder can run them
+  kSeesGround,  ///< networks that see the ground too, which only the training's environments show
 };
 
 struct Controller {

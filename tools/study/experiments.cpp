@@ -6,9 +6,11 @@
 namespace sandrunner::study {
 namespace {
 
-std::vector<const char*> all_keys() {
+std::vector<const char*> sensing_keys() {
   std::vector<const char*> keys;
-  for (const Controller& c : controllers()) keys.push_back(c.key);
+  for (const Controller& c : controllers()) {
+    if (c.kind != ModelKind::kSeesGround) keys.push_back(c.key);
+  }
   return keys;
 }
 
@@ -16,7 +18,7 @@ std::vector<const char*> all_keys() {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> kAll = {
-      {"fairness", "Fairness: each controller on the ground of its own training", all_keys(),
+      {"fairness", "Fairness: each controller on the ground of its own training", sensing_keys(),
        run_fairness},
       {"E1", "Dry sand (Table 1, Fig. 2 C to F)", beach_controllers(), run_beach},
       {"E2", "Recovery and transition (Fig. 2 A, B, movie S1)", {"ours"}, run_recovery},

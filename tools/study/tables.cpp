@@ -290,7 +290,7 @@ std::string anchor_table() {
 std::string methods_table(const std::vector<Model>& models) {
   HtmlTable table{{"model", "transitions", "core-hours", "processor", "commit", "file"}, {}};
   for (const Model& model : models) {
-    const auto& provenance = evaluate::spec_of(model.subject).provenance;
+    const auto& provenance = model.network.spec.provenance;
     std::vector<std::string> row = {model_name(model)};
     for (const char* key : {"transitions", "core_hours", "processor", "commit"}) {
       const auto found = provenance.find(key);
