@@ -14,6 +14,7 @@ enum class ModelKind {
   kPolicy,
   kStudyModel,  ///< other networks, which see what sensors measure
   kSeesGround,  ///< networks that see the ground too, which only the training's environments show
+  kPublished,   ///< the authors' own policy (--published): in tables and figures, in no verdict
 };
 
 struct Controller {

@@ -38,11 +38,16 @@ FileName read_name(const std::filesystem::path& path) {
     const auto [at, error] = std::from_chars(stem.data() + dash + 1, end, name.seed);
     if (error == std::errc() && at == end && name.seed > 0) {
       name.controller = find_controller(std::string_view(stem).substr(0, dash));
+      if (name.controller && name.controller->kind == ModelKind::kPublished) {
+        name.controller = nullptr;
+      }
     }
   }
   if (name.controller == nullptr) {
     std::vector<std::string> keys;
-    for (const Controller& c : controllers()) keys.emplace_back(c.key);
+    for (const Controller& c : controllers()) {
+      if (c.kind != ModelKind::kPublished) keys.emplace_back(c.key);
+    }
     throw InputError(fmt::format("{}: found the name '{}', expected {}; NAME is one of {}",
                                  path.string(), stem, kExpected, fmt::join(keys, ", ")));
   }
@@ -60,6 +65,7 @@ Model load_model(const FileName& name, const train::PolicySettings& task, const 
       subject = evaluate::load_subject(name.path);
       break;
     case ModelKind::kSeesGround:
+    case ModelKind::kPublished:
       break;
   }
   train::TaskNetwork network = train::read_task_network(name.path, task.mode_gain);
@@ -115,6 +121,15 @@ std::vector<Model> load_models(const std::string& folder, const std::vector<int>
         fmt::format("--from: found no trained controller in '{}', expected {}", folder, kExpected));
   }
   return models;
+}
+
+Model load_published(const std::string& path, const sim::Robot& robot) {
+  const std::string bytes = read_input_file(path, "a policy");
+  Policy policy = load_policy_text(bytes, path);
+  require_joints(policy.spec(), robot.description);
+  const train::PolicySettings task = train::shipped_task_config(robot).policy;
+  return {find_controller("published"), 0, hash_of(bytes),
+          train::read_task_network(path, task.mode_gain), std::move(policy)};
 }
 
 }  // namespace sandrunner::study

@@ -36,4 +36,8 @@ std::uint64_t hash_of(std::string_view bytes);
 std::vector<Model> load_models(const std::string& folder, const std::vector<int>& seeds,
                                const sim::Robot& robot);
 
+/// The authors' network, seed 0, from a policy file that `sandrunner-policy import` made. Its
+/// inputs are scaled otherwise than those of a training, so no Task can run it. Throws InputError.
+Model load_published(const std::string& path, const sim::Robot& robot);
+
 }  // namespace sandrunner::study
