@@ -9,7 +9,7 @@
 namespace sandrunner::study {
 namespace {
 
-std::vector<const char*> all_keys() {
+std::vector<const char*> trained_keys() {
   std::vector<const char*> keys;
   for (const Controller& c : controllers()) {
     if (c.kind != ModelKind::kPublished) keys.push_back(c.key);
@@ -26,7 +26,7 @@ std::vector<const char*> with_published(std::vector<const char*> keys) {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> kAll = {
-      {"fairness", "Fairness: each controller on the ground of its own training", all_keys(),
+      {"fairness", "Fairness: each controller on the ground of its own training", trained_keys(),
        run_fairness},
       {"E1", "Dry sand (Table 1, Fig. 2 C to F)", with_published(beach_controllers()), run_beach},
       {"E2", "Recovery and transition (Fig. 2 A, B, movie S1)", {"ours"}, run_recovery},

@@ -29,6 +29,10 @@ std::vector<StudyFigure> hidden_state_figures(const Evidence& evidence);
 /// Fig. 3 H: E5; S8: E6.
 std::vector<StudyFigure> mattress_figures(const Evidence& evidence);
 std::vector<StudyFigure> foam_figures(const Evidence& evidence);
+/// Fig. 4 A to D: E7. Maps of reward and clearance, all controllers on one scale, to a PNG; lines
+/// over each stiffness.
+void draw_grid_maps(const Evidence& evidence, const std::string& png_path);
+std::vector<StudyFigure> grid_figures(const Evidence& evidence);
 /// Fig. 4 E, F, G and S11: E8.
 std::vector<StudyFigure> attribution_figures(const Evidence& evidence);
 /// S4: the network's estimate in the runs of E1 and E3.

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
+#include "tools/evaluate/statistics.h"
 #include "tools/study/anchors.h"
+#include "tools/study/grid_evidence.h"
 #include "tools/study/html.h"
 #include "tools/study/lab.h"
 #include "tools/study/paper.h"
@@ -266,6 +269,47 @@ std::string foam_table(const Evidence& evidence) {
     table.rows.push_back({name_cell(controller), printed(figure("alive"), 100.0, 1),
                           printed(figure("speed_before_mps"), 1.0, 2),
                           printed(figure("speed_after_mps"), 1.0, 2)});
+  }
+  return table.html();
+}
+
+std::string grid_table(const Evidence& evidence) {
+  HtmlTable table{{"controller", "seeds", "mean reward", "worst cell", "softest quarter",
+                   "stiffest quarter", "success, %", "worst cell, %", "clearance, mm",
+                   "mm a decade of sigma_flat", "mm a decade of sigma_cone"},
+                  {}};
+  for (const char* key : grid_controllers()) {
+    const Controller& controller = *find_controller(key);
+    const auto* seeds = evidence.find("E7", key);
+    if (seeds == nullptr) {
+      table.rows.push_back({name_cell(controller), kNotRun});
+      table.rows.back().resize(table.heads.size());
+      continue;
+    }
+    const auto cells = [&](const std::function<double(const Measured&)>& of) {
+      return evidence.figure("E7", key, [&](const Measured& m) { return SeedValue{of(m)}; });
+    };
+    const auto slope = [&](const char* name) {
+      const Figure figure = grid_figure(evidence, key, name);
+      const evaluate::Estimate first = evaluate::mean_interval(figure.begin()->second.runs);
+      return fmt::format("{} ({:.1f} to {:.1f})", printed(figure, 1e3, 1), 1e3 * first.low,
+                         1e3 * first.high);
+    };
+    const auto least = [](const char* name) {
+      return [=](const Measured& m) { return least_of(grid_list(m, name)); };
+    };
+    table.rows.push_back(
+        {name_cell(controller), range_of_seeds(*seeds),
+         printed(grid_figure(evidence, key, "reward"), 1.0, 2),
+         printed(cells(least("reward")), 1.0, 2),
+         printed(cells([](const Measured& m) { return soft_and_stiff(m, "reward").soft; }), 1.0, 2),
+         printed(cells([](const Measured& m) { return soft_and_stiff(m, "reward").stiff; }), 1.0,
+                 2),
+         printed(grid_figure(evidence, key, "success"), 100.0, 1),
+         printed(cells(least("success")), 100.0, 0),
+         printed(cells([](const Measured& m) { return mean_of(grid_list(m, "clearance_m")); }), 1e3,
+                 1),
+         slope("slope_flat_m"), slope("slope_cone_m")});
   }
   return table.html();
 }

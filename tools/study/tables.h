@@ -26,6 +26,8 @@ std::string beach_table(const Evidence& evidence);
 std::string recovery_table(const Evidence& evidence);
 std::string hidden_state_table(const Evidence& evidence);
 std::string foam_table(const Evidence& evidence);
+/// Stands for table S1 of the paper.
+std::string grid_table(const Evidence& evidence);
 /// What E8 rests on, and its numbers for each parameter of the ground.
 std::string attribution_tables(const Evidence& evidence);
 std::string contact_table(const Evidence& evidence);

@@ -105,6 +105,42 @@ TEST_F(StudyProgramTest, ShowsWhatTheOraclesDependOnAndGoesOnWithTheSameBytes) {
   }
 }
 
+TEST_F(StudyProgramTest, AGridThatIsKilledGoesOnAndEndsInTheSameBytesForAnyThreads) {
+  put("oracle-h-1");  // a reader of study models takes a policy too
+  const std::string common =
+      "--from models --only E7 --runs 1 --grid-runs 16 --grid-cells 2 --threads ";
+  ASSERT_EQ(run(common + "1 --out whole"), 0) << error();
+  {
+    ChildProcess killed({SANDRUNNER_STUDY_PROGRAM, "--from", "models", "--only", "E7", "--runs",
+                         "1", "--grid-runs", "16", "--grid-cells", "2", "--out", "killed"},
+                        {.folder = folder_.path("")});
+    const std::string first = folder_.path("killed/cache/E7-ours-1.json");
+    for (int i = 0; i < 6000 && !std::filesystem::exists(first); ++i) usleep(10'000);
+    ASSERT_TRUE(std::filesystem::exists(first));
+  }  // SIGKILL
+  ASSERT_FALSE(std::filesystem::exists(folder_.path("killed/report.html")));
+  ASSERT_EQ(run(common + "2 --out killed"), 0) << error();
+  for (const char* name : {"report.html", "results.json", "claims.csv", "figures/fig4ad.png",
+                           "figures/fig4_lines.png"}) {
+    EXPECT_EQ(read(std::string("whole/") + name), read(std::string("killed/") + name)) << name;
+  }
+  const std::string page = read("whole/report.html");
+  EXPECT_NE(page.find("16 robots in each of 4 cells"), std::string::npos);
+  EXPECT_NE(page.find("The paper: &quot;tested 360 times"), std::string::npos);
+  const auto json = nlohmann::json::parse(read("whole/results.json"));
+  for (const char* controller : {"ours", "env-rigid", "oracle-h"}) {
+    EXPECT_EQ(json["experiments"]["E7"][controller]["1"][0]["lists"]["reward"].size(), 4u);
+  }
+}
+
+TEST_F(StudyProgramTest, AnotherNumberOfRobotsRunsTheGridAgain) {
+  const std::string common = "--from models --only E7 --runs 1 --grid-cells 2 --out dir ";
+  ASSERT_EQ(run(common + "--grid-runs 2"), 0) << error();
+  ASSERT_EQ(run(common + "--grid-runs 3"), 0) << error();
+  EXPECT_NE(output().find("fairness: 0 models run, 2 taken"), std::string::npos) << output();
+  EXPECT_NE(output().find("E7: 2 models run, 0 taken"), std::string::npos) << output();
+}
+
 TEST_F(StudyProgramTest, KeepsWhatIsDoneAndTakesADamagedFileAgain) {
   const std::string line = "--from models --only E6 --runs 1 --out dir";
   ASSERT_EQ(run(line), 0) << error();
@@ -127,6 +163,8 @@ TEST_F(StudyProgramTest, RefusesBadInputInOneLine) {
       {"--from models --out models/ours-1.safetensors", "--out"},
       {"--from models --out dir --only E99", "--only: found 'E99'"},
       {"--from models --out dir --runs 0", "--runs: found 0"},
+      {"--from models --out dir --grid-runs 0", "--grid-runs: found 0"},
+      {"--from models --out dir --grid-cells 1", "--grid-cells: found 1"},
       {"--from models --out dir --seeds 7", "--from: found no trained controller"},
       {"--from models --out dir --contact other.json", "--contact other.json"},
   };
