@@ -20,7 +20,7 @@ class BadInput(unittest.TestCase):
 
     def test_of_the_environments_constructor(self):
         for pattern, arguments in {
-            r"^robot: found 'spot', expected 'raibo', 'go2' or the path": {"robot": "spot"},
+            r"^spot: cannot be read .*, expected raibo, go2 or a robot file": {"robot": "spot"},
             r"^robot: found 5, expected": {"robot": 5},
             r"^num_envs: found 100, expected a multiple of learner.block_envs, which is 64": {"num_envs": 100},
             r"^num_envs: found 0, expected an integer from 1": {"num_envs": 0},
