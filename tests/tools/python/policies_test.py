@@ -64,7 +64,8 @@ class Files(WithFolder):
             Policy("raibo").act(envs, envs.reset()[0])
 
     def test_the_file_is_a_safetensors_file(self):
-        # As the format says: 8 bytes of header length, a JSON header of texts and tensors, the data without holes.
+        # As the format says: 8 bytes of header length, a JSON header of texts and tensors, the
+        # data without holes.
         content = SHIPPED.read_bytes()
         size = int.from_bytes(content[:8], "little")
         header = json.loads(content[8 : 8 + size])
