@@ -34,7 +34,7 @@ LAYERS = [
     ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
     ["tools/train/model"],
-    ["tools/evaluate", "tools/hil/emulated"],
+    ["tools/evaluate", "tools/hil/emulated", "tools/study/simulated"],
     ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
     ["tools/python"],
 ]

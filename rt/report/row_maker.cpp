@@ -107,7 +107,7 @@ RunRow RowMaker::make_row(const TickRecord& tick) {
   row.t_s = static_cast<double>(sensors.tick) * kControlPeriod_s;
   row.mode = static_cast<std::uint32_t>(tick.output.mode);
   row.given = floats(tick.output.policy_input.command);
-  row.asked = floats(tick.input.command.velocity);
+  row.requested = floats(tick.input.command.velocity);
   row.odometry = {odometry_.position_m()[0], odometry_.position_m()[1],
                   std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))};
   row.motion = floats(motion_of(tick));

@@ -44,7 +44,7 @@ constexpr std::array kRowFields = {
     ROW(position_m, "base_{x,y,z}_m"),
     ROW(orientation_wxyz, "orientation_{w,x,y,z}"),
     ROW(odometry, "odometry_x_m|odometry_y_m|odometry_yaw_rad"),
-    ROW(asked, "asked_vx_mps|asked_vy_mps|asked_wz_radps"),
+    ROW(requested, "requested_vx_mps|requested_vy_mps|requested_wz_radps"),
     ROW(motion, "vx_mps|vy_mps|yaw_rate_radps"),
     ROW(mean_motion, "mean_vx_mps|mean_vy_mps|mean_yaw_rate_radps", kNotOnPage),
     ROW(position_rad, "{joint}_position_rad"),

@@ -38,7 +38,7 @@ struct RunRow {
   Vector3 position_m{};          ///< of the base origin
   std::array<float, 4> orientation_wxyz{1.0f, 0.0f, 0.0f, 0.0f};
   std::array<double, 3> odometry{};    ///< dead-reckoned x, y, yaw; m, rad
-  std::array<float, 3> asked{};        ///< command by the operator
+  std::array<float, 3> requested{};    ///< command by the operator
   std::array<float, 3> motion{};       ///< vx, vy in the heading frame, yaw rate
   std::array<float, 3> mean_motion{};  ///< the same, mean since the row before
   JointArray<float> position_rad{}, velocity_radps{};

@@ -13,19 +13,20 @@ LiveView::LiveView(const RunScene& scene, const ProcessConfig& config, RunClock 
     : feed_(scene) {
   if (clock == RunClock::kLockstep) pace_.emplace(interrupts);
   if (pace_ && simulator) {
-    hand_.emplace(*simulator, config.simulator.terrain, config.effective, operators.stand_again());
+    control_.emplace(*simulator, config.simulator.terrain, config.effective,
+                     operators.return_to_stand());
   }
   server_.emplace(config.view_port,
                   ViewServer::Parts{.feed = feed_,
                                     .pace = pace_ ? &*pace_ : nullptr,
                                     .desk = config.view_drive ? operators.desk() : nullptr,
-                                    .hand = hand_ ? &*hand_ : nullptr});
+                                    .control = control_ ? &*control_ : nullptr});
   to_standard_error(fmt::format("sandrunner: look at {}\n", server_->url()));
 }
 
 RobotNow LiveView::act(std::uint64_t next, TickSinks sinks) {
   pace_->wait();
-  return hand_ ? hand_->act(next, sinks) : RobotNow::kAsBefore;
+  return control_ ? control_->act(next, sinks) : RobotNow::kAsBefore;
 }
 
 }  // namespace sandrunner

@@ -8,7 +8,7 @@
 #include "rt/loop/rig.h"
 #include "rt/run/operators.h"
 #include "rt/run/run.h"
-#include "rt/run/simulator_hand.h"
+#include "rt/run/simulator_control.h"
 #include "rt/telemetry/view/view_feed.h"
 #include "rt/telemetry/view/view_pace.h"
 #include "rt/telemetry/view/view_server.h"
@@ -31,7 +31,7 @@ class LiveView final : public BetweenTicks {
  private:
   ViewFeed feed_;
   std::optional<ViewPace> pace_;
-  std::optional<SimulatorHand> hand_;
+  std::optional<SimulatorControl> control_;
   std::optional<ViewServer> server_;
 };
 

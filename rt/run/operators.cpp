@@ -19,11 +19,11 @@ Operators::Operators(const Options& options, const ProcessConfig& config,
   if (!options.live) return;
   remote_.emplace(config.dds.stale_ticks());
   desk_.emplace(*remote_, config.dds.stale_s, no_walk_);
-  if (options.view && options.clock == RunClock::kLockstep) stand_again_.emplace(*remote_);
+  if (options.view && options.clock == RunClock::kLockstep) return_to_stand_.emplace(*remote_);
 }
 
 OperatorInput& Operators::input() noexcept {
-  if (stand_again_) return *stand_again_;
+  if (return_to_stand_) return *return_to_stand_;
   if (remote_) return *remote_;
   return script_;
 }

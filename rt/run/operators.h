@@ -5,7 +5,7 @@
 
 #include "rt/operator/operator_desk.h"
 #include "rt/operator/remote_operator.h"
-#include "rt/operator/stand_again.h"
+#include "rt/operator/return_to_stand.h"
 #include "rt/run/command_source.h"
 #include "rt/run/options.h"
 #include "rt/run/process_config.h"
@@ -24,7 +24,9 @@ class Operators {
   /// Null: a script commands.
   OperatorDesk* desk() noexcept { return desk_ ? &*desk_ : nullptr; }
   /// Null: the robot is real, or a script commands.
-  StandAgain* stand_again() noexcept { return stand_again_ ? &*stand_again_ : nullptr; }
+  ReturnToStand* return_to_stand() noexcept {
+    return return_to_stand_ ? &*return_to_stand_ : nullptr;
+  }
   /// Enters what the script saw of the run.
   void report(RunResult& result) const;
 
@@ -33,7 +35,7 @@ class Operators {
   RunScript script_;
   std::optional<RemoteOperator> remote_;
   std::optional<OperatorDesk> desk_;
-  std::optional<StandAgain> stand_again_;
+  std::optional<ReturnToStand> return_to_stand_;
 };
 
 }  // namespace sandrunner

@@ -32,8 +32,8 @@ import inputs
 # A run takes 0.02 to 0.5 s on a free machine: one that is hundreds of times as slow has no "hang"
 # yet.
 LIMIT_S = 300.0
-PROGRAMS = ['sandrunner', 'sandrunner-replay', 'sandrunner-policy', 'sandrunner-evaluate', 'sandrunner-ctl',
-            'dds_attacker']
+PROGRAMS = ['sandrunner', 'sandrunner-replay', 'sandrunner-policy', 'sandrunner-evaluate', 'sandrunner-study',
+            'sandrunner-ctl', 'dds_attacker']
 HURT = ['crash', 'hang', 'misleading']
 NOBODY = 65534
 

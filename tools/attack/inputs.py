@@ -157,6 +157,9 @@ class Inputs:
                               ['sandrunner-policy', 'import', 'p.safetensors', '--out', 'q.safetensors']])
         if broken and rng.random() < 0.3:
             command = ['sandrunner-evaluate', '--policy', 'p.safetensors', '--runs', '1', '--only', 'straight']
+        elif rng.random() < 0.15:
+            (folder / 'p.safetensors').rename(folder / 'ours-1.safetensors')
+            command = ['sandrunner-study', '--from', '.', '--out', 'out', '--only', 'E6', '--runs', '1']
         return Input('policy', command, broken)
 
     def commands(self, rng, folder):
@@ -204,6 +207,7 @@ class Inputs:
             'sandrunner-policy': ['info', 'import', 'envelope', '--out'],
             'sandrunner-evaluate': ['--policy', '--against', '--robot', '--out', '--threads', '--runs', '--grid-runs',
                                     '--seed', '--only', '--torque-speed-line'],
+            'sandrunner-study': ['--from', '--out', '--only', '--seeds', '--runs', '--threads', '--contact'],
             'sandrunner-ctl': ['--domain', '--interface', '--security', '--cmd-vel', 'cmd', 'mode', 'watch']}
         program = rng.choice(list(options))
         words = ['', 'x', '-', '--', '/', '/dev/null', '/dev/zero', '.', 'no/such', '0,0,0', 'a' * 9000, '--help-all']

@@ -24,6 +24,7 @@ const std::vector<Controller>& controllers() {
        ModelKind::kSeesGround},
       {"oracle-o", "Oracle(O)", {{0.85, 0.60, 0.05}, {3.0, 3.0}}, ModelKind::kSeesGround},
       {"tcn", "TCN", {{0.75, 0.25, 0.50}, {2.0, 4.0}}, ModelKind::kStudyModel},
+      {"published", "Authors' network", {{0.10, 0.10, 0.10}, {2.0, 3.0}}, ModelKind::kPublished},
   };
   return kAll;
 }

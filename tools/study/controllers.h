@@ -13,7 +13,8 @@ namespace sandrunner::study {
 enum class ModelKind {
   kPolicy,
   kStudyModel,  ///< other networks, which see what sensors measure
-  kSeesGround,  ///< networks that see the ground too: no experiment of this folder can run them
+  kSeesGround,  ///< networks that see the ground too, which only the training's environments show
+  kPublished,   ///< the authors' own policy (--published): in tables and figures, in no verdict
 };
 
 struct Controller {

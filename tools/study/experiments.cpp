@@ -6,9 +6,16 @@
 namespace sandrunner::study {
 namespace {
 
-std::vector<const char*> all_keys() {
+std::vector<const char*> sensing_keys() {
   std::vector<const char*> keys;
-  for (const Controller& c : controllers()) keys.push_back(c.key);
+  for (const Controller& c : controllers()) {
+    if (c.kind == ModelKind::kPolicy || c.kind == ModelKind::kStudyModel) keys.push_back(c.key);
+  }
+  return keys;
+}
+
+std::vector<const char*> with_published(std::vector<const char*> keys) {
+  keys.push_back("published");
   return keys;
 }
 
@@ -16,13 +23,14 @@ std::vector<const char*> all_keys() {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> kAll = {
-      {"fairness", "Fairness: each controller on the ground of its own training", all_keys(),
+      {"fairness", "Fairness: each controller on the ground of its own training", sensing_keys(),
        run_fairness},
-      {"E1", "Dry sand (Table 1, Fig. 2 C to F)", beach_controllers(), run_beach},
+      {"E1", "Dry sand (Table 1, Fig. 2 C to F)", with_published(beach_controllers()), run_beach},
       {"E2", "Recovery and transition (Fig. 2 A, B, movie S1)", {"ours"}, run_recovery},
-      {"E3", "Vinyl, track and grass; turns (Fig. 3 D, E)", {"ours", "env-rigid"}, run_grounds},
+      {"E3", "Vinyl, track and grass; turns (Fig. 3 D, E)", with_published({"ours", "env-rigid"}),
+       run_grounds},
       {"E4", "Hidden state (Fig. 3 F)", {"ours"}, run_hidden_state},
-      {"E5", "Air mattress (Fig. 3 G, H)", mattress_controllers(), run_mattress},
+      {"E5", "Air mattress (Fig. 3 G, H)", with_published(mattress_controllers()), run_mattress},
       {"E6", "Memory foam (fig. S8)", {"ours", "env-rigid"}, run_foam},
   };
   return kAll;

@@ -92,8 +92,9 @@ std::vector<Ran> Lab::run(const Model& model, const std::vector<evaluate::Trial>
     for (int l = 0; l < kNumLegs; ++l)
       e[4 + l] = static_cast<float>(step.estimate.foot_height_m[l]);
   };
-  const std::vector<evaluate::TrialFigures> figures = evaluate::run_trials(
-      study_.robot(), study_.foot(), model.subject, trials, {settings_.threads, true}, {}, observe);
+  const std::vector<evaluate::TrialFigures> figures =
+      evaluate::run_trials(study_.robot(), study_.foot(), model.subject.value(), trials,
+                           {settings_.threads, true}, {}, observe);
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i].figures = figures[i];
   return runs;
 }

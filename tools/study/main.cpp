@@ -15,7 +15,9 @@ namespace {
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
-  const std::vector<Model> models = load_models(options->from, options->seeds, sim::load_raibo());
+  const sim::Robot robot = sim::load_raibo();
+  std::vector<Model> models = load_models(options->from, options->seeds, robot);
+  if (!options->published.empty()) models.push_back(load_published(options->published, robot));
   prepare_folder(options->out, "--out");
   const Evidence evidence = measure(*options, models);
   write_report(*options, models, evidence);

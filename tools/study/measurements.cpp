@@ -121,9 +121,8 @@ std::string results_json(const Options& options, const std::vector<Model>& model
   json["version"] = SANDRUNNER_VERSION;
   json["runs"] = options.lab.runs;
   for (const Model& model : models) {
-    json["models"][model_name(model)] = {
-        {"hash", fmt::format("{:016x}", model.hash)},
-        {"provenance", evaluate::spec_of(model.subject).provenance}};
+    json["models"][model_name(model)] = {{"hash", fmt::format("{:016x}", model.hash)},
+                                         {"provenance", model.network.spec.provenance}};
   }
   for (const auto& [experiment, controllers] : evidence.measured) {
     for (const auto& [controller, seeds] : controllers) {

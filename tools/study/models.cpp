@@ -9,11 +9,13 @@
 #include <filesystem>
 #include <system_error>
 #include <tuple>
+#include <utility>
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
 #include "rt/core/state_hash.h"
+#include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::study {
 namespace {
@@ -36,15 +38,42 @@ FileName read_name(const std::filesystem::path& path) {
     const auto [at, error] = std::from_chars(stem.data() + dash + 1, end, name.seed);
     if (error == std::errc() && at == end && name.seed > 0) {
       name.controller = find_controller(std::string_view(stem).substr(0, dash));
+      if (name.controller && name.controller->kind == ModelKind::kPublished) {
+        name.controller = nullptr;
+      }
     }
   }
   if (name.controller == nullptr) {
     std::vector<std::string> keys;
-    for (const Controller& c : controllers()) keys.emplace_back(c.key);
+    for (const Controller& c : controllers()) {
+      if (c.kind != ModelKind::kPublished) keys.emplace_back(c.key);
+    }
     throw InputError(fmt::format("{}: found the name '{}', expected {}; NAME is one of {}",
                                  path.string(), stem, kExpected, fmt::join(keys, ", ")));
   }
   return name;
+}
+
+Model load_model(const FileName& name, const train::PolicySettings& task, const sim::Robot& robot) {
+  const std::string bytes = read_input_file(name.path, "a policy or a study model");
+  std::optional<evaluate::Subject> subject;
+  switch (name.controller->kind) {
+    case ModelKind::kPolicy:
+      subject = load_policy_text(bytes, name.path);
+      break;
+    case ModelKind::kStudyModel:
+      subject = evaluate::load_subject(name.path);
+      break;
+    case ModelKind::kSeesGround:
+    case ModelKind::kPublished:
+      break;
+  }
+  train::TaskNetwork network = train::read_task_network(name.path, task.mode_gain);
+  require_joints(network.spec, robot.description);
+  train::require_scales(
+      network.spec, network.scales, task,
+      train::make_scales(robot.nominal_rad, task.body_height_m, task.observation_clip));
+  return {name.controller, name.seed, hash_of(bytes), std::move(network), std::move(subject)};
 }
 
 }  // namespace
@@ -77,7 +106,6 @@ std::vector<Model> load_models(const std::string& folder, const std::vector<int>
   for (const auto& file : files) {
     if (file.path().extension() != ".safetensors") continue;
     const FileName name = read_name(file.path());
-    if (name.controller->kind == ModelKind::kSeesGround) continue;
     if (!seeds.empty() && std::find(seeds.begin(), seeds.end(), name.seed) == seeds.end()) continue;
     names.push_back(name);
   }
@@ -85,20 +113,23 @@ std::vector<Model> load_models(const std::string& folder, const std::vector<int>
   std::sort(names.begin(), names.end(), [](const FileName& a, const FileName& b) {
     return std::tuple(a.controller, a.seed) < std::tuple(b.controller, b.seed);
   });
+  const train::PolicySettings task = train::shipped_task_config(robot).policy;
   std::vector<Model> models;
-  for (const FileName& name : names) {
-    const std::string bytes = read_input_file(name.path, "a policy or a study model");
-    evaluate::Subject subject = name.controller->kind == ModelKind::kPolicy
-                                    ? load_policy_text(bytes, name.path)
-                                    : evaluate::load_subject(name.path);
-    require_joints(evaluate::spec_of(subject), robot.description);
-    models.push_back({name.controller, name.seed, std::move(subject), hash_of(bytes)});
-  }
+  for (const FileName& name : names) models.push_back(load_model(name, task, robot));
   if (models.empty()) {
     throw InputError(
         fmt::format("--from: found no trained controller in '{}', expected {}", folder, kExpected));
   }
   return models;
+}
+
+Model load_published(const std::string& path, const sim::Robot& robot) {
+  const std::string bytes = read_input_file(path, "a policy");
+  Policy policy = load_policy_text(bytes, path);
+  require_joints(policy.spec(), robot.description);
+  const train::PolicySettings task = train::shipped_task_config(robot).policy;
+  return {find_controller("published"), 0, hash_of(bytes),
+          train::read_task_network(path, task.mode_gain), std::move(policy)};
 }
 
 }  // namespace sandrunner::study

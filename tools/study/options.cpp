@@ -42,6 +42,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--threads", o.lab.threads, "worker threads; the results do not depend on them")
       ->type_name("N")
       ->capture_default_str();
+  app.add_option("--published", o.published,
+                 "the authors' network, as a policy file: shown next to ours, in no verdict")
+      ->type_name("FILE");
   app.add_option("--contact", o.contact, "what `sandrunner-bench contact --json FILE` wrote")
       ->type_name("FILE");
   app.footer(

@@ -14,7 +14,8 @@ struct Options {
   std::vector<std::string> only;  ///< experiments, in their order
   std::vector<int> seeds;         ///< empty: all
   LabSettings lab;
-  std::string contact;  ///< JSON of `sandrunner-bench contact`; empty: none
+  std::string published;  ///< the authors' network as a policy file; empty: none
+  std::string contact;    ///< JSON of `sandrunner-bench contact`; empty: none
 };
 
 /// Nothing if the command line asked for help alone. Throws InputError.

@@ -26,7 +26,7 @@ constexpr double kTimes_s[] = {0.0, 0.27, 0.37, 0.62, 0.78};  // the paper's
 constexpr int kStarts = 16;
 constexpr std::size_t kMostBytes = 3'000'000;
 
-const Policy& policy_of(const Model& model) { return std::get<Policy>(model.subject); }
+const Policy& policy_of(const Model& model) { return std::get<Policy>(model.subject.value()); }
 
 RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
   ConfigTree tree;

@@ -131,9 +131,11 @@ class Page {
     std::string run, missing;
     for (const char* controller : experiment.controllers) {
       const auto* seeds = evidence_.find(key, controller);
+      const Controller& found = *find_controller(controller);
+      if (found.kind == ModelKind::kPublished && seeds == nullptr) continue;
       std::string& list = seeds != nullptr ? run : missing;
-      list += fmt::format("{}{}", list.empty() ? "" : ", ", find_controller(controller)->name);
-      if (seeds != nullptr) {
+      list += fmt::format("{}{}", list.empty() ? "" : ", ", found.name);
+      if (seeds != nullptr && found.kind != ModelKind::kPublished) {
         list += fmt::format(" ({} seed{})", seeds->size(), seeds->size() == 1 ? "" : "s");
       }
     }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "rt/base/errors.h"
@@ -13,28 +12,6 @@
 
 namespace sandrunner::train {
 namespace {
-
-/// Throws InputError unless weights of `network` mean in a file with the scales of `ours` what they
-/// mean in their own. Nominal positions may differ: angles are shown as what they are off them.
-void require_scales(const PolicySpec& spec, const ObservationScales& network,
-                    const PolicySpec& our_spec, const ObservationScales& ours) {
-  const auto check = [&](const std::string& what, double is, double expected) {
-    if (std::fabs(is - expected) <= 1e-4 * std::fabs(expected)) return;
-    throw InputError(
-        fmt::format("policy '{}': its {} is {:.6g}, expected {:.6g}, with which this trainer shows "
-                    "and takes it",
-                    spec.name, what, is, expected));
-  };
-  constexpr std::size_t kAngles = 9;
-  for (std::size_t i = 0; i < kObservationSize; ++i) {
-    check(fmt::format("variance of observation {}", i), network.variance[i], ours.variance[i]);
-    if (i >= kAngles && i < kAngles + kNumJoints) continue;
-    check(fmt::format("mean of observation {}", i), network.mean[i], ours.mean[i]);
-  }
-  check("clip of observations", network.clip, ours.clip);
-  check("action scale", spec.action_scale_rad, our_spec.action_scale_rad);
-  check("action clip", spec.action_clip, our_spec.action_clip);
-}
 
 /// As files have them.
 ObservationScales observation_scales(const InputScales& scales) {
@@ -55,7 +32,7 @@ void Training::go_on_from(PolicyFile policy) {
   }
   const NetworkParameters& p = policy.parameters;
   require_scales(policy.spec, {p.observation_mean, p.observation_variance, p.observation_clip},
-                 policy_spec(snapshot()), observation_scales(task_.scales()));
+                 config_.task.policy, task_.scales());
   for (std::vector<float>* rows :
        {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
     const std::vector<float> joints = *rows;
@@ -73,8 +50,7 @@ void Training::go_on_from(PolicyFile policy) {
 // The policy imitates the networks of this file.
 void Training::imitate(const std::string& teacher_file) {
   const TaskNetwork teacher = read_task_network(teacher_file, config_.task.policy.mode_gain);
-  require_scales(teacher.spec, teacher.scales, policy_spec(snapshot()),
-                 observation_scales(task_.scales()));
+  require_scales(teacher.spec, teacher.scales, config_.task.policy, task_.scales());
   learner_.set_teacher(teacher.layout, teacher.parameters);
   origin_ = fmt::format("sandrunner-train, imitating '{}' of {} transitions", teacher.spec.name,
                         teacher.spec.provenance.at("transitions"));

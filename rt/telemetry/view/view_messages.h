@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "rt/core/messages.h"
-#include "rt/telemetry/view/view_hand.h"
+#include "rt/telemetry/view/view_control.h"
 
 namespace sandrunner {
 

@@ -84,7 +84,7 @@ struct Hub {
                                    {"ended", parts.feed.ended()},
                                    {"paused", pace.paused},
                                    {"rate", pace.rate}};
-    if (parts.hand) json["ground"] = ground_of(parts.hand->ground());
+    if (parts.control) json["ground"] = ground_of(parts.control->ground());
     return dump(json);
   }
 };
@@ -241,11 +241,13 @@ class Page : public std::enable_shared_from_this<Page> {
 
   // Changes the robot or its ground.
   std::string touch(const PageMessage& message) {
-    ViewHand* const hand = hub_.parts.hand;
-    if (!hand) return "only a simulated robot in lockstep can be touched, and its ground changed";
-    if (const auto* push = std::get_if<PagePush>(&message)) return hand->push(push->direction_rad);
-    if (std::holds_alternative<PageSetOnLegs>(message)) return hand->set_on_legs();
-    std::string refusal = hand->set_ground(std::get<PageTerrain>(message).ground);
+    ViewControl* const control = hub_.parts.control;
+    if (!control)
+      return "only a simulated robot in lockstep can be touched, and its ground changed";
+    if (const auto* push = std::get_if<PagePush>(&message))
+      return control->push(push->direction_rad);
+    if (std::holds_alternative<PageSetOnLegs>(message)) return control->set_on_legs();
+    std::string refusal = control->set_ground(std::get<PageTerrain>(message).ground);
     state_ = hub_.state();
     return refusal;
   }

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "rt/operator/operator_desk.h"
+#include "rt/telemetry/view/view_control.h"
 #include "rt/telemetry/view/view_feed.h"
-#include "rt/telemetry/view/view_hand.h"
 #include "rt/telemetry/view/view_pace.h"
 
 namespace sandrunner {
@@ -19,8 +19,8 @@ class ViewServer {
   struct Parts {
     const ViewFeed& feed;
     ViewPace* pace = nullptr;  ///< null: the robot has its own time, or there is only a recording
-    OperatorDesk* desk = nullptr;  ///< null: pages do not command
-    ViewHand* hand = nullptr;      ///< null: pages touch neither robot nor ground
+    OperatorDesk* desk = nullptr;    ///< null: pages do not command
+    ViewControl* control = nullptr;  ///< null: pages touch neither robot nor ground
     bool recorded = false;
   };
 

@@ -44,10 +44,25 @@ TEST_F(ModelsTest, AreInTheOrderOfTheTablesAndOfTheSeeds) {
   EXPECT_EQ(load({10, 1}), (Names{"ours-10", "env-rigid-1", "env-linear-1"}));
 }
 
-TEST_F(ModelsTest, OfControllersThatSeeTheGroundAreLeftOut) {
+TEST_F(ModelsTest, OfControllersThatSeeTheGroundRunInTheTrainingsEnvironmentsAlone) {
   put("ours-1.safetensors");
-  write_file(folder_.path("oracle-h-1.safetensors"), "something else");
-  EXPECT_EQ(load(), Names{"ours-1"});
+  put("oracle-h-1.safetensors");  // a reader of study models takes a policy too
+  const std::vector<Model> models = load_models(folder_.path(""), {}, robot_);
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_TRUE(models[0].subject.has_value());
+  EXPECT_FALSE(models[1].subject.has_value());
+  EXPECT_EQ(models[1].network.parameters, models[0].network.parameters);
+}
+
+TEST_F(ModelsTest, RefuseANetworkThatSeesOtherScales) {
+  std::string text(shipped_policy_text());
+  const std::string name = "sandrunner.action_scale_rad\":\"";
+  const std::size_t at = text.find(name);
+  ASSERT_NE(at, std::string::npos);
+  text[at + name.size()] = '1';
+  write_file(folder_.path("ours-1.safetensors"), text);
+  EXPECT_NE(refusal().find("its action scale is 1.3, expected 0.3"), std::string::npos)
+      << refusal();
 }
 
 TEST_F(ModelsTest, ThatAreStudyModelsAreRead) {

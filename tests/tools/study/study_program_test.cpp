@@ -48,6 +48,19 @@ TEST_F(StudyProgramTest, WritesThePageAndItsNumbersTheSameForAnyThreads) {
   EXPECT_NE(page.find("Not run: PL/Env-GM, PL/Env-Rigid"), std::string::npos);
 }
 
+TEST_F(StudyProgramTest, ThePublishedNetworkIsShownAndHasNoPartInTheVerdicts) {
+  write_file(folder_.path("published.safetensors"), shipped_policy_text());
+  const std::string common = "--from models --only E5 --runs 1 ";
+  ASSERT_EQ(run(common + "--out without"), 0) << error();
+  ASSERT_EQ(run(common + "--published published.safetensors --out with"), 0) << error();
+  EXPECT_EQ(read("with/claims.csv"), read("without/claims.csv"));
+  EXPECT_EQ(read("without/report.html").find("Authors"), std::string::npos);
+  EXPECT_NE(read("with/report.html").find("Authors"), std::string::npos);
+  const auto json = nlohmann::json::parse(read("with/results.json"));
+  EXPECT_EQ(json["experiments"]["E5"]["published"].size(), 1u);
+  EXPECT_FALSE(json["experiments"]["fairness"].contains("published"));
+}
+
 TEST_F(StudyProgramTest, AKilledRunGoesOnAndEndsInTheSameBytes) {
   const std::string common = "--from models --only E5 --runs 2 ";
   ASSERT_EQ(run(common + "--out whole"), 0) << error();

@@ -83,6 +83,9 @@ class BlockPass {
   /// Encoding h (hidden x envs) and estimate (8 x envs) of the answer.
   const Matrix<Scalar>& encoding() const;
   auto estimate() const { return estimator_.output(envs_); }
+  /// What the actor saw in it (ParameterLayout::actor_inputs() x envs): the parts of ActorInputs in
+  /// the order of parameters.h.
+  auto actor_input() const { return actor_input_.leftCols(envs_); }
 
   /// The critic's values of rollout step t; `steps` is the state after the window.
   void evaluate(const Weights<Scalar>& weights, BasicRollout<Scalar>& rollout, int t,

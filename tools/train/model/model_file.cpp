@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/train/model/model_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +12,7 @@
 #include "policy/safetensors.h"
 #include "policy/text.h"
 #include "rt/base/config_tree.h"
+#include "rt/base/errors.h"
 #include "rt/core/split_mix.h"
 #include "tools/train/model/study_model.h"
 #include "tools/train/task/leg_modes.h"
@@ -266,6 +269,28 @@ TaskNetwork read_task_network(const std::string& path,
   network.parameters.assign(static_cast<std::size_t>(network.layout.size()), 0.0f);
   set_policy_tensors(network.layout, tensors, network.parameters);
   return into_modes(std::move(network));
+}
+
+void require_scales(const PolicySpec& spec, const ObservationScales& network,
+                    const PolicySettings& task, const InputScales& task_scales) {
+  const auto check = [&](const std::string& what, double is, double expected) {
+    if (std::fabs(is - expected) <= 1e-4 * std::fabs(expected)) return;
+    throw InputError(
+        fmt::format("policy '{}': its {} is {:.6g}, expected {:.6g}, with which this trainer shows "
+                    "and takes it",
+                    spec.name, what, is, expected));
+  };
+  constexpr int kAngles = 9;
+  for (int i = 0; i < kObservationSize; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double deviation = 1.0 / task_scales.inverse_deviation[i];
+    check(fmt::format("variance of observation {}", i), network.variance[k], deviation * deviation);
+    if (i >= kAngles && i < kAngles + kNumJoints) continue;
+    check(fmt::format("mean of observation {}", i), network.mean[k], task_scales.mean[i]);
+  }
+  check("clip of observations", network.clip, task_scales.clip);
+  check("action scale", spec.action_scale_rad, task.action_scale_rad);
+  check("action clip", spec.action_clip, task.action_clip);
 }
 
 }  // namespace sandrunner::train

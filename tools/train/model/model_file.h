@@ -11,6 +11,8 @@
 #include "policy/golden.h"
 #include "policy/policy.h"
 #include "tools/train/learner/parameters.h"
+#include "tools/train/task/normalise.h"
+#include "tools/train/task/task_config.h"
 
 namespace sandrunner::train {
 
@@ -58,5 +60,11 @@ struct TaskNetwork {
 /// Of a study model or a policy file. Throws InputError.
 TaskNetwork read_task_network(const std::string& path,
                               const std::array<double, kNumLegs>& mode_gain);
+
+/// Throws InputError unless weights of `network`, of a policy or a model with this spec, mean in a
+/// Task with these settings and scales what they mean in their own. Nominal positions may differ:
+/// angles are shown as what they are off them.
+void require_scales(const PolicySpec& spec, const ObservationScales& network,
+                    const PolicySettings& task, const InputScales& task_scales);
 
 }  // namespace sandrunner::train

@@ -82,4 +82,10 @@ void add_training_layers(ConfigTree& config, const sim::Robot& robot) {
   config.add_text(embedded_train_file(own), own);
 }
 
+TaskConfig shipped_task_config(const sim::Robot& robot) {
+  ConfigTree tree;
+  add_training_layers(tree, robot);
+  return read_task_config(tree);
+}
+
 }  // namespace sandrunner::train

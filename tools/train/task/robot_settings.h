@@ -24,4 +24,7 @@ void check_robot(const TaskConfig& config, const sim::Robot& robot);
 /// from the robot, and what has been found better for a robot of this name (tools/train/go2.toml).
 void add_training_layers(ConfigTree& config, const sim::Robot& robot);
 
+/// What `sandrunner-train` takes for this robot without settings of one's own.
+TaskConfig shipped_task_config(const sim::Robot& robot);
+
 }  // namespace sandrunner::train

@@ -3,7 +3,7 @@
 import { tellsTruth } from './moment.js';
 import { Strip } from './plots.js';
 
-const kAsked = '#8a949e', kTrue = '#1d5c99', kBelieved = '#f07c12';
+const kRequested = '#8a949e', kTrue = '#1d5c99', kBelieved = '#f07c12';
 // Legs of a pair often move alike: left ones are wide and light, right ones narrow and dark on top.
 const kLegColors = ['#93c2ee', '#12518f', '#f2bd7c', '#a84a08'];
 const kDeadline_us = 250, kJointsPerLeg = 3;
@@ -15,7 +15,7 @@ export function makeCharts({ hello, frames }, robot, parent) {
   const truth = (value) => (hasTruth ? [{ name: 'true', color: kTrue, value }] : []);
   const at = (field, k = 0, scale = 1) => (i) => scale * frames.at(i, field, k);
   const legs = (value) => hello.legs.map((name, l) => ({ name, color: kLegColors[l], wide: l % 2 === 0, value: value(l) }));
-  const asked = (k) => ({ name: 'asked', color: kAsked, dash: [4, 3], value: at('asked', k) });
+  const requested = (k) => ({ name: 'requested', color: kRequested, dash: [4, 3], value: at('requested', k) });
   const strip = (...args) => {
     const canvas = document.createElement('canvas');
     parent.append(canvas);
@@ -27,9 +27,9 @@ export function makeCharts({ hello, frames }, robot, parent) {
       { limits: Number.isFinite(most) && most > 0 ? [-most, most] : [], least: 1, zero: true });
   });
   const charts = [
-    strip('Forward speed', 'm/s', [asked(0), ...truth(at('motion', 0)),
+    strip('Forward speed', 'm/s', [requested(0), ...truth(at('motion', 0)),
       { name: 'believed', color: kBelieved, value: at('estimate', 1) }], { least: 0.5, zero: true }),
-    strip('Yaw rate', 'rad/s', [asked(2),
+    strip('Yaw rate', 'rad/s', [requested(2),
       { name: hasTruth ? 'true' : 'measured', color: kTrue, value: at('motion', 2) }], { least: 0.5, zero: true }),
     strip('Body height', 'm', [...truth(at('truth', 0)),
       { name: 'believed', color: kBelieved, value: at('estimate', 0) }], { least: 0.1 }),

@@ -5,7 +5,7 @@ import { kSpan_s, makeCharts } from './charts.js';
 import { showCurve } from './curve.js';
 import { Drive } from './drive.js';
 import { hasRun, readCurve, readRun } from './file.js';
-import { Hand } from './hand.js';
+import { SceneControls } from './scene_controls.js';
 import { Live } from './live.js';
 import { LivePlayer } from './live_player.js';
 import { momentAt, tellsTruth } from './moment.js';
@@ -69,7 +69,7 @@ function savePicture(view, t) {
 // What only a page has that somebody serves.
 function makeLive({ live, frames, hello }, player, view, changed) {
   const showTime = makeRobotTime(live), drive = new Drive(live, hello.requests), lost = element('lost');
-  const hand = new Hand(live, frames, view, (kind) => {
+  const controls = new SceneControls(live, frames, view, (kind) => {
     hello.granular = kind === 'granular';
     view.groundIsSoft?.(hello.granular);
     changed();
@@ -84,11 +84,11 @@ function makeLive({ live, frames, hello }, player, view, changed) {
   live.onState = () => {
     showTime();
     drive.show();
-    hand.show();
+    controls.show();
   };
   live.onAnswer = (message) => drive.answer(message);
   showTime();
-  hand.show();
+  controls.show();
   return () => {
     const text = live.lost ? 'LOST: nothing is heard of the robot' : '';
     if (lost.textContent !== text) lost.textContent = text;

@@ -26,7 +26,7 @@ export function momentAt(frames, t) {
     stance: frames.all(row, 'stance_m'),
     motion: mix('motion'),
     odometry: mix('odometry'),
-    asked: frames.all(row, 'asked'),
+    requested: frames.all(row, 'requested'),
     given: frames.all(row, 'given'),
     estimate: mix('estimate'),
     truth: mix('truth'),

@@ -10,7 +10,7 @@ export class State {
   constructor(hello, hasTruth) {
     this.hello = hello;
     const element = (id) => document.getElementById(id);
-    this.parts = Object.fromEntries(['mode', 'clock', 'speed', 'asked', 'faults', 'sinkage'].map((id) => [id, element(id)]));
+    this.parts = Object.fromEntries(['mode', 'clock', 'speed', 'requested', 'faults', 'sinkage'].map((id) => [id, element(id)]));
     element('note').textContent = hello.note;
     document.title = ['Sandrunner', hello.robot, hello.terrain].filter(Boolean).join(', ');
     if (!hasTruth) return;
@@ -25,7 +25,7 @@ export class State {
     });
   }
 
-  show({ t, mode, motion, estimate, hasTruth, hasEstimate, asked, given, penetration, faults, skipped }) {
+  show({ t, mode, motion, estimate, hasTruth, hasEstimate, requested, given, penetration, faults, skipped }) {
     const name = this.hello.modes[mode] ?? `mode ${mode}`, { parts } = this;
     parts.mode.textContent = name.replace('_', ' ');
     parts.mode.className = name;
@@ -33,8 +33,8 @@ export class State {
     const speed = hasTruth ? motion[0] : hasEstimate ? estimate[1] : NaN;
     parts.speed.innerHTML = `${fixed(speed, 2)} <small>m/s${hasTruth ? '' : ', believed'}</small>`;
     const text = (command) => `${fixed(command[0], 1)}, ${fixed(command[1], 1)} m/s, ${fixed(command[2], 1)} rad/s`;
-    const differs = name === 'walk' && asked.some((v, k) => Math.abs(v - given[k]) > 0.05);
-    parts.asked.textContent = `asked ${text(asked)}${differs ? `; given ${text(given)}` : ''}`;
+    const differs = name === 'walk' && requested.some((v, k) => Math.abs(v - given[k]) > 0.05);
+    parts.requested.textContent = `requested ${text(requested)}${differs ? `; given ${text(given)}` : ''}`;
     const found = this.hello.faults.filter((_, bit) => (faults >>> bit) & 1);
     parts.faults.textContent = found.map((f) => `${f.name}: ${f.meaning}`).join('; ');
     this.depths?.forEach((b, l) => { b.textContent = fixed(Math.max(0, 1000 * penetration[l]), 0); });

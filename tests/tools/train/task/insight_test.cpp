@@ -2,8 +2,8 @@
 // What networks of a study are shown besides what sensors measure.
 #include <gtest/gtest.h>
 
-#include "shipped_config.h"
 #include "sim/ground/terrain_description.h"
+#include "tools/train/task/robot_settings.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::train {

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "tests/tools/train/task/shipped_config.h"
+#include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::train {
 namespace {

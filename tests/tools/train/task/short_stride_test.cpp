@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rt/core/floating_point.h"
-#include "tests/tools/train/task/shipped_config.h"
+#include "tools/train/task/robot_settings.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::train {

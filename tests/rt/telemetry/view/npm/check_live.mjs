@@ -107,26 +107,26 @@ async function drives() {
   await bring("arm", "damping");
   await bring("stand", "stand");
   await bring("walk", "walk");
-  const asked = (vx) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) === ${vx}`);
+  const requested = (vx) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', 0) === ${vx}`);
   await page.keyboard.down("w");
-  await asked(0.5);
+  await requested(0.5);
   await page.keyboard.up("w");
-  await asked(0);
+  await requested(0);
   await page.evaluate(() => {
     const held = Array.from({ length: 8 }, (_, i) => ({ pressed: i === 4 }));
     navigator.getGamepads = () => [{ buttons: held, axes: [0.1, -0.55, 0, 0] }];
   });
   // Half of the speed that is left beyond the dead zone, at half of the full speed; what lies in the dead zone is rest.
-  await until(page, "Math.abs(sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) - 0.25) < 1e-3");
-  assert.equal(await page.evaluate("sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 1)"), 0);
+  await until(page, "Math.abs(sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', 0) - 0.25) < 1e-3");
+  assert.equal(await page.evaluate("sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', 1)"), 0);
   await page.evaluate("navigator.getGamepads = () => []");
-  await asked(0);
+  await requested(0);
   await page.keyboard.down("w");
-  await asked(0.5);
+  await requested(0.5);
   // A page that is gone says nothing more: the age of its last word stops the robot.
   await page.close();
   const look = await open(url.split("#")[0]);
-  await until(look, "sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0) === 0");
+  await until(look, "sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', 0) === 0");
   assert.ok(await look.$eval("#drive", (element) => element.hidden), "without the key there is nothing to drive with");
   child.kill("SIGINT");
   await look.close();
@@ -203,14 +203,14 @@ async function drivesWithAFinger() {
     return { x: left + width / 2, y: top + height / 2, height };
   });
   await until(page, "document.getElementById('stick').clientHeight > 0");
-  const asked = (k, test) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', ${k}) ${test}`);
+  const requested = (k, test) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', ${k}) ${test}`);
   const stick = await middle("stick"), hold = await middle("stick-hold");
   const finger = await page.touchscreen.touchStart(stick.x, stick.y - 0.45 * stick.height);
-  assert.equal(await page.evaluate("sandrunner.run.frames.at(sandrunner.frames - 1, 'asked', 0)"), 0, "a stick alone does nothing");
+  assert.equal(await page.evaluate("sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', 0)"), 0, "a stick alone does nothing");
   const other = await page.touchscreen.touchStart(hold.x, hold.y);
-  await asked(0, "> 0.4");
+  await requested(0, "> 0.4");
   await other.end();
-  await asked(0, "=== 0");
+  await requested(0, "=== 0");
   await finger.end();
   child.kill("SIGINT");
   await page.close();

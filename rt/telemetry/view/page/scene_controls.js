@@ -14,7 +14,7 @@ const kSliders = [
   { name: 'packing', keys: { granular: ['packing'] }, to: 1, step: 0.01 },
 ];
 
-export class Hand {
+export class SceneControls {
   /** @param {Function} onKind is told 'granular', 'rigid' or 'linear' when the ground has become another one */
   constructor(live, frames, view, onKind) {
     Object.assign(this, { live, frames, view, onKind });

@@ -30,9 +30,9 @@ struct GroundNow {
 /// What pages do to a simulated robot and its ground between two ticks. Called by the server's
 /// thread; what is asked is done before the next tick. Each returns why not, in one line; empty: it
 /// will be.
-class ViewHand {
+class ViewControl {
  public:
-  virtual ~ViewHand() = default;
+  virtual ~ViewControl() = default;
   /// kPush_mps more speed towards `direction_rad` from world x.
   virtual std::string push(double direction_rad) = 0;
   virtual std::string set_on_legs() = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a page does to a simulated robot and its ground, over a real socket.
-#include "rt/telemetry/view/view_hand.h"
+#include "rt/telemetry/view/view_control.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "rt/loop/replay.h"
 #include "rt/operator/operator_desk.h"
-#include "rt/run/simulator_hand.h"
+#include "rt/run/simulator_control.h"
 #include "rt/telemetry/recording/recorder.h"
 #include "rt/telemetry/recording/recording_file.h"
 #include "rt/telemetry/view/view_server.h"
@@ -29,8 +29,8 @@ constexpr const char* kSoft =
 constexpr const char* kPushLeft = R"({"say":"push","direction":1.5707963267948966})";
 
 /// A run in lockstep with a page that has the key.
-struct HandTest : testing::Test, TickSink, BetweenTicks {
-  HandTest() {
+struct ViewControlTest : testing::Test, TickSink, BetweenTicks {
+  ViewControlTest() {
     const std::string url = server->url();
     page.emplace(std::stoi(url.substr(url.find(':', 6) + 1)));
     page->say(R"({"say":"hello","key":")" + url.substr(url.find("#key=") + 5) + "\"}");
@@ -53,7 +53,7 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
   }
   RobotNow act(std::uint64_t next, TickSinks sinks) override {
     if (before_tick) before_tick(next);
-    return hand->act(next, sinks);
+    return control->act(next, sinks);
   }
 
   /// Walks for so long; `before` may say something before a tick.
@@ -95,12 +95,12 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
   const ProcessConfig config = config_of("wet-sand", {}, policy.spec());
   sim::Simulator simulator{config.robot, config.simulator};
   RemoteOperator remote{1200};
-  StandAgain stand_again{remote};
-  std::optional<SimulatorHand> hand{std::in_place, simulator, config.simulator.terrain,
-                                    config.effective, &stand_again};
+  ReturnToStand return_to_stand{remote};
+  std::optional<SimulatorControl> control{std::in_place, simulator, config.simulator.terrain,
+                                          config.effective, &return_to_stand};
   ViewFeed feed{RunScene{.robot = config.robot.description}};
   std::optional<ViewServer> server{std::in_place, 0,
-                                   ViewServer::Parts{.feed = feed, .hand = &*hand}};
+                                   ViewServer::Parts{.feed = feed, .control = &*control}};
   std::optional<WebPage> page;
   std::atomic<int> interrupt{false};
   std::optional<Recorder> recorder;
@@ -110,7 +110,7 @@ struct HandTest : testing::Test, TickSink, BetweenTicks {
   std::function<void(std::uint64_t)> before_tick;
 };
 
-TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingReplays) {
+TEST_F(ViewControlTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingReplays) {
   const TemporaryFolder folder;
   RecordingInfo info;
   info.start_mode = "walk";
@@ -148,13 +148,13 @@ TEST_F(HandTest, AQuarterOfTheStiffnessLetsTheFeetSinkDeeperAndTheRecordingRepla
                         "8000 as the run began sigma_cone_npm3=150000 sigma_flat_npm3=2500000"});
 }
 
-TEST_F(HandTest, ARunThatNobodyTouchesIsTheSameToTheBit) {
+TEST_F(ViewControlTest, ARunThatNobodyTouchesIsTheSameToTheBit) {
   const RunResult plain = run_once(config, policy, {.walk_s = 1.0, .start_walking = true});
   EXPECT_EQ(walk(1.0, {}).end.state_hash, plain.end.state_hash);
   EXPECT_TRUE(notes.empty());
 }
 
-TEST_F(HandTest, APushIsHalfAMetrePerSecondBetweenTwoTicksAndTheNextTickKnowsOfIt) {
+TEST_F(ViewControlTest, APushIsHalfAMetrePerSecondBetweenTwoTicksAndTheNextTickKnowsOfIt) {
   double before_mps = 0.0, after_mps = 0.0;
   walk(1.0, [&](std::uint64_t next) {
     if (next == 1000) {
@@ -169,7 +169,7 @@ TEST_F(HandTest, APushIsHalfAMetrePerSecondBetweenTwoTicksAndTheNextTickKnowsOfI
   EXPECT_EQ(notes, std::vector<std::string>{"1000 push: 0.5 m/s towards 90 degrees"});
 }
 
-TEST_F(HandTest, ARobotThatHasFallenWithAFaultStandsAgainByTheWaysOfTheModeMachine) {
+TEST_F(ViewControlTest, ARobotThatHasFallenWithAFaultStandsAgainByTheWaysOfTheModeMachine) {
   OperatorDesk desk(remote, 60.0, nullptr);
   bool fallen = false;
   std::vector<Mode> modes;
@@ -194,7 +194,7 @@ TEST_F(HandTest, ARobotThatHasFallenWithAFaultStandsAgainByTheWaysOfTheModeMachi
                             modes.size() > 5;
         if (stands || next > 40 * kSecond) interrupt = true;
       },
-      &stand_again);
+      &return_to_stand);
   using enum Mode;
   EXPECT_EQ(modes, (std::vector<Mode>{kPassive, kDamping, kStandUp, kStand, kFault, kPassive,
                                       kDamping, kStandUp, kStand, kDamping}));
@@ -203,14 +203,14 @@ TEST_F(HandTest, ARobotThatHasFallenWithAFaultStandsAgainByTheWaysOfTheModeMachi
   EXPECT_EQ(result.end.gate.faults, 0u);
 }
 
-TEST_F(HandTest, GroundOfAnotherKindThrowsNobodyUp) {
+TEST_F(ViewControlTest, GroundOfAnotherKindThrowsNobodyUp) {
   const std::vector<std::string> presets = sim::terrain_preset_names();
   std::size_t changes = 0;
   const RunResult result = walk(7.0, [&](std::uint64_t next) {
     if (next % kSecond != 0) return;
     const std::string& preset = presets[changes++ % presets.size()];
     EXPECT_EQ(say(R"({"say":"terrain","preset":")" + preset + R"(","set":{}})"), "");
-    EXPECT_EQ(hand->ground().name, preset);
+    EXPECT_EQ(control->ground().name, preset);
   });
   EXPECT_TRUE(result.survived) << result.fall_reason;
   EXPECT_EQ(changes, 6u);
@@ -218,7 +218,7 @@ TEST_F(HandTest, GroundOfAnotherKindThrowsNobodyUp) {
   EXPECT_LT(height_m(std::ranges::max(ticks, {}, height_m)), 0.6);
 }
 
-TEST_F(HandTest, WhatSetRefusesIsRefusedInTheSameLine) {
+TEST_F(ViewControlTest, WhatSetRefusesIsRefusedInTheSameLine) {
   EXPECT_EQ(say(R"({"say":"terrain","preset":"","set":{"friction":9}})"),
             "--set terrain.friction: terrain.friction: found 9, expected a finite number from 0 "
             "to 5");
@@ -231,10 +231,10 @@ TEST_F(HandTest, WhatSetRefusesIsRefusedInTheSameLine) {
   EXPECT_EQ(say(R"({"say":"terrain","preset":"/etc/passwd","set":{}})"),
             "terrain: '/etc/passwd', expected one of air-mattress, athletic-track, dry-sand, "
             "grass, memory-foam, rigid, vinyl, wet-sand");
-  EXPECT_EQ(hand->ground().wanted.set.size(), 0u);
+  EXPECT_EQ(control->ground().wanted.set.size(), 0u);
 }
 
-TEST_F(HandTest, WhoHasNoKeyAndARobotThatCannotBeTouchedAreRefusedInWords) {
+TEST_F(ViewControlTest, WhoHasNoKeyAndARobotThatCannotBeTouchedAreRefusedInWords) {
   const auto refusal = [](const ViewServer& of, bool with_key) {
     const std::string url = of.url();
     WebPage other(std::stoi(url.substr(url.find(':', 6) + 1)));
@@ -247,7 +247,7 @@ TEST_F(HandTest, WhoHasNoKeyAndARobotThatCannotBeTouchedAreRefusedInWords) {
   const ViewServer real(0, {.feed = feed});
   EXPECT_EQ(refusal(real, true),
             "only a simulated robot in lockstep can be touched, and its ground changed");
-  SimulatorHand scripted(simulator, config.simulator.terrain, config.effective, nullptr);
+  SimulatorControl scripted(simulator, config.simulator.terrain, config.effective, nullptr);
   EXPECT_EQ(scripted.set_on_legs(),
             "this run follows its command line: only with --command live is the robot set on its "
             "legs");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/operator/stand_again.h"
+#include "rt/operator/return_to_stand.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace sandrunner {
 namespace {
 
-struct StandAgainTest : testing::Test {
+struct ReturnToStandTest : testing::Test {
   /// A tick in this mode; what is asked for in it.
   OperatorCommand tick(Mode mode) {
     const OperatorCommand command = op.command(next++);
@@ -16,11 +16,11 @@ struct StandAgainTest : testing::Test {
     return command;
   }
   RemoteOperator other{1200};
-  StandAgain op{other};
+  ReturnToStand op{other};
   std::uint64_t next = 1;
 };
 
-TEST_F(StandAgainTest, UntilItIsToldTheOtherOperatorSpeaks) {
+TEST_F(ReturnToStandTest, UntilItIsToldTheOtherOperatorSpeaks) {
   tick(Mode::kStand);
   other.ask({.velocity = {.vx_mps = 1.0},
              .velocity_number = 1,
@@ -33,7 +33,7 @@ TEST_F(StandAgainTest, UntilItIsToldTheOtherOperatorSpeaks) {
   EXPECT_FALSE(op.holds());
 }
 
-TEST_F(StandAgainTest, AWalkingRobotIsDampedPutUprightStandsUpAndIsHeldUntilItDoes) {
+TEST_F(ReturnToStandTest, AWalkingRobotIsDampedPutUprightStandsUpAndIsHeldUntilItDoes) {
   tick(Mode::kWalk);
   op.begin();
   const std::uint64_t damp = tick(Mode::kDamping).request_id;
@@ -48,7 +48,7 @@ TEST_F(StandAgainTest, AWalkingRobotIsDampedPutUprightStandsUpAndIsHeldUntilItDo
   EXPECT_EQ(tick(Mode::kStand).request_id, id);
 }
 
-TEST_F(StandAgainTest, AFaultIsResetAgainAndAgainAsTheControllerDampsFirst) {
+TEST_F(ReturnToStandTest, AFaultIsResetAgainAndAgainAsTheControllerDampsFirst) {
   tick(Mode::kFault);
   op.begin();
   op.is_upright();
@@ -63,7 +63,7 @@ TEST_F(StandAgainTest, AFaultIsResetAgainAndAgainAsTheControllerDampsFirst) {
   EXPECT_TRUE(op.holds());
 }
 
-TEST_F(StandAgainTest, ADampOfTheOtherOperatorEndsIt) {
+TEST_F(ReturnToStandTest, ADampOfTheOtherOperatorEndsIt) {
   tick(Mode::kPassive);
   op.begin();
   tick(Mode::kDamping);
@@ -73,7 +73,7 @@ TEST_F(StandAgainTest, ADampOfTheOtherOperatorEndsIt) {
   EXPECT_EQ(tick(Mode::kDamping).request, ModeRequest::kDamp);
 }
 
-TEST_F(StandAgainTest, WhatDoesNotStandWithinTenSecondsIsLetGo) {
+TEST_F(ReturnToStandTest, WhatDoesNotStandWithinTenSecondsIsLetGo) {
   op.begin();
   for (int i = 0; i < 10 * kControlHz; ++i) tick(Mode::kFault);
   EXPECT_TRUE(op.holds());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/operator/stand_again.h"
+#include "rt/operator/return_to_stand.h"
 
 #include <algorithm>
 
@@ -12,18 +12,18 @@ constexpr std::uint64_t kLongest_ticks = 10 * kControlHz;
 
 }  // namespace
 
-void StandAgain::begin() noexcept {
+void ReturnToStand::begin() noexcept {
   phase_ = Phase::kDown;
   upright_ = false;
   ticks_ = 0;
 }
 
-bool StandAgain::holds() const noexcept {
+bool ReturnToStand::holds() const noexcept {
   return phase_ == Phase::kDown ||
          (phase_ == Phase::kUp && mode_ != Mode::kStandUp && mode_ != Mode::kStand);
 }
 
-OperatorCommand StandAgain::command(std::uint64_t tick) noexcept {
+OperatorCommand ReturnToStand::command(std::uint64_t tick) noexcept {
   const OperatorCommand other = other_.command(tick);
   command_.velocity = other.velocity;
   command_.tick = std::max(command_.tick, other.tick);
@@ -41,7 +41,7 @@ OperatorCommand StandAgain::command(std::uint64_t tick) noexcept {
   return command_;
 }
 
-OperatorVerdict StandAgain::advance(const TickFacts& facts) noexcept {
+OperatorVerdict ReturnToStand::advance(const TickFacts& facts) noexcept {
   mode_ = facts.mode;
   if (phase_ != Phase::kIdle) {
     ++ticks_;
@@ -53,7 +53,7 @@ OperatorVerdict StandAgain::advance(const TickFacts& facts) noexcept {
   return other_.advance(facts);
 }
 
-ModeRequest StandAgain::wanted() const noexcept {
+ModeRequest ReturnToStand::wanted() const noexcept {
   const bool up = phase_ == Phase::kUp;
   switch (mode_) {
     case Mode::kPassive:
@@ -70,7 +70,7 @@ ModeRequest StandAgain::wanted() const noexcept {
   return up ? ModeRequest::kNone : ModeRequest::kDamp;
 }
 
-void StandAgain::request(ModeRequest r) noexcept {
+void ReturnToStand::request(ModeRequest r) noexcept {
   command_.request = r;
   ++command_.request_id;
 }

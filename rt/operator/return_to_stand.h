@@ -11,10 +11,10 @@ namespace sandrunner {
 /// makes the requests that the mode machine needs from its present mode, the reset of a latched
 /// fault included. A request of the other operator ends that. For a simulated robot that the viewer
 /// holds upright meanwhile. Called from the control thread.
-class StandAgain final : public OperatorInput {
+class ReturnToStand final : public OperatorInput {
  public:
   /// `other` must outlive it.
-  explicit StandAgain(OperatorInput& other) : other_(other) {}
+  explicit ReturnToStand(OperatorInput& other) : other_(other) {}
 
   void begin() noexcept;
   /// The robot is to be held: it does not carry itself yet.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rt/run/simulator_hand.h"
+#include "rt/run/simulator_control.h"
 
 #include <fmt/format.h>
 
@@ -85,15 +85,16 @@ std::string text_of(const WantedGround& wanted) {
 
 }  // namespace
 
-SimulatorHand::SimulatorHand(sim::Simulator& simulator, const sim::TerrainDescription& terrain,
-                             std::string settings, StandAgain* stand_again)
+SimulatorControl::SimulatorControl(sim::Simulator& simulator,
+                                   const sim::TerrainDescription& terrain, std::string settings,
+                                   ReturnToStand* return_to_stand)
     : simulator_(simulator),
       settings_(std::move(settings)),
-      stand_again_(stand_again),
+      return_to_stand_(return_to_stand),
       uneven_(simulator.terrain().highest > 0.0),
       ground_(describe(terrain, {})) {}
 
-std::string SimulatorHand::push(double direction_rad) {
+std::string SimulatorControl::push(double direction_rad) {
   const std::lock_guard lock(mutex_);
   constexpr std::size_t kMost = 16;  // while the robot's time stands still
   if (pushes_rad_.size() == kMost) return "enough pushes wait for the next tick";
@@ -101,8 +102,8 @@ std::string SimulatorHand::push(double direction_rad) {
   return {};
 }
 
-std::string SimulatorHand::set_on_legs() {
-  if (!stand_again_) {
+std::string SimulatorControl::set_on_legs() {
+  if (!return_to_stand_) {
     return "this run follows its command line: only with --command live is the robot set on its "
            "legs";
   }
@@ -111,7 +112,7 @@ std::string SimulatorHand::set_on_legs() {
   return {};
 }
 
-std::string SimulatorHand::set_ground(const WantedGround& wanted) {
+std::string SimulatorControl::set_ground(const WantedGround& wanted) {
   if (uneven_ && !wanted.preset.empty())
     return "uneven ground cannot be changed for another preset";
   try {
@@ -125,12 +126,12 @@ std::string SimulatorHand::set_ground(const WantedGround& wanted) {
   }
 }
 
-GroundNow SimulatorHand::ground() const {
+GroundNow SimulatorControl::ground() const {
   const std::lock_guard lock(mutex_);
   return ground_;
 }
 
-RobotNow SimulatorHand::act(std::uint64_t next, TickSinks sinks) {
+RobotNow SimulatorControl::act(std::uint64_t next, TickSinks sinks) {
   RobotNow now = RobotNow::kAsBefore;
   {
     const std::lock_guard lock(mutex_);
@@ -147,19 +148,19 @@ RobotNow SimulatorHand::act(std::uint64_t next, TickSinks sinks) {
                        direction_rad * (180.0 / std::numbers::pi)));
       now = RobotNow::kChanged;
     }
-    if (std::exchange(set_on_legs_, false)) stand_again_->begin();
+    if (std::exchange(set_on_legs_, false)) return_to_stand_->begin();
   }
   return hold(next, sinks) == RobotNow::kChanged ? RobotNow::kChanged : now;
 }
 
 // Upright, until it carries itself.
-RobotNow SimulatorHand::hold(std::uint64_t next, TickSinks sinks) {
-  const bool holds = stand_again_ && stand_again_->holds();
+RobotNow SimulatorControl::hold(std::uint64_t next, TickSinks sinks) {
+  const bool holds = return_to_stand_ && return_to_stand_->holds();
   if (holds != holding_) {
     note(sinks, next, "hand", holds ? "sets the robot on its legs" : "lets it go");
   }
   holding_ = holds;
-  if (holds && simulator_.carry_to_stand()) stand_again_->is_upright();
+  if (holds && simulator_.carry_to_stand()) return_to_stand_->is_upright();
   return holds ? RobotNow::kChanged : RobotNow::kAsBefore;
 }
 

@@ -8,20 +8,20 @@
 #include <vector>
 
 #include "rt/loop/rig.h"
-#include "rt/operator/stand_again.h"
-#include "rt/telemetry/view/view_hand.h"
+#include "rt/operator/return_to_stand.h"
+#include "rt/telemetry/view/view_control.h"
 #include "sim/simulator.h"
 
 namespace sandrunner {
 
-/// The hand of pages in a simulated run in lockstep. What they ask for waits here for the next
+/// What pages change in a simulated run in lockstep. What they ask for waits here for the next
 /// boundary between two ticks.
-class SimulatorHand final : public ViewHand, public BetweenTicks {
+class SimulatorControl final : public ViewControl, public BetweenTicks {
  public:
-  /// `settings`: those in effect, TOML. `stand_again`: the run's operator; null: the run follows
-  /// its command line. Both it and the simulator must outlive the hand.
-  SimulatorHand(sim::Simulator& simulator, const sim::TerrainDescription& terrain,
-                std::string settings, StandAgain* stand_again);
+  /// `settings`: those in effect, TOML. `return_to_stand`: the run's operator; null: the run
+  /// follows its command line. Both it and the simulator must outlive it.
+  SimulatorControl(sim::Simulator& simulator, const sim::TerrainDescription& terrain,
+                   std::string settings, ReturnToStand* return_to_stand);
 
   std::string push(double direction_rad) override;
   std::string set_on_legs() override;
@@ -36,7 +36,7 @@ class SimulatorHand final : public ViewHand, public BetweenTicks {
 
   sim::Simulator& simulator_;
   const std::string settings_;
-  StandAgain* const stand_again_;
+  ReturnToStand* const return_to_stand_;
   const bool uneven_;
   bool holding_ = false;      // used by the thread of the ticks alone
   mutable std::mutex mutex_;  // of the rest
