@@ -30,9 +30,9 @@ struct ControllerSigns {
 /// would shake it: the wire damps for a moment and writes no more.
 class CommandWatch {
  public:
-  /// The message after the one that follows a command this old comes 2 ms later: no command holds
-  /// for longer than 50 ms.
-  static constexpr std::int64_t kCommandTimeout_ns = 48'000'000;
+  /// The message after the last one that follows a command comes 2 ms later, and the computer may
+  /// hold it up for 2 ms more: no command holds for longer than 50 ms.
+  static constexpr std::int64_t kCommandTimeout_ns = 46'000'000;
   static constexpr std::int64_t kDamped_ns = 2'000'000'000;
   static constexpr std::int64_t kForeignDamped_ns = 10'000'000;
   static constexpr std::int64_t kOff_ns = 20'000'000;  ///< some messages, as one may be lost

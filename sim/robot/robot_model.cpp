@@ -355,7 +355,7 @@ Robot load_robot(const std::string& map_path) {
     return parse_robot(std::string(map), map_path + ".toml",
                        std::string(embedded_robot_file(map_path + ".urdf")), map_path + ".urdf");
   }
-  const std::string map_text = read_input_file(map_path, "a robot file");
+  const std::string map_text = read_input_file(map_path, "raibo, go2 or a robot file");
   const std::size_t first = map_text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && map_text[first] == '<') {
     throw InputError(

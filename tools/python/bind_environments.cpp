@@ -151,8 +151,8 @@ void bind_environments(py::module_& module) {
                              [](const Environments& e) { return e.robot().nominal_rad; })
       .def_property_readonly("episode_length_s",
                              [](const Environments& e) { return e.config().episode.length_s; })
-      .def_property_readonly("robot_name",
-                             [](const Environments& e) { return e.robot().description.name; });
+      .def_property_readonly(
+          "joint_names", [](const Environments& e) { return e.robot().description.joint_names; });
   module.def("reward_term_names", &train::reward_term_names);
   module.attr("step_s") = 1.0 / kPolicyHz;
 }

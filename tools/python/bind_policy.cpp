@@ -42,8 +42,8 @@ py::dict spec_dict(const PolicySpec& spec, float observation_clip) {
 
 /// (tensors by name, spec).
 py::tuple read(const std::string& path) {
-  PolicyFile file = path == "raibo" ? parse_policy_file(shipped_policy_text(), "raibo (built in)")
-                                    : read_policy_file(path);
+  const std::string_view shipped = shipped_policy_text(path);
+  PolicyFile file = shipped.empty() ? read_policy_file(path) : parse_policy_file(shipped, path);
   py::dict tensors;
   for (const NamedTensor& tensor : tensors_of(file.parameters)) {
     tensors[py::str(tensor.name)] = float_array(*tensor.values, shape_of(tensor));
@@ -111,6 +111,8 @@ class Policies {
  public:
   explicit Policies(Policy policy) : policy_(std::move(policy)) {}
 
+  const JointArray<std::string>& joint_names() const { return policy_.spec().joint_names; }
+
   /// (joint targets, raw estimates): rows of `observation`, raw and in SI units. Memories are
   /// cleared first where `reset`.
   py::tuple step(const py::object& observation_array, const py::object& reset_array) {
@@ -157,9 +159,11 @@ void bind_policy(py::module_& module) {
              py::arg("environments"), py::arg("name"), py::arg("provenance"));
   py::class_<Policies>(module, "Policies")
       .def(py::init([](const std::string& path) {
-             return Policies(path == "raibo" ? load_shipped_policy() : load_policy(path));
+             return Policies(shipped_policy_text(path).empty() ? load_policy(path)
+                                                               : load_shipped_policy(path));
            }),
            py::arg("path"))
+      .def_property_readonly("joint_names", &Policies::joint_names)
       .def("step", &Policies::step, py::arg("observation"), py::arg("reset"));
 }
 

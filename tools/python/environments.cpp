@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
-#include "sim/robot/embedded.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/train_config.h"
 
@@ -38,16 +36,6 @@ void require_count(const char* name, int found, int most) {
 
 }  // namespace
 
-sim::Robot load_robot_named(const std::string& robot) {
-  if (embedded_robot_file(robot + ".toml").empty() && !std::filesystem::exists(robot)) {
-    throw InputError(
-        fmt::format("robot: found '{}', expected 'raibo', 'go2' or the path of a robot file "
-                    "(sim/robot/README.md)",
-                    robot));
-  }
-  return sim::load_robot(robot);
-}
-
 Environments::Settings Environments::read_settings(const EnvironmentsOptions& options,
                                                    const sim::Robot& robot) {
   require_count("num_envs", options.envs, kMostEnvs);
@@ -71,7 +59,7 @@ Environments::Settings Environments::read_settings(const EnvironmentsOptions& op
 }
 
 Environments::Environments(const EnvironmentsOptions& options)
-    : Environments(options, load_robot_named(options.robot)) {}
+    : Environments(options, sim::load_robot(options.robot)) {}
 
 Environments::Environments(const EnvironmentsOptions& options, const sim::Robot& robot)
     : Environments(options, robot, read_settings(options, robot)) {}

@@ -16,7 +16,7 @@ namespace sandrunner::python {
 
 /// How the environments are made; the values are checked by `Environments`.
 struct EnvironmentsOptions {
-  std::string robot = "raibo";  ///< that one, or the path of a robot file
+  std::string robot = "raibo";  ///< as sim::load_robot takes it
   int envs = 1024;
   std::uint64_t seed = 1;
   int threads = 1;
@@ -32,9 +32,6 @@ struct Progress {
   double transitions = 0.0;
   double late = 0.0;  ///< share of the late penalties, 0 to 1
 };
-
-/// Robot of that name or file. Throws InputError.
-sim::Robot load_robot_named(const std::string& robot);
 
 /// The environments of sandrunner-train with the loop of its Training around them: `step` is one
 /// step of all, and after every `learner.window` of them the curricula move. Arrays stay where they

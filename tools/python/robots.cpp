@@ -13,7 +13,6 @@
 #include "rt/base/errors.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/step/actuator.h"
-#include "tools/python/environments.h"
 
 namespace sandrunner::python {
 namespace {
@@ -47,7 +46,7 @@ sim::StepSettings settings_at(double step_hz) {
 
 Robots::Robots(const std::string& robot, int count, const std::string& ground,
                const std::vector<std::string>& settings, double step_hz, int threads)
-    : robot_(load_robot_named(robot)),
+    : robot_(sim::load_robot(robot)),
       foot_(sim::make_foot_profile({}, robot_.model)),
       batch_(checked("num_robots", count, kMostRobots), foot_, settings_at(step_hz)),
       pool_(checked("threads", threads, 256)),

@@ -14,8 +14,8 @@ namespace sandrunner::python {
 /// The simulator without a task: robots on their ground, with all that C++ knows of each.
 class Robots {
  public:
-  /// `robot`: as `load_robot_named`. `ground`: a preset or terrain file; `settings`: PATH=VALUE of
-  /// its table. Robots stand in their nominal pose. Throws InputError.
+  /// `robot`: as sim::load_robot takes it. `ground`: a preset or terrain file; `settings`:
+  /// PATH=VALUE of its table. Robots stand in their nominal pose. Throws InputError.
   Robots(const std::string& robot, int count, const std::string& ground,
          const std::vector<std::string>& settings, double step_hz, int threads);
 

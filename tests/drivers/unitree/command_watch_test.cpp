@@ -55,22 +55,22 @@ TEST_F(CommandWatchTest, SendsNothingBeforeTheFirstCommand) {
   EXPECT_EQ(next(20'000, alive(20'000)), Action::kFollow);
 }
 
-TEST_F(CommandWatchTest, NoCommandIsFollowedFor50Ms) {
+TEST_F(CommandWatchTest, NoCommandIsFollowedFor48Ms) {
   const auto silent = [](std::int64_t ms) { return silent_since(100, ms); };
-  ASSERT_EQ(end_of(Action::kFollow, 0, silent), 148);
+  ASSERT_EQ(end_of(Action::kFollow, 0, silent), 146);
   EXPECT_EQ(last_, Action::kDamp);
   EXPECT_TRUE(watch_.gave_up());
-  EXPECT_EQ(end_of(Action::kDamp, 150, silent), 2148);
+  EXPECT_EQ(end_of(Action::kDamp, 148, silent), 2146);
   EXPECT_EQ(last_, Action::kOff);
-  EXPECT_EQ(end_of(Action::kOff, 2150, silent), 2168);
+  EXPECT_EQ(end_of(Action::kOff, 2148, silent), 2166);
   EXPECT_TRUE(watch_.is_silent());
-  EXPECT_EQ(end_of(Action::kNothing, 2170, silent), -1);
+  EXPECT_EQ(end_of(Action::kNothing, 2168, silent), -1);
 }
 
-TEST_F(CommandWatchTest, AGapOf46MsIsFollowed) {
+TEST_F(CommandWatchTest, AGapOf44MsIsFollowed) {
   EXPECT_EQ(next(0, alive(0)), Action::kFollow);
-  EXPECT_EQ(next(46, silent_since(0, 46)), Action::kFollow);
-  EXPECT_EQ(next(48, alive(48)), Action::kFollow);
+  EXPECT_EQ(next(44, silent_since(0, 44)), Action::kFollow);
+  EXPECT_EQ(next(46, alive(46)), Action::kFollow);
 }
 
 TEST_F(CommandWatchTest, AControllerThatComesBackIsNotFollowed) {
@@ -99,9 +99,9 @@ TEST_F(CommandWatchTest, DrivesThatWereOffStayOff) {
     signs.enabled = false;
     return signs;
   };
-  EXPECT_EQ(end_of(Action::kFollow, 0, off), 148);
+  EXPECT_EQ(end_of(Action::kFollow, 0, off), 146);
   EXPECT_EQ(last_, Action::kOff);
-  EXPECT_EQ(end_of(Action::kOff, 150, off), 168);
+  EXPECT_EQ(end_of(Action::kOff, 148, off), 166);
   EXPECT_EQ(last_, Action::kNothing);
 }
 

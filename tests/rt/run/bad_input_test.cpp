@@ -165,8 +165,9 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
   expect_refused("--robot map.toml", "map.toml:68: unknown key 'wheels.radius_m'");
   expect_refused("--robot absent.toml", "absent.toml: cannot be read");
-  expect_refused("--robot /dev/null",
-                 "/dev/null: cannot be read (not a regular file), expected a robot file");
+  expect_refused(
+      "--robot /dev/null",
+      "/dev/null: cannot be read (not a regular file), expected raibo, go2 or a robot file");
   write("map.toml", map.substr(0, map.find("[gains]")));
   expect_refused("--robot map.toml", "map.toml: 'gains.stand_kp_nmprad' is missing");
   expect_refused("--robot " + write_small_robot(folder_),

@@ -95,7 +95,7 @@ TEST_F(HardwareTest, ARobotOfAnotherKindHasADryRunToo) {
   write_file(folder_.path("hardware.toml"), read_file(SANDRUNNER_UNITREE_EXAMPLE));
   ASSERT_EQ(run("--hardware hardware.toml --dry-run"), 0) << error();
   EXPECT_THAT(output(), HasSubstr("rt/lowcmd on eth0, domain 0, 500 times a second\n"));
-  EXPECT_THAT(output(), HasSubstr("motor_cmd[ 4]  LF_HFE         q   0.5598\n"));
+  EXPECT_THAT(output(), HasSubstr("motor_cmd[ 4]  FL_thigh_joint q   0.7500\n"));
 }
 
 TEST_F(HardwareTest, CheckOfARobotOfAnotherKindHasNoOptions) {
@@ -119,7 +119,7 @@ TEST_F(HardwareTest, TheGateWaitsForStatesThatCome500TimesASecond) {
   EXPECT_EQ(config.controller.gate.joints_fault_ticks, 40);
   EXPECT_EQ(config.controller.gate.imu_fault_ticks, 40);
   EXPECT_TRUE(config.controller.gate.hanging);
-  EXPECT_DOUBLE_EQ(config.controller.gate.torque_limit_nm[0], 0.5 * 63.45);
+  EXPECT_DOUBLE_EQ(config.controller.gate.torque_limit_nm[0], 0.5 * 23.7);
 }
 
 TEST_F(HardwareTest, ARobotDoesNotMoveByItselfUnlessArmed) {

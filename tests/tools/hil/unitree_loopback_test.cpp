@@ -33,8 +33,8 @@ class UnitreeLoopbackTest : public testing::Test {
   }
   /// Speed of the same walk in the program's own simulator, m/s.
   double speed_in_process() const {
-    const Ended ended =
-        run({SANDRUNNER_PROGRAM, "--command", "1,0,0", "--duration", "20", "--out", "alone"});
+    const Ended ended = run({SANDRUNNER_PROGRAM, "--robot", "go2", "--command", "1,0,0",
+                             "--duration", "20", "--out", "alone"});
     EXPECT_EQ(ended.code, 0) << ended;
     return json("alone/summary.json").at("mean_velocity_mps").at(0);
   }

@@ -20,7 +20,7 @@ class BadInput(unittest.TestCase):
 
     def test_of_the_environments_constructor(self):
         for pattern, arguments in {
-            r"^robot: found 'spot', expected 'raibo', 'go2' or the path": {"robot": "spot"},
+            r"^spot: cannot be read .*, expected raibo, go2 or a robot file": {"robot": "spot"},
             r"^robot: found 5, expected": {"robot": 5},
             r"^num_envs: found 100, expected a multiple of learner.block_envs, which is 64": {"num_envs": 100},
             r"^num_envs: found 0, expected an integer from 1": {"num_envs": 0},
@@ -34,10 +34,11 @@ class BadInput(unittest.TestCase):
             r"^curriculum: found 'sped_mps', expected one of speed_mps": {"curriculum": {"sped_mps": 1}},
             r"^curriculum: found ground = 2, expected a number from 0 to 1": {"curriculum": {"ground": 2.0}},
             r"^curriculum: found ground = nan": {"curriculum": {"ground": float("nan")}},
-            r"comand.yaw_radps": {"settings": {"comand.yaw_radps": 1.0}},
-            r"command.yaw_radps": {"settings": {"command.yaw_radps": -1.0}},
-            r"command.yaw_radps.*nan": {"settings": {"command.yaw_radps": float("nan")}},
-            r"command.yaw_radps": {"settings": ["command.yaw_radps=fast"]},
+            r"^settings: unknown key 'comand.yaw_radps'": {"settings": {"comand.yaw_radps": 1.0}},
+            r"^settings: command.yaw_radps: found -1": {"settings": {"command.yaw_radps": -1.0}},
+            r"^settings: command.yaw_radps: found nan": {"settings": {"command.yaw_radps": float("nan")}},
+            r"^settings: command.yaw_radps: found .fast., expected": {"settings": ["command.yaw_radps=fast"]},
+            r"^settings: found 'command.yaw_radps', expected PATH=VALUE": {"settings": ["command.yaw_radps"]},
             r"^settings: found command.yaw_radps = ": {"settings": {"command.yaw_radps": object()}},
             r"^settings: found 3": {"settings": 3},
             r"^settings: found array\('x'": {"settings": np.array("x")},
@@ -80,7 +81,7 @@ class BadInput(unittest.TestCase):
         self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
 
     def test_of_a_batch(self):
-        self.refused(r"moon", Batch, ground="moon")
+        self.refused(r"^ground: 'moon' is neither a preset", Batch, ground="moon")
         self.refused(r"^num_robots: found 0", Batch, num_robots=0)
         self.refused(r"^step_hz: found 3", Batch, step_hz=3)
         self.refused(r"terrain.fricton", Batch, settings={"terrain.fricton": 1})

@@ -36,7 +36,7 @@ def walk(steps):
     return np.array(rows), np.array(targets), np.array(estimates)
 
 
-class Files(unittest.TestCase):
+class WithFolder(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -44,17 +44,36 @@ class Files(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder.name, name)
 
+
+class Files(WithFolder):
     def test_the_shipped_file_and_the_built_in_policy_are_the_same(self):
         file, built_in = read_policy(SHIPPED), read_policy("raibo")
         self.assertEqual(file.spec, built_in.spec)
         for name, tensor in file.tensors.items():
             np.testing.assert_array_equal(tensor, built_in.tensors[name])
 
+    def test_a_policy_ships_for_each_robot_by_its_name(self):
+        for robot in ("raibo", "go2"):
+            envs = VectorEnv(robot, num_envs=64)
+            self.assertEqual(read_policy(robot).spec["joint_names"], envs.joint_names)
+            self.assertEqual(Policy(robot).act(envs, envs.reset()[0]).shape, (64, 12))
+
+    def test_a_policy_of_another_robot_is_refused(self):
+        envs = VectorEnv("go2", num_envs=64)
+        with self.assertRaisesRegex(ValueError, "^env: found a robot with joint FL_hip_joint, .* with joint LF_HAA$"):
+            Policy("raibo").act(envs, envs.reset()[0])
+
     def test_the_file_is_a_safetensors_file(self):
-        # As the format says: 8 bytes of header length, a JSON header, the data.
+        # As the format says: 8 bytes of header length, a JSON header of texts and tensors, the
+        # data without holes.
         content = SHIPPED.read_bytes()
         size = int.from_bytes(content[:8], "little")
         header = json.loads(content[8 : 8 + size])
+        metadata = header.pop("__metadata__")
+        self.assertEqual({type(value) for value in metadata.values()}, {str})
+        spans = sorted(tensor["data_offsets"] for tensor in header.values())
+        self.assertEqual([0, *(end for _, end in spans)], [*(begin for begin, _ in spans), len(content) - 8 - size])
+        self.assertEqual({tensor["dtype"] for tensor in header.values()}, {"F32"})
         for name, tensor in read_policy(SHIPPED).tensors.items():
             begin, end = header[name]["data_offsets"]
             values = np.frombuffer(content[8 + size + begin : 8 + size + end], "<f4").reshape(header[name]["shape"])
@@ -105,7 +124,7 @@ class Files(unittest.TestCase):
         self.assertGreater(np.abs(third[1] - first[1]).max(), 1e-3)
 
 
-class Onnx(Files):
+class Onnx(WithFolder):
     @classmethod
     def setUpClass(cls):
         cls.rows, cls.targets, cls.estimates = walk(200)

@@ -4,7 +4,7 @@ None may crash, hang, or raise anything but ValueError of one line. Under a sani
 
 import gc
 import math
-import pathlib
+import os
 import random
 import sys
 import tempfile
@@ -19,7 +19,7 @@ SECONDS = float(sys.argv[1]) if len(sys.argv) > 1 else 5.0
 SEED = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 draw = random.Random(SEED)
 numbers = np.random.default_rng(SEED)
-FOLDER = pathlib.Path(tempfile.mkdtemp())
+FOLDER = tempfile.TemporaryDirectory()
 ODD = [None, True, -1, 0, 1, 3, 2**70, 0.5, math.nan, math.inf, "", "a\nb", "raibo", "dry-sand", "\0", b"x", [], [1, 2],
        {}, {"a": 1}, (), object(), np.zeros(0), np.zeros((2, 2)), np.array("x"), np.float32(1), int]
 KEYS = ["command.yaw_radps", "episode.length_s", "learner.window", "learner.block_envs", "ground.rigid_envs",
@@ -65,7 +65,7 @@ def new_envs():
     count = draw.choice([16, 32, 64, 64, 128])
     usual = {"learner.block_envs": 16, "ground.rigid_envs": 8, "ground.patchy_envs": 8, "episode.length_s": 0.1}
     return VectorEnv(
-        robot=mostly("raibo"), num_envs=mostly(count), seed=mostly(draw.randrange(9)), threads=mostly(draw.choice([1, 2])),
+        robot=mostly(draw.choice(["raibo", "go2"])), num_envs=mostly(count), seed=mostly(draw.randrange(9)), threads=mostly(draw.choice([1, 2])),
         settings=draw.choice([usual, usual, usual, settings()]),
         curriculum=draw.choice([True, False, {"speed_mps": 4.0, "ground": 1.0, "late": 1.0}, odd()]),
         actions=mostly(draw.choice(["joints", "modes"])), copy=draw.random() < 0.2, width=draw.choice([0, 1, 8, 16, 7]))
@@ -90,14 +90,15 @@ def use_envs(envs, kept):
         recording = Recording(envs, mostly(0))
         while recording.add():
             envs.step(np.zeros((envs.num_envs, 12), np.float32))
-        recording.write(mostly(FOLDER / "run.html"), "x")
+        recording.write(mostly("run.html"), "x")
     elif kind == 9:
         kept.append((envs.statistics, envs.curriculum, envs.effective_settings))
         envs.raw_observation(numbers.standard_normal((3, 33)))
+        envs.raw_estimate(numbers.standard_normal((3, 8)))
     elif kind == 10:
         tensors = dict(sandrunner.read_policy("raibo").tensors)
         tensors[draw.choice(list(tensors))] = draw.choice([array((12, 128)), odd()])
-        sandrunner.write_policy(mostly(FOLDER / "p.safetensors"), mostly(tensors), mostly(envs), provenance=mostly({}))
+        sandrunner.write_policy(mostly("p.safetensors"), mostly(tensors), mostly(envs), provenance=mostly({}))
     elif draw.random() < 0.1:
         envs.close()
 
@@ -149,7 +150,7 @@ def use_ground(kept):
 
 
 def use_policy(kept):
-    policy = Policy(mostly("raibo"))
+    policy = Policy(mostly(draw.choice(["raibo", "go2"])))
     for count in (3, 3, 5):
         kept.append(policy.step(array((count, 33)), draw.choice([None, np.ones(count, bool), odd()])))
 
@@ -185,4 +186,5 @@ def main():
 
 if __name__ == "__main__":
     np.seterr(all="ignore")
+    os.chdir(FOLDER.name)  # odd paths are written too
     main()

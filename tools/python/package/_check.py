@@ -89,7 +89,7 @@ def settings_lines(settings: Settings) -> list[str]:
     if lines is None:
         raise ValueError(f"settings: found {shown(settings)}, expected a dictionary or a list of PATH=VALUE")
     for line in lines:
-        if not isinstance(line, str) or not line.isprintable():
+        if not isinstance(line, str) or not line.isprintable() or "=" not in line:
             raise ValueError(f"settings: found {shown(line)}, expected PATH=VALUE")
     return lines
 

@@ -46,7 +46,7 @@ def torch_state_dict(tensors: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]
 
 
 def read_policy(path: str | os.PathLike[str]) -> PolicyFile:
-    """Reads and checks a policy file, and runs its golden example. "raibo": the shipped policy."""
+    """Reads and checks a policy file, and runs its golden example. "raibo", "go2": the policy that ships for it."""
     return PolicyFile(*_native.read_policy(_check.path("path", path)))
 
 
@@ -84,7 +84,7 @@ def write_policy(
 
 
 class Policy:
-    """A policy file that runs, with a memory for each robot. "raibo": the shipped policy."""
+    """A policy file that runs, with a memory for each robot. "raibo", "go2": the policy that ships for it."""
 
     def __init__(self, path: str | os.PathLike[str] = "raibo") -> None:
         self._native = _native.Policies(_check.path("path", path))
@@ -105,5 +105,10 @@ class Policy:
         """Actions for `env`, whose actions are joints', from what it showed."""
         if env.action_mode != "joints":
             raise ValueError("env: found actions = 'modes', expected 'joints': a policy file answers in them")
+        if self._native.joint_names != env._native.joint_names:
+            raise ValueError(
+                f"env: found a robot with joint {env._native.joint_names[0]}, expected that of the policy, "
+                f"with joint {self._native.joint_names[0]}"
+            )
         targets, _ = self.step(env.raw_observation(observation).astype(np.float32), reset)
         return ((targets - env.nominal_position_rad) / env.action_scale_rad).astype(np.float32)

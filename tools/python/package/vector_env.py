@@ -227,6 +227,11 @@ class VectorEnv(_Base):
         return np.array(self._native.nominal_rad)
 
     @property
+    def joint_names(self) -> list[str]:
+        """In the order of actions and observations."""
+        return self._native.joint_names
+
+    @property
     def max_episode_length(self) -> int:
         return round(self._native.episode_length_s / _native.step_s)
 
@@ -239,6 +244,11 @@ class VectorEnv(_Base):
         """In SI units, as the controller's policy is shown it (estimator/observation.h)."""
         scales = self._native.scales()
         return observation / scales["inverse_deviation"] + scales["mean"]
+
+    def raw_estimate(self, estimate: np.ndarray) -> np.ndarray:
+        """`estimate_target`, or what an estimator answers, in SI units (columns: README.md)."""
+        scales = self._native.scales()
+        return estimate * scales["estimate_deviation"] + scales["estimate_mean"]
 
 
 def _named_progress(values: Mapping[str, float]) -> dict[str, float]:
