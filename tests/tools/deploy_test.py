@@ -90,7 +90,8 @@ class Installed(unittest.TestCase):
         scripts = r"tools/(?:dds_security\.sh|ros2_localhost\.(?:sh|xml))|rt/telemetry/foxglove_layout\.json"
         for document in documents:
             text = document.read_text()
-            for link in re.findall(r"\]\(([^)#:]+)\)", text):
+            prose = re.sub(r"^( *)```.*?^\1```", "", text, flags=re.DOTALL | re.MULTILINE)
+            for link in re.findall(r"\]\(([^)#:]+)\)", prose):
                 self.assertTrue((document.parent / link).exists(), f"{document}: {link}")
             for path in re.findall(r"(?<![\w./-])((?:[\w-]+/)+(?:README|NOTES|CLAIMS)\.md|" + scripts + ")", text):
                 self.assertTrue((folder / path).exists() or (document.parent / path).exists(), f"{document}: {path}")
