@@ -447,4 +447,15 @@ std::string ConfigTree::effective() const {
   return text;
 }
 
+std::map<std::string, std::string> settings_in(std::string_view effective) {
+  std::map<std::string, std::string> settings;
+  while (!effective.empty()) {
+    const std::string_view line = effective.substr(0, effective.find('\n'));
+    effective.remove_prefix(std::min(line.size() + 1, effective.size()));
+    const std::size_t at = line.find(" = ");
+    if (at != std::string_view::npos) settings.emplace(line.substr(0, at), line.substr(at + 3));
+  }
+  return settings;
+}
+
 }  // namespace sandrunner

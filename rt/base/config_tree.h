@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -96,5 +97,9 @@ class ConfigTree {
   std::string prefix_;  ///< of an element of an array of tables, "segments[0].", for messages
   std::shared_ptr<Record> record_;  ///< shared by an element with the tree it came from
 };
+
+/// Keys and values, as TOML, of what ConfigTree::effective returned. Of an array of tables, which
+/// has several lines, each line counts by itself.
+std::map<std::string, std::string> settings_in(std::string_view effective);
 
 }  // namespace sandrunner

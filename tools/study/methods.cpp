@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <string_view>
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
@@ -17,18 +16,6 @@
 
 namespace sandrunner::study {
 namespace {
-
-// The lines "KEY = VALUE" of ConfigTree::effective().
-std::map<std::string, std::string> settings_in(std::string_view effective) {
-  std::map<std::string, std::string> settings;
-  while (!effective.empty()) {
-    const std::string_view line = effective.substr(0, effective.find('\n'));
-    effective.remove_prefix(std::min(line.size() + 1, effective.size()));
-    const std::size_t at = line.find(" = ");
-    if (at != std::string_view::npos) settings.emplace(line.substr(0, at), line.substr(at + 3));
-  }
-  return settings;
-}
 
 // Asks for a setting, of the type that this value of it has. Throws InputError if it has another.
 void ask(const std::string& key, const std::string& value, ConfigTree& settings) {

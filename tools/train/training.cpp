@@ -10,11 +10,11 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <map>
 #include <string_view>
 #include <utility>
 
 #include "rt/base/build.h"
+#include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/processor_name.h"
@@ -49,18 +49,6 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   hash = learner::fnv1a(bytes(robot.torque_speed_line), hash);
   hash = learner::fnv1a(bytes(robot.motor_constant_nmpsqrtw), hash);
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
-}
-
-// The lines "KEY = VALUE" of ConfigTree::effective().
-std::map<std::string, std::string> settings_in(std::string_view effective) {
-  std::map<std::string, std::string> settings;
-  while (!effective.empty()) {
-    const std::string_view line = effective.substr(0, effective.find('\n'));
-    effective.remove_prefix(std::min(line.size() + 1, effective.size()));
-    const std::size_t at = line.find(" = ");
-    if (at != std::string_view::npos) settings.emplace(line.substr(0, at), line.substr(at + 3));
-  }
-  return settings;
 }
 
 learner::RolloutShape rollout_shape(const TrainConfig& config) {

@@ -270,6 +270,15 @@ void ask_all(ConfigTree& config) {
   config.tables("none");
 }
 
+TEST(ConfigTreeTest, SettingsInEffectiveTextAreItsKeysAndValues) {
+  ConfigTree config = from("v = [1, 2]\na.name = \"x = y\"\n");
+  config.numbers("v", {}, 2, 0.0, 9.0);
+  config.text("a.name", "");
+  EXPECT_EQ(settings_in(config.effective()),
+            (std::map<std::string, std::string>{{"a.name", "\"x = y\""}, {"v", "[1.0, 2.0]"}}));
+  EXPECT_TRUE(settings_in("").empty());
+}
+
 TEST(ConfigTreeTest, EffectiveTextGivesTheSameConfigurationAgain) {
   ConfigTree config = from("a.count = 7\nignored = 1\n[[segment]]\nx_m = 2\n[[segment]]\n");
   ask_all(config);
