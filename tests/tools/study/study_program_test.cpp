@@ -23,6 +23,24 @@ class StudyProgramTest : public ProgramTest {
     write_file(folder_.path("models/" + name + ".safetensors"), shipped_policy_text());
   }
   std::string read(const std::string& name) const { return read_file(folder_.path(name)); }
+  /// Starts the program with --out killed, and kills it once there is this file.
+  void kill_after(const std::string& file, const std::vector<std::string>& options) const {
+    std::vector<std::string> command = {SANDRUNNER_STUDY_PROGRAM, "--from", "models", "--out",
+                                        "killed"};
+    command.insert(command.end(), options.begin(), options.end());
+    {
+      ChildProcess killed(command, {.folder = folder_.path("")});
+      const std::string first = folder_.path(file);
+      for (int i = 0; i < 6000 && !std::filesystem::exists(first); ++i) usleep(10'000);
+      ASSERT_TRUE(std::filesystem::exists(first));
+    }  // SIGKILL
+    ASSERT_FALSE(std::filesystem::exists(folder_.path("killed/report.html")));
+  }
+  /// These files of the folders `whole` and `killed` have the same bytes.
+  void expect_as_whole(const std::vector<std::string>& names) const {
+    for (const std::string& name : names)
+      EXPECT_EQ(read("whole/" + name), read("killed/" + name)) << name;
+  }
 };
 
 TEST_F(StudyProgramTest, WritesThePageAndItsNumbersTheSameForAnyThreads) {
@@ -65,20 +83,11 @@ TEST_F(StudyProgramTest, ThePublishedNetworkIsShownAndHasNoPartInTheVerdicts) {
 TEST_F(StudyProgramTest, AKilledRunGoesOnAndEndsInTheSameBytes) {
   const std::string common = "--from models --only E5 --runs 2 ";
   ASSERT_EQ(run(common + "--out whole"), 0) << error();
-  {
-    ChildProcess killed({SANDRUNNER_STUDY_PROGRAM, "--from", "models", "--only", "E5", "--runs",
-                         "2", "--out", "killed"},
-                        {.folder = folder_.path("")});
-    const std::string first = folder_.path("killed/cache/fairness-ours-1.json");
-    for (int i = 0; i < 6000 && !std::filesystem::exists(first); ++i) usleep(10'000);
-    ASSERT_TRUE(std::filesystem::exists(first));
-  }  // SIGKILL
-  ASSERT_FALSE(std::filesystem::exists(folder_.path("killed/report.html")));
+  ASSERT_NO_FATAL_FAILURE(
+      kill_after("killed/cache/fairness-ours-1.json", {"--only", "E5", "--runs", "2"}));
   ASSERT_EQ(run(common + "--out killed"), 0) << error();
   EXPECT_NE(output().find("taken from an earlier run"), std::string::npos) << output();
-  for (const char* name : {"report.html", "results.json", "claims.csv", "figures/fig3h.png"}) {
-    EXPECT_EQ(read(std::string("whole/") + name), read(std::string("killed/") + name)) << name;
-  }
+  expect_as_whole({"report.html", "results.json", "claims.csv", "figures/fig3h.png"});
 }
 
 TEST_F(StudyProgramTest, ShowsWhatTheOraclesDependOnAndGoesOnWithTheSameBytes) {
@@ -100,9 +109,7 @@ TEST_F(StudyProgramTest, ShowsWhatTheOraclesDependOnAndGoesOnWithTheSameBytes) {
   }
   ASSERT_EQ(run(common + "--threads 2 --out killed"), 0) << error();
   EXPECT_NE(output().find("E8: 1 models run, 1 taken"), std::string::npos) << output();
-  for (const char* name : {"report.html", "results.json", "claims.csv", "figures/fig4g.png"}) {
-    EXPECT_EQ(read(std::string("whole/") + name), read(std::string("killed/") + name)) << name;
-  }
+  expect_as_whole({"report.html", "results.json", "claims.csv", "figures/fig4g.png"});
 }
 
 TEST_F(StudyProgramTest, AGridThatIsKilledGoesOnAndEndsInTheSameBytesForAnyThreads) {
@@ -110,20 +117,12 @@ TEST_F(StudyProgramTest, AGridThatIsKilledGoesOnAndEndsInTheSameBytesForAnyThrea
   const std::string common =
       "--from models --only E7 --runs 1 --grid-runs 16 --grid-cells 2 --threads ";
   ASSERT_EQ(run(common + "1 --out whole"), 0) << error();
-  {
-    ChildProcess killed({SANDRUNNER_STUDY_PROGRAM, "--from", "models", "--only", "E7", "--runs",
-                         "1", "--grid-runs", "16", "--grid-cells", "2", "--out", "killed"},
-                        {.folder = folder_.path("")});
-    const std::string first = folder_.path("killed/cache/E7-ours-1.json");
-    for (int i = 0; i < 6000 && !std::filesystem::exists(first); ++i) usleep(10'000);
-    ASSERT_TRUE(std::filesystem::exists(first));
-  }  // SIGKILL
-  ASSERT_FALSE(std::filesystem::exists(folder_.path("killed/report.html")));
+  ASSERT_NO_FATAL_FAILURE(
+      kill_after("killed/cache/E7-ours-1.json",
+                 {"--only", "E7", "--runs", "1", "--grid-runs", "16", "--grid-cells", "2"}));
   ASSERT_EQ(run(common + "2 --out killed"), 0) << error();
-  for (const char* name : {"report.html", "results.json", "claims.csv", "figures/fig4ad.png",
-                           "figures/fig4_lines.png"}) {
-    EXPECT_EQ(read(std::string("whole/") + name), read(std::string("killed/") + name)) << name;
-  }
+  expect_as_whole({"report.html", "results.json", "claims.csv", "figures/fig4ad.png",
+                   "figures/fig4_lines.png"});
   const std::string page = read("whole/report.html");
   EXPECT_NE(page.find("16 robots in each of 4 cells"), std::string::npos);
   EXPECT_NE(page.find("The paper: &quot;tested 360 times"), std::string::npos);
