@@ -12,18 +12,8 @@
 namespace sandrunner::study {
 namespace {
 
-/// Ablation of a group of inputs of an oracle; each block of robots is a run.
 Figure ablation(const Case& c, const char* oracle, const char* group) {
-  return c.evidence().figure(
-      "E8", oracle, [&](const Measured& m) { return mean_value(m.select(kOracleGround), group); });
-}
-
-/// What `of` makes of a list of an oracle, for each seed.
-template <typename Of>
-Figure of_list(const Case& c, const char* oracle, const char* list, Of of) {
-  return c.evidence().figure("E8", oracle, [&](const Measured& m) {
-    return SeedValue{of(m.select(kOracleGround).at(0)->lists.at(list))};
-  });
+  return oracle_ablation(c.evidence(), oracle, group);
 }
 
 Outcome estimate_matters_more(Case& c) {
@@ -49,8 +39,9 @@ Outcome history_replaces_terrain(Case& c) {
 
 Outcome depends_on_stiffness(Case& c) {
   const auto spread = [&](const char* oracle) {
-    return of_list(c, oracle, "bin_T", [](const std::vector<double>& bins) {
-      return (greatest_of(bins) - least_of(bins)) / mean_of(bins);
+    return c.evidence().figure("E8", oracle, [](const Measured& m) {
+      const std::vector<double>& bins = m.select(kOracleGround).at(0)->lists.at("bin_T");
+      return SeedValue{(greatest_of(bins) - least_of(bins)) / mean_of(bins)};
     });
   };
   const Figure h = spread("oracle-h"), o = spread("oracle-o");
@@ -62,10 +53,8 @@ Outcome depth_matters_more_than_inertia(Case& c) {
   bool larger = true, smaller = true;
   std::string text;
   for (const OracleJoint& joint : kOracleJoints) {
-    const auto gradient = [&](int parameter) {
-      return of_list(c, "oracle-o", joint.list, [&](const std::vector<double>& of_parameters) {
-        return of_parameters[static_cast<std::size_t>(parameter)];
-      });
+    const auto gradient = [&](std::size_t parameter) {
+      return oracle_value(c.evidence(), "oracle-o", joint.list, parameter);
     };
     const Figure flat = gradient(kSigmaFlat), cone = gradient(kSigmaCone);
     const Figure inertia = gradient(kInertia);

@@ -36,6 +36,17 @@ const Controller* find_controller(std::string_view key) {
   return found == all.end() ? nullptr : &*found;
 }
 
+const std::vector<const char*>& trained_controllers() {
+  static const std::vector<const char*> kKeys = [] {
+    std::vector<const char*> keys;
+    for (const Controller& c : controllers()) {
+      if (c.kind != ModelKind::kPublished) keys.push_back(c.key);
+    }
+    return keys;
+  }();
+  return kKeys;
+}
+
 const std::vector<const char*>& beach_controllers() {
   static const std::vector<const char*> kKeys = {"ours",       "env-rigid", "env-quasistatic",
                                                  "env-linear", "pl-gm",     "pl-rigid"};

@@ -29,6 +29,8 @@ const std::vector<Controller>& controllers();
 /// The one with this key; null: there is none.
 const Controller* find_controller(std::string_view key);
 
+/// Those that the trainer makes: all but the authors' network.
+const std::vector<const char*>& trained_controllers();
 /// The six of the paper's Table 1 and Fig. 2.
 const std::vector<const char*>& beach_controllers();
 /// The four on the air mattress (paper, Fig. 3 H).

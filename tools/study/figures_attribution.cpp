@@ -43,12 +43,6 @@ plot::ChartSeries bars(const std::string& name, const plot::Style& style,
   return series;
 }
 
-Figure of_list(const Evidence& evidence, const char* oracle, const char* list, std::size_t at) {
-  return evidence.figure("E8", oracle, [&](const Measured& m) {
-    return SeedValue{m.select(kOracleGround).at(0)->lists.at(list).at(at)};
-  });
-}
-
 plot::Chart group_chart(const Evidence& evidence) {
   plot::Chart chart;
   chart.title = "Ablation of groups of inputs (Fig. 4 E)";
@@ -61,9 +55,7 @@ plot::Chart group_chart(const Evidence& evidence) {
     if (evidence.find("E8", oracle) == nullptr) continue;
     std::vector<Figure> figures;
     for (const Bar& bar : kGroups) {
-      figures.push_back(evidence.figure("E8", oracle, [&](const Measured& m) {
-        return mean_value(m.select(kOracleGround), bar.names[k]);
-      }));
+      figures.push_back(oracle_ablation(evidence, oracle, bar.names[k]));
     }
     const Controller& controller = *find_controller(oracle);
     chart.series.push_back(bars(controller.name, controller.style, figures));
@@ -88,7 +80,7 @@ plot::Chart stiffness_chart(const Evidence& evidence) {
         seeds->begin()->second.select(kOracleGround).at(0)->lists.at("bin_sigma_npm3");
     for (std::size_t i = 0; i < sigma.size(); ++i) {
       std::vector<double> values;
-      for (const auto& [seed, value] : of_list(evidence, oracle, "bin_T", i)) {
+      for (const auto& [seed, value] : oracle_value(evidence, oracle, "bin_T", i)) {
         values.push_back(value.value);
       }
       series.x.push_back(std::log10(1e-6 * sigma[i]));
@@ -118,7 +110,7 @@ plot::Chart parameter_chart(const char* title, const char* y_label) {
 std::vector<Figure> of_parameters(const Evidence& evidence, const char* oracle, const char* list) {
   std::vector<Figure> figures;
   for (std::size_t i = 0; i < std::size(kTerrainParameters); ++i) {
-    if (kTerrainParameters[i].varies) figures.push_back(of_list(evidence, oracle, list, i));
+    if (kTerrainParameters[i].varies) figures.push_back(oracle_value(evidence, oracle, list, i));
   }
   return figures;
 }

@@ -37,19 +37,15 @@ FileName read_name(const std::filesystem::path& path) {
     const char* const end = stem.data() + stem.size();
     const auto [at, error] = std::from_chars(stem.data() + dash + 1, end, name.seed);
     if (error == std::errc() && at == end && name.seed > 0) {
-      name.controller = find_controller(std::string_view(stem).substr(0, dash));
-      if (name.controller && name.controller->kind == ModelKind::kPublished) {
-        name.controller = nullptr;
-      }
+      const std::string_view key = std::string_view(stem).substr(0, dash);
+      const auto& trained = trained_controllers();
+      if (std::ranges::find(trained, key) != trained.end()) name.controller = find_controller(key);
     }
   }
   if (name.controller == nullptr) {
-    std::vector<std::string> keys;
-    for (const Controller& c : controllers()) {
-      if (c.kind != ModelKind::kPublished) keys.emplace_back(c.key);
-    }
     throw InputError(fmt::format("{}: found the name '{}', expected {}; NAME is one of {}",
-                                 path.string(), stem, kExpected, fmt::join(keys, ", ")));
+                                 path.string(), stem, kExpected,
+                                 fmt::join(trained_controllers(), ", ")));
   }
   return name;
 }
@@ -57,16 +53,10 @@ FileName read_name(const std::filesystem::path& path) {
 Model load_model(const FileName& name, const train::PolicySettings& task, const sim::Robot& robot) {
   const std::string bytes = read_input_file(name.path, "a policy or a study model");
   std::optional<evaluate::Subject> subject;
-  switch (name.controller->kind) {
-    case ModelKind::kPolicy:
-      subject = load_policy_text(bytes, name.path);
-      break;
-    case ModelKind::kStudyModel:
-      subject = evaluate::load_subject(name.path);
-      break;
-    case ModelKind::kSeesGround:
-    case ModelKind::kPublished:
-      break;
+  if (name.controller->kind == ModelKind::kPolicy) {
+    subject = load_policy_text(bytes, name.path);
+  } else if (name.controller->kind == ModelKind::kStudyModel) {
+    subject = evaluate::load_subject(name.path);
   }
   train::TaskNetwork network = train::read_task_network(name.path, task.mode_gain);
   require_joints(network.spec, robot.description);

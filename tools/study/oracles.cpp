@@ -177,6 +177,18 @@ const std::vector<const char*>& oracle_controllers() {
   return kKeys;
 }
 
+Figure oracle_ablation(const Evidence& evidence, const char* oracle, const char* group) {
+  return evidence.figure(
+      "E8", oracle, [&](const Measured& m) { return mean_value(m.select(kOracleGround), group); });
+}
+
+Figure oracle_value(const Evidence& evidence, const char* oracle, const char* list,
+                    std::size_t at) {
+  return evidence.figure("E8", oracle, [&](const Measured& m) {
+    return SeedValue{m.select(kOracleGround).at(0)->lists.at(list).at(at)};
+  });
+}
+
 Measured run_attribution(Lab& lab, const Model& model) {
   if (!model.network.layout.sizes().actor_sees.terrain) {
     throw InputError(fmt::format(

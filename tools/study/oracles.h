@@ -8,9 +8,11 @@
 //   parameter of the ground "deviation", "alone" (its ablation), and the lists of kOracleJoints
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "rt/core/messages.h"
+#include "tools/study/evidence.h"
 
 namespace sandrunner::study {
 
@@ -46,5 +48,10 @@ inline constexpr OracleJoint kOracleJoints[kJointsPerLeg] = {
 
 /// The two oracles.
 const std::vector<const char*>& oracle_controllers();
+
+/// Ablation of a group of inputs of an oracle that was run, the mean over the blocks of robots.
+Figure oracle_ablation(const Evidence& evidence, const char* oracle, const char* group);
+/// A value of a list of an oracle that was run.
+Figure oracle_value(const Evidence& evidence, const char* oracle, const char* list, std::size_t at);
 
 }  // namespace sandrunner::study

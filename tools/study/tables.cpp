@@ -18,8 +18,6 @@
 namespace sandrunner::study {
 namespace {
 
-constexpr const char* kNotRun = "<span class=\"faint\">not run</span>";
-
 std::string name_cell(const Controller& controller) {
   const plot::Color& c = controller.style.color;
   return fmt::format("<span class=\"key\" style=\"background:rgb({:.0f},{:.0f},{:.0f})\"></span>{}",
@@ -49,12 +47,6 @@ const char* verdict_class(Verdict verdict) {
       return "untestable";
   }
   return "";
-}
-
-std::string range_of_seeds(const std::map<int, Measured>& seeds) {
-  std::vector<int> numbers;
-  for (const auto& [seed, measured] : seeds) numbers.push_back(seed);
-  return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
 // A figure of all groups of a ground and scenario of an experiment.
@@ -95,6 +87,12 @@ void add_beach_figures(const Evidence& evidence, const char* controller,
 }
 
 }  // namespace
+
+std::string range_of_seeds(const std::map<int, Measured>& seeds) {
+  std::vector<int> numbers;
+  for (const auto& [seed, measured] : seeds) numbers.push_back(seed);
+  return fmt::format("{}", fmt::join(numbers, ", "));
+}
 
 std::vector<JudgedClaim> judge_all(const Evidence& evidence) {
   std::vector<JudgedClaim> judged;
@@ -161,8 +159,8 @@ std::string fairness_table(const Evidence& evidence) {
   HtmlTable table{{"controller", "seeds", "alive at 1 m/s, %", "at 2 m/s, %", "at 3 m/s, %",
                    "competently trained"},
                   {}};
-  for (const Controller& controller : controllers()) {
-    if (controller.kind == ModelKind::kPublished) continue;  // its training ground is not ours
+  for (const char* key : trained_controllers()) {
+    const Controller& controller = *find_controller(key);
     const auto* seeds = evidence.find("fairness", controller.key);
     if (seeds == nullptr) {
       table.rows.push_back({name_cell(controller), kNotRun, "", "", "", ""});

@@ -2,6 +2,7 @@
 // The tables of the page, as HTML, and claims.csv.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,11 @@
 #include "tools/study/models.h"
 
 namespace sandrunner::study {
+
+/// A cell of a controller that was not run.
+inline constexpr const char* kNotRun = "<span class=\"faint\">not run</span>";
+/// "1, 2, 3"
+std::string range_of_seeds(const std::map<int, Measured>& seeds);
 
 struct JudgedClaim {
   Claim claim;

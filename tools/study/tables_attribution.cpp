@@ -13,13 +13,11 @@
 namespace sandrunner::study {
 namespace {
 
-Figure of_list(const Evidence& evidence, const char* oracle, const char* list, std::size_t at,
-               const char* over = nullptr) {
-  return evidence.figure("E8", oracle, [&](const Measured& m) {
-    const auto& lists = m.select(kOracleGround).at(0)->lists;
-    const double value = lists.at(list).at(at);
-    return SeedValue{over == nullptr ? value : value / lists.at(over).at(at)};
-  });
+// A figure over another one, seed by seed.
+Figure ratio(const Figure& figure, const Figure& over) {
+  Figure result;
+  for (const auto& [seed, value] : figure) result[seed] = {value.value / over.at(seed).value};
+  return result;
 }
 
 // What the figures rest on, and whether integrated gradients add up.
@@ -31,16 +29,14 @@ std::string states_table(const Evidence& evidence) {
     const auto* seeds = evidence.find("E8", oracle);
     std::vector<std::string> row = {find_controller(oracle)->name};
     if (seeds == nullptr) {
-      row.insert(row.end(), {"<span class=\"faint\">not run</span>", "", "", "", "", ""});
+      row.insert(row.end(), {kNotRun, "", "", "", "", ""});
     } else {
-      std::vector<int> numbers;
-      for (const auto& [seed, measured] : *seeds) numbers.push_back(seed);
-      row.push_back(fmt::format("{}", fmt::join(numbers, ", ")));
-      row.push_back(printed(of_list(evidence, oracle, "robots", 0), 1.0, 0));
-      row.push_back(printed(of_list(evidence, oracle, "states", 0), 1.0, 0));
-      row.push_back(printed(of_list(evidence, oracle, "fell", 0), 100.0, 1));
-      row.push_back(printed(of_list(evidence, oracle, "gap_median", 0), 100.0, 2));
-      row.push_back(printed(of_list(evidence, oracle, "gap_p99", 0), 100.0, 2));
+      row.push_back(range_of_seeds(*seeds));
+      row.push_back(printed(oracle_value(evidence, oracle, "robots", 0), 1.0, 0));
+      row.push_back(printed(oracle_value(evidence, oracle, "states", 0), 1.0, 0));
+      row.push_back(printed(oracle_value(evidence, oracle, "fell", 0), 100.0, 1));
+      row.push_back(printed(oracle_value(evidence, oracle, "gap_median", 0), 100.0, 2));
+      row.push_back(printed(oracle_value(evidence, oracle, "gap_p99", 0), 100.0, 2));
     }
     table.rows.push_back(row);
   }
@@ -53,17 +49,12 @@ std::string group_table(const Evidence& evidence) {
                   {}};
   for (const char* oracle : oracle_controllers()) {
     if (evidence.find("E8", oracle) == nullptr) continue;
-    const auto figure = [&](const char* group, const char* over = nullptr) {
-      return evidence.figure("E8", oracle, [&](const Measured& m) {
-        const auto& groups = m.select(kOracleGround);
-        const double value = mean_value(groups, group).value;
-        return SeedValue{over == nullptr ? value : value / mean_value(groups, over).value};
-      });
-    };
+    const auto figure = [&](const char* group) { return oracle_ablation(evidence, oracle, group); };
     const char* const second = oracle == std::string_view("oracle-h") ? "h" : "o";
     table.rows.push_back({find_controller(oracle)->name, printed(figure("cmd"), 1.0, 4),
                           printed(figure(second), 1.0, 4), printed(figure("e"), 1.0, 4),
-                          printed(figure("T"), 1.0, 4), printed(figure("e", "T"), 1.0, 2)});
+                          printed(figure("T"), 1.0, 4),
+                          printed(ratio(figure("e"), figure("T")), 1.0, 2)});
   }
   return table.html();
 }
@@ -87,11 +78,15 @@ std::string parameter_table(const Evidence& evidence) {
     std::vector<std::string> row = {parameter.name, parameter.seen_as};
     for (const Column& column : kColumns) {
       if (evidence.find("E8", column.oracle) == nullptr) {
-        row.emplace_back("<span class=\"faint\">not run</span>");
-      } else {
-        row.push_back(
-            printed(of_list(evidence, column.oracle, column.list, i, column.over), 1.0, 4));
+        row.emplace_back(kNotRun);
+        continue;
       }
+      const Figure figure = oracle_value(evidence, column.oracle, column.list, i);
+      row.push_back(
+          printed(column.over == nullptr
+                      ? figure
+                      : ratio(figure, oracle_value(evidence, column.oracle, column.over, i)),
+                  1.0, 4));
     }
     table.rows.push_back(row);
   }
