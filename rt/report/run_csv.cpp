@@ -68,7 +68,7 @@ std::vector<std::string> columns_of(const std::string& patterns, const RobotDesc
 
 std::vector<std::string> csv_columns(const RobotDescription& robot) {
   std::vector<std::string> names;
-  for (const RowField& field : row_fields()) {
+  for (const RowField& field : kRowFields) {
     for (std::string& name : columns_of(field.columns, robot)) names.push_back(std::move(name));
   }
   return names;
@@ -77,7 +77,7 @@ std::vector<std::string> csv_columns(const RobotDescription& robot) {
 void write_csv(const RunRecord& record, const std::string& path) {
   std::string text = fmt::format("{}\n", fmt::join(csv_columns(record.scene.robot), ","));
   for (const RunRow& row : record.rows) {
-    for (const RowField& field : row_fields()) append(text, row, field);
+    for (const RowField& field : kRowFields) append(text, row, field);
     text.back() = '\n';
   }
   write_file(path, text);

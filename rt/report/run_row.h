@@ -6,24 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "rt/core/messages.h"
+#include "rt/report/row_field.h"
 
 namespace sandrunner {
-
-/// Some numbers of a row, next to each other; little-endian.
-struct RowField {
-  const char* name;
-  const char* type;  ///< "f64", "f32", "u32", "i32" or "i16"
-  std::size_t offset, count;
-  /// Names of the numbers as columns of run.csv (run_csv.h); of a field that is in rows only.
-  const char* columns = "";
-  bool on_page = true;  ///< a page gets it; else it is for the CSV, figures and pictures alone
-
-  /// Of one of the numbers, bytes.
-  std::size_t width() const noexcept;
-};
 
 /// Bits of RunRow::flags. kRowCounts: the figures of the run are taken over this row.
 inline constexpr std::uint32_t kRowHasTruth = 1, kRowHasEstimate = 2, kRowCounts = 4;
@@ -62,6 +49,49 @@ struct RunRow {
   std::uint32_t skipped = 0;  ///< ticks missed so far
 };
 
+#define ROW(member, ...) SANDRUNNER_ROW_FIELD(RunRow, member, __VA_ARGS__)
+// A name, its columns in run.csv, and kNotOnPage if a page has no use for it.
+// clang-format off
+inline constexpr std::array kRowFields = {
+    ROW(t_s, "t_s"),
+    ROW(mode, "mode"),
+    ROW(given, "command_vx_mps|command_vy_mps|command_wz_radps"),
+    ROW(position_m, "base_{x,y,z}_m"),
+    ROW(orientation_wxyz, "orientation_{w,x,y,z}"),
+    ROW(odometry, "odometry_x_m|odometry_y_m|odometry_yaw_rad"),
+    ROW(requested, "requested_vx_mps|requested_vy_mps|requested_wz_radps"),
+    ROW(motion, "vx_mps|vy_mps|yaw_rate_radps"),
+    ROW(mean_motion, "mean_vx_mps|mean_vy_mps|mean_yaw_rate_radps", kNotOnPage),
+    ROW(position_rad, "{joint}_position_rad"),
+    ROW(velocity_radps, "{joint}_velocity_radps"),
+    ROW(torque_nm, "{joint}_torque_nm", kNotOnPage),
+    ROW(peak_torque_nm, "{joint}_peak_torque_nm"),
+    ROW(hip_m, "{leg}_hip_{x,y,z}_m", kNotOnPage),
+    ROW(knee_m, "{leg}_knee_{x,y,z}_m", kNotOnPage),
+    ROW(foot_m, "{leg}_foot_{x,y,z}_m", kNotOnPage),
+    ROW(penetration_m, "{leg}_penetration_m"),
+    ROW(ground_height_m, "{leg}_ground_height_m", kNotOnPage),
+    ROW(contact, "{leg}_contact", kNotOnPage),
+    ROW(foot_force_n, "{leg}_foot_force_{x,y,z}_n"),
+    ROW(stance_m, "{leg}_stance_{x,y,depth}_m"),
+    ROW(estimate, "estimate_body_height_m|estimate_velocity_{x,y,z}_mps|estimate_{leg}_foot_height_m"),
+    ROW(truth, "truth_body_height_m|truth_velocity_{x,y,z}_mps|truth_{leg}_foot_height_m"),
+    ROW(power_w, "power_w"),
+    ROW(torque_squared_nm2, "torque_squared_nm2"),
+    ROW(cost_of_transport, "cost_of_transport"),
+    ROW(late_us, "late_us"),
+    ROW(control_us, "control_us"),
+    ROW(tick_us, "tick_us"),
+    ROW(joint_past_stop, "joint_past_stop_ticks", kNotOnPage),
+    ROW(joint_too_fast, "joint_too_fast_ticks", kNotOnPage),
+    ROW(faults, "faults"),
+    ROW(flags, "flags"),
+    ROW(skipped, "skipped_ticks"),
+};
+// clang-format on
+#undef ROW
+static_assert(covers_row<RunRow>(kRowFields));
+
 inline Mode mode_of(const RunRow& row) noexcept { return static_cast<Mode>(row.mode); }
 
 /// A stance that ended.
@@ -75,7 +105,11 @@ struct Footprint {
   bool shows() const noexcept { return depth_m >= 0.002f; }
 };
 
-std::span<const RowField> row_fields();
-std::span<const RowField> footprint_fields();
+inline constexpr std::array kFootprintFields = {
+    SANDRUNNER_ROW_FIELD(Footprint, t_s), SANDRUNNER_ROW_FIELD(Footprint, x_m),
+    SANDRUNNER_ROW_FIELD(Footprint, y_m), SANDRUNNER_ROW_FIELD(Footprint, depth_m),
+    SANDRUNNER_ROW_FIELD(Footprint, leg),
+};
+static_assert(covers_row<Footprint>(kFootprintFields));
 
 }  // namespace sandrunner

@@ -39,7 +39,7 @@ nlohmann::ordered_json layout(std::span<const RowField> fields) {
 std::span<const RowField> page_fields() {
   static const std::vector<RowField> fields = [] {
     std::vector<RowField> on_page;
-    std::ranges::copy_if(row_fields(), std::back_inserter(on_page), &RowField::on_page);
+    std::ranges::copy_if(kRowFields, std::back_inserter(on_page), &RowField::on_page);
     return on_page;
   }();
   return fields;
@@ -60,8 +60,8 @@ std::string view_hello(const RunScene& scene, const std::string& note) {
       {"feet", feet_links(robot)},
       {"base", robot.base_frame},
       {"frame_fields", layout(page_fields())},
-      {"footprint_fields", layout(footprint_fields())},
-      {"tile_fields", layout(view_tile_fields())},
+      {"footprint_fields", layout(kFootprintFields)},
+      {"tile_fields", layout(kViewTileFields)},
       {"tile_side", kViewTileSide},
       {"tile_step_m", kViewTileStep_m},
       {"modes", nlohmann::ordered_json::array()},

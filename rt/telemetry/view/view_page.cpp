@@ -58,8 +58,8 @@ std::string page_of(const RunRecord& record, std::string_view curve) {
   replace(page, "<script src=\"page.js\"></script>",
           data("hello", view_hello(record.scene, note_of(record))) +
               data("frames", pack_rows(page_fields(), rows)) +
-              data("footprints", pack_rows(footprint_fields(), footprints)) +
-              data("tiles", pack_rows(view_tile_fields(), tiles)) +
+              data("footprints", pack_rows(kFootprintFields, footprints)) +
+              data("tiles", pack_rows(kViewTileFields, tiles)) +
               (curve.empty() ? "" : data("curve-data", base64(gzip(curve)))) +
               data("program", base64(embedded_page_file("page.js.gz"))) +
               fmt::format("<script>\n{}</script>", embedded_page_file("unpack.js")));

@@ -3,20 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace sandrunner {
 namespace {
 
 constexpr double kTile_m = kViewTileSide * kViewTileStep_m;
 constexpr std::int32_t kReach = 3;  // tiles to each side of the robot's own
-
-constexpr std::array kFields = {
-    RowField{"tile_x", "i32", offsetof(ViewTile, tile_x), 1},
-    RowField{"tile_y", "i32", offsetof(ViewTile, tile_y), 1},
-    RowField{"height_tenth_mm", "i16", offsetof(ViewTile, height_tenth_mm),
-             kViewTileSide* kViewTileSide},
-};
 
 ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y) {
   ViewTile tile{.tile_x = tile_x, .tile_y = tile_y};
@@ -32,8 +24,6 @@ ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y
 }
 
 }  // namespace
-
-std::span<const RowField> view_tile_fields() { return kFields; }
 
 std::vector<ViewTile> new_view_tiles(const RunScene& scene, const RunRow& row,
                                      std::set<std::pair<std::int32_t, std::int32_t>>& seen) {

@@ -23,7 +23,12 @@ struct ViewTile {
   std::array<std::int16_t, kViewTileSide * kViewTileSide> height_tenth_mm{};
 };
 
-std::span<const RowField> view_tile_fields();
+inline constexpr std::array kViewTileFields = {
+    SANDRUNNER_ROW_FIELD(ViewTile, tile_x),
+    SANDRUNNER_ROW_FIELD(ViewTile, tile_y),
+    SANDRUNNER_ROW_FIELD(ViewTile, height_tenth_mm),
+};
+static_assert(covers_row<ViewTile>(kViewTileFields));
 
 /// The ground within sight of a robot but for tiles that have been `seen`, which grows by them;
 /// none if the ground is flat.

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <string>
 
 #include "tests/rt/telemetry/example_tick.h"
 
@@ -39,20 +37,6 @@ std::vector<RunRow> rows_of(RowMaker& maker, std::uint64_t first, std::uint64_t 
 }
 
 void unchanged(TickRecord&) {}
-
-TEST(RowMakerTest, FieldsCoverTheRowWithoutOverlapAndWithNamesOfTheirOwn) {
-  for (const auto& [fields, size] : {std::pair{row_fields(), sizeof(RunRow)},
-                                     std::pair{footprint_fields(), sizeof(Footprint)}}) {
-    std::set<std::string> names;
-    std::size_t end = 0;
-    for (const RowField& f : fields) {
-      EXPECT_TRUE(names.insert(f.name).second) << f.name;
-      EXPECT_EQ(f.offset, end) << f.name;
-      end = f.offset + f.count * f.width();
-    }
-    EXPECT_LT(size - end, 8u);  // nothing behind the last but padding
-  }
-}
 
 TEST(RowMakerTest, ARowComesWithTheAnswerToItsOwnSensors) {
   const RunScene scene{.robot = example_robot()};

@@ -27,7 +27,7 @@ TEST(RunCsvTest, EveryRowHasAValueForEveryColumn) {
   for (const std::string& column : columns) header += (header.empty() ? "" : ",") + column;
   EXPECT_EQ(line, header);
   std::size_t numbers = 0;
-  for (const RowField& field : row_fields()) {
+  for (const RowField& field : kRowFields) {
     EXPECT_EQ(columns_of(field.columns, record.scene.robot).size(), field.count) << field.name;
     numbers += field.count;
   }

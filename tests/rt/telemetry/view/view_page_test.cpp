@@ -75,7 +75,7 @@ TEST(ViewPageTest, AFootOnHardGroundLeavesNoFootprint) {
   record.add(Footprint{.t_s = 0.1, .depth_m = 0.001f});
   record.add(Footprint{.t_s = 0.2, .depth_m = 0.03f});
   const auto prints =
-      unpacked<Footprint>(footprint_fields(), element(run_page(record), "footprints"));
+      unpacked<Footprint>(kFootprintFields, element(run_page(record), "footprints"));
   ASSERT_EQ(prints.size(), 1u);
   EXPECT_EQ(prints[0].t_s, 0.2);
 }
@@ -179,7 +179,7 @@ TEST(ViewPackTest, WhatIsNotANumberStaysInItsOwnPlace) {
     rows[i].flags = kRowHasTruth;
   }
   rows[2].position_rad[3] = std::numeric_limits<float>::quiet_NaN();
-  const auto back = unpacked<RunRow>(row_fields(), pack_rows(row_fields(), rows));
+  const auto back = unpacked<RunRow>(kRowFields, pack_rows(kRowFields, rows));
   ASSERT_EQ(back.size(), rows.size());
   int missing = 0;
   for (std::size_t i = 0; i < back.size(); ++i) {
