@@ -46,10 +46,18 @@ void set_normalisation(const InputScales& scales, NetworkParameters& parameters)
 
 void answer_in_joints(const std::array<double, kNumLegs>& mode_gain,
                       NetworkParameters& parameters) {
-  for (std::vector<float>* rows :
-       {&parameters.actor.back().weight, &parameters.actor.back().bias}) {
+  DenseParameters& last = parameters.actor.back();
+  for (std::vector<float>* rows : {&last.weight, &last.bias}) {
     const std::vector<float> modes = *rows;
     joints_from_modes(mode_gain, modes.data(), modes.size() / kNumJoints, rows->data());
+  }
+}
+
+void answer_in_modes(const std::array<double, kNumLegs>& mode_gain, NetworkParameters& parameters) {
+  DenseParameters& last = parameters.actor.back();
+  for (std::vector<float>* rows : {&last.weight, &last.bias}) {
+    const std::vector<float> joints = *rows;
+    modes_from_joints(mode_gain, joints.data(), joints.size() / kNumJoints, rows->data());
   }
 }
 

@@ -21,5 +21,7 @@ void set_normalisation(const InputScales& scales, NetworkParameters& parameters)
 
 /// Turns a network that answers in the modes of leg_modes.h into one that answers in joints.
 void answer_in_joints(const std::array<double, kNumLegs>& mode_gain, NetworkParameters& parameters);
+/// The way back.
+void answer_in_modes(const std::array<double, kNumLegs>& mode_gain, NetworkParameters& parameters);
 
 }  // namespace sandrunner::train

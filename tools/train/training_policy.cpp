@@ -2,12 +2,10 @@
 // Training: to and from a policy file.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "rt/base/errors.h"
 #include "tools/train/policy_spec.h"
-#include "tools/train/task/leg_modes.h"
 #include "tools/train/training.h"
 
 namespace sandrunner::train {
@@ -33,17 +31,8 @@ void Training::go_on_from(PolicyFile policy) {
   const NetworkParameters& p = policy.parameters;
   require_scales(policy.spec, {p.observation_mean, p.observation_variance, p.observation_clip},
                  config_.task.policy, task_.scales());
-  for (std::vector<float>* rows :
-       {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
-    const std::vector<float> joints = *rows;
-    modes_from_joints(config_.task.policy.mode_gain, joints.data(), joints.size() / kNumJoints,
-                      rows->data());
-  }
-  std::vector<learner::PolicyTensor> tensors;
-  for (const NamedTensor& tensor : tensors_of(policy.parameters)) {
-    tensors.push_back({tensor.name, {}, *tensor.values});
-  }
-  learner_.set_policy(tensors);
+  answer_in_modes(config_.task.policy.mode_gain, policy.parameters);
+  learner_.set_policy(policy.parameters);
   origin_ = fmt::format("sandrunner-train, from the weights of policy '{}'", policy.spec.name);
 }
 
@@ -77,11 +66,7 @@ PolicyFile Training::policy_file(PolicySpec spec, const std::vector<float>& para
   file.spec = std::move(spec);
   NetworkParameters& p = file.parameters;
   set_normalisation(task_.scales(), p);
-  const auto tensors = learner::policy_tensors(learner_.layout(), parameters);
-  for (const NamedTensor& to : tensors_of(p)) {
-    const auto from = std::ranges::find(tensors, to.name, &learner::PolicyTensor::name);
-    if (from != tensors.end()) *to.values = from->values;
-  }
+  learner::to_policy(learner_.layout(), parameters, p);
   answer_in_joints(config_.task.policy.mode_gain, p);
   file.golden = make_golden_example(p);
   return file;

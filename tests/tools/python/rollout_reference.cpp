@@ -14,7 +14,7 @@
 #include "rt/base/worker_pool.h"
 #include "sim/robot/robot_model.h"
 #include "tools/train/learner/learner.h"
-#include "tools/train/task/leg_modes.h"
+#include "tools/train/policy_spec.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/task/task.h"
 #include "tools/train/train_config.h"
@@ -24,17 +24,8 @@ namespace {
 
 void set_shipped_policy(const TaskConfig& config, learner::Learner& learner) {
   PolicyFile policy = parse_policy_file(shipped_policy_text(), "raibo");
-  for (std::vector<float>* rows :
-       {&policy.parameters.actor.back().weight, &policy.parameters.actor.back().bias}) {
-    const std::vector<float> joints = *rows;
-    modes_from_joints(config.policy.mode_gain, joints.data(), joints.size() / kNumJoints,
-                      rows->data());
-  }
-  std::vector<learner::PolicyTensor> tensors;
-  for (const NamedTensor& tensor : tensors_of(policy.parameters)) {
-    tensors.push_back({tensor.name, {}, *tensor.values});
-  }
-  learner.set_policy(tensors);
+  answer_in_modes(config.policy.mode_gain, policy.parameters);
+  learner.set_policy(policy.parameters);
 }
 
 class Writer {

@@ -123,8 +123,8 @@ class Learner {
   void set_kl_target(double kl_target) { config_.kl_target = kl_target; }
   /// Takes the weights of a policy that can act already, before the first step; its actions get
   /// half as much noise again as `action_std_min`.
-  void set_policy(const std::vector<PolicyTensor>& tensors) {
-    set_policy_tensors(layout_, tensors, parameters_);
+  void set_policy(const NetworkParameters& policy) {
+    from_policy(policy, layout_, parameters_);
     std::fill_n(parameters_.begin() + layout_.log_std(), kActionSize,
                 static_cast<float>(std::log(1.5 * config_.action_std_min)));
     averaged_ = parameters_;

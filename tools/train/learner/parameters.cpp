@@ -137,9 +137,8 @@ std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64
   return parameters;
 }
 
-std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
-                                         const std::vector<float>& parameters) {
-  std::vector<PolicyTensor> tensors;
+void to_policy(const ParameterLayout& layout, const std::vector<float>& parameters,
+               NetworkParameters& policy) {
   const int hidden = layout.hidden();
   const int cols = kProprioceptionSize + 1 + hidden;
   const auto columns = [&](int first, int count) {
@@ -150,44 +149,40 @@ std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
     }
     return values;
   };
-  tensors.push_back(
-      {"encoder.weight_ih", {4 * hidden, kProprioceptionSize}, columns(0, kProprioceptionSize)});
-  tensors.push_back(
-      {"encoder.weight_hh", {4 * hidden, hidden}, columns(kProprioceptionSize + 1, hidden)});
-  tensors.push_back({"encoder.bias_ih", {4 * hidden}, columns(kProprioceptionSize, 1)});
-  tensors.push_back({"encoder.bias_hh",
-                     {4 * hidden},
-                     std::vector<float>(static_cast<std::size_t>(4 * hidden), 0.0f)});
-  for (const TensorView& view : layout.tensors()) {
-    if (!view.name.starts_with("estimator.") && !view.name.starts_with("actor.")) continue;
-    const float* begin = parameters.data() + view.offset;
-    const bool is_bias = view.name.ends_with(".bias");
-    tensors.push_back(
-        {view.name, is_bias ? std::vector<int>{view.rows} : std::vector<int>{view.rows, view.cols},
-         std::vector<float>(begin, begin + view.rows * view.cols)});
-  }
-  return tensors;
+  policy.encoder_weight_ih = columns(0, kProprioceptionSize);
+  policy.encoder_weight_hh = columns(kProprioceptionSize + 1, hidden);
+  policy.encoder_bias_ih = columns(kProprioceptionSize, 1);
+  policy.encoder_bias_hh.assign(static_cast<std::size_t>(4 * hidden), 0.0f);
+  const auto layers = [&](const std::vector<LayerView>& from, auto& to) {
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      const float* const weight = parameters.data() + from[k].weight;
+      const float* const bias = parameters.data() + from[k].bias;
+      to[k].weight.assign(weight, weight + std::ptrdiff_t{from[k].outputs} * from[k].inputs);
+      to[k].bias.assign(bias, bias + from[k].outputs);
+    }
+  };
+  layers(layout.estimator(), policy.estimator);
+  layers(layout.actor(), policy.actor);
 }
 
-void set_policy_tensors(const ParameterLayout& layout, const std::vector<PolicyTensor>& tensors,
-                        std::vector<float>& parameters) {
+void from_policy(const NetworkParameters& policy, const ParameterLayout& layout,
+                 std::vector<float>& parameters) {
   const int hidden = layout.hidden();
   const int cols = kProprioceptionSize + 1 + hidden;
-  const auto values = [&](const std::string& name) -> const std::vector<float>& {
-    return std::ranges::find(tensors, name, &PolicyTensor::name)->values;
-  };
-  const std::vector<float>& input = values("encoder.weight_ih");
-  const std::vector<float>& state = values("encoder.weight_hh");
   for (int row = 0; row < 4 * hidden; ++row) {
     float* const to = parameters.data() + layout.encoder() + row * cols;
-    std::copy_n(&input[row * kProprioceptionSize], kProprioceptionSize, to);
-    to[kProprioceptionSize] = values("encoder.bias_ih")[row] + values("encoder.bias_hh")[row];
-    std::copy_n(&state[row * hidden], hidden, to + kProprioceptionSize + 1);
+    std::copy_n(&policy.encoder_weight_ih[row * kProprioceptionSize], kProprioceptionSize, to);
+    to[kProprioceptionSize] = policy.encoder_bias_ih[row] + policy.encoder_bias_hh[row];
+    std::copy_n(&policy.encoder_weight_hh[row * hidden], hidden, to + kProprioceptionSize + 1);
   }
-  for (const TensorView& view : layout.tensors()) {
-    if (!view.name.starts_with("estimator.") && !view.name.starts_with("actor.")) continue;
-    std::ranges::copy(values(view.name), parameters.begin() + view.offset);
-  }
+  const auto layers = [&](const auto& from, const std::vector<LayerView>& to) {
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      std::ranges::copy(from[k].weight, parameters.begin() + to[k].weight);
+      std::ranges::copy(from[k].bias, parameters.begin() + to[k].bias);
+    }
+  };
+  layers(policy.estimator, layout.estimator());
+  layers(policy.actor, layout.actor());
 }
 
 }  // namespace sandrunner::learner

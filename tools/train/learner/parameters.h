@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "policy/network_parameters.h"
 #include "rt/core/messages.h"
 #include "tools/train/data/rollout.h"
 #include "tools/train/learner/wiring.h"
@@ -110,21 +111,12 @@ class ParameterLayout {
 std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64_t seed,
                                       double action_std);
 
-/// A tensor by itself, in PyTorch's shape and order.
-struct PolicyTensor {
-  std::string name;
-  std::vector<int> shape;
-  std::vector<float> values;
-};
-
-/// What a policy file holds of a robot's networks: encoder.{weight_ih, weight_hh, bias_ih, bias_hh}
-/// (bias_hh is zero: one bias is enough), estimator.N.{weight, bias}, actor.N.{weight, bias}.
-std::vector<PolicyTensor> policy_tensors(const ParameterLayout& layout,
-                                         const std::vector<float>& parameters);
-
-/// The way back: writes the tensors of a policy, all of those above, into `parameters`. The rest,
-/// critic and noise, stays.
-void set_policy_tensors(const ParameterLayout& layout, const std::vector<PolicyTensor>& tensors,
-                        std::vector<float>& parameters);
+/// Encoder, estimator and actor of a robot's networks, into those of a policy file. (`bias_hh` gets
+/// zeros: one bias is enough.) Its normalisation stays.
+void to_policy(const ParameterLayout& layout, const std::vector<float>& parameters,
+               NetworkParameters& policy);
+/// The way back. Critic and noise stay.
+void from_policy(const NetworkParameters& policy, const ParameterLayout& layout,
+                 std::vector<float>& parameters);
 
 }  // namespace sandrunner::learner

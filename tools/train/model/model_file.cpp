@@ -256,18 +256,14 @@ TaskNetwork read_task_network(const std::string& path,
     StudyModelFile file = read_study_model(path);
     return into_modes({file.spec, file.scales, model_layout(file.sizes), file.parameters});
   }
-  PolicyFile policy = read_policy_file(path);
-  std::vector<learner::PolicyTensor> tensors;
-  for (const NamedTensor& tensor : tensors_of(policy.parameters)) {
-    tensors.push_back({tensor.name, {}, *tensor.values});
-  }
+  const PolicyFile policy = read_policy_file(path);
   const NetworkParameters& p = policy.parameters;
   TaskNetwork network{policy.spec,
                       {p.observation_mean, p.observation_variance, p.observation_clip},
                       model_layout({}),
                       {}};
   network.parameters.assign(static_cast<std::size_t>(network.layout.size()), 0.0f);
-  set_policy_tensors(network.layout, tensors, network.parameters);
+  from_policy(p, network.layout, network.parameters);
   return into_modes(std::move(network));
 }
 
