@@ -134,8 +134,8 @@ std::vector<double> mean_of_blocks(const States& states, const Eigen::VectorXd& 
 // The ablation of T in equal bins of the logarithm of sigma_flat, over all that the training draws.
 void add_bins(const States& states, const train::GroundSettings& ground,
               const Eigen::VectorXd& ablation, RunGroup& group) {
-  const double low = std::log10(ground.sigma_flat_low / 3e6);  // as train::terrain_features
-  const double high = std::log10(ground.sigma_flat_high / 3e6);
+  const double low = std::log10(ground.sigma_flat_low / train::kUsualSigmaFlat_npm3);
+  const double high = std::log10(ground.sigma_flat_high / train::kUsualSigmaFlat_npm3);
   const Eigen::Index row = states.inputs.rows() - learner::kTerrainSize + kSigmaFlat;
   std::vector<std::vector<double>> values(kBins);
   for (Eigen::Index i = 0; i < ablation.size(); ++i) {
@@ -146,7 +146,7 @@ void add_bins(const States& states, const train::GroundSettings& ground,
   for (int bin = 0; bin < kBins; ++bin) {
     const std::vector<double>& of_bin = values[static_cast<std::size_t>(bin)];
     const double middle = low + (bin + 0.5) / kBins * (high - low);
-    group.lists["bin_sigma_npm3"].push_back(3e6 * std::pow(10.0, middle));
+    group.lists["bin_sigma_npm3"].push_back(train::kUsualSigmaFlat_npm3 * std::pow(10.0, middle));
     group.lists["bin_states"].push_back(static_cast<double>(of_bin.size()));
     group.lists["bin_T"].push_back(mean_of(of_bin));
   }

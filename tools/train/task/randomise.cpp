@@ -96,7 +96,7 @@ TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor) 
       break;
   }
   return {0.0f,
-          f(std::log10(p.sigma_flat_npm3 / 3e6)),
+          f(std::log10(p.sigma_flat_npm3 / kUsualSigmaFlat_npm3)),
           f(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
           friction,
           f(2.0 * (factor - 0.65)),

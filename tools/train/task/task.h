@@ -45,6 +45,9 @@ using TerrainFeatures = std::array<float, learner::kTerrainSize>;
 /// (logarithm), factor, friction and zeros.
 TerrainFeatures terrain_features(const sim::GroundParameters& ground, double factor);
 
+/// A soil's first feature is the logarithm of its stress gradient over this one.
+inline constexpr double kUsualSigmaFlat_npm3 = 3e6;
+
 /// How many environments there are, and how many of them make a block, a multiple of 16; how many
 /// of them a core steps at once.
 struct TaskShape {
