@@ -22,6 +22,7 @@ struct Controller {
   const char* name;  ///< the paper's
   plot::Style style;
   ModelKind kind;
+  const char* wiring = "encoder lstm, actor sees encoding, estimate";  ///< learner::wiring_text
 };
 
 /// All of them, in the order of the tables.

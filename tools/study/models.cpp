@@ -59,6 +59,12 @@ Model load_model(const FileName& name, const train::PolicySettings& task, const 
     subject = evaluate::load_subject(name.path);
   }
   train::TaskNetwork network = train::read_task_network(name.path, task.mode_gain);
+  const learner::NetworkSizes& sizes = network.layout.sizes();
+  const std::string wiring = learner::wiring_text(sizes.encoder, sizes.actor_sees);
+  if (wiring != name.controller->wiring) {
+    throw InputError(fmt::format("{}: found networks wired as '{}', expected '{}'", name.path,
+                                 wiring, name.controller->wiring));
+  }
   require_joints(network.spec, robot.description);
   train::require_scales(
       network.spec, network.scales, task,

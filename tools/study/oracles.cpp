@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/study/oracles.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,7 +8,6 @@
 #include <string>
 
 #include "rt/base/config_tree.h"
-#include "rt/base/errors.h"
 #include "rt/base/quantile.h"
 #include "tools/study/attribution.h"
 #include "tools/study/experiments.h"
@@ -190,11 +187,6 @@ Figure oracle_value(const Evidence& evidence, const char* oracle, const char* li
 }
 
 Measured run_attribution(Lab& lab, const Model& model) {
-  if (!model.network.layout.sizes().actor_sees.terrain) {
-    throw InputError(fmt::format(
-        "{}: found an actor that does not see the ground, expected that of trainings/{}.toml",
-        model_name(model), model.controller->key));
-  }
   WorkerPool pool(lab.settings().threads);
   const train::TaskConfig task = task_on_soil(model.network);
   const States states = collect(model.network, task, lab.settings().grid_runs, lab.robot(), pool);

@@ -6,6 +6,7 @@
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/tools/study/random_model.h"
 #include "tools/study/experiments.h"
 
 namespace sandrunner::study {
@@ -46,12 +47,19 @@ TEST_F(ModelsTest, AreInTheOrderOfTheTablesAndOfTheSeeds) {
 
 TEST_F(ModelsTest, OfControllersThatSeeTheGroundRunInTheTrainingsEnvironmentsAlone) {
   put("ours-1.safetensors");
-  put("oracle-h-1.safetensors");  // a reader of study models takes a policy too
-  const std::vector<Model> models = load_models(folder_.path(""), {}, robot_);
-  ASSERT_EQ(models.size(), 2u);
-  EXPECT_TRUE(models[0].subject.has_value());
-  EXPECT_FALSE(models[1].subject.has_value());
-  EXPECT_EQ(models[1].network.parameters, models[0].network.parameters);
+  write_random_model(folder_.path("tcn-1.safetensors"), "encoding, estimate", "tcn");
+  write_random_model(folder_.path("oracle-h-1.safetensors"), "encoding, estimate, terrain");
+  for (const Model& model : load_models(folder_.path(""), {}, robot_)) {
+    EXPECT_EQ(model.subject.has_value(), model_name(model) != "oracle-h-1") << model_name(model);
+  }
+}
+
+TEST_F(ModelsTest, RefuseNetworksThatAreWiredAsThoseOfAnotherController) {
+  put("oracle-h-1.safetensors");
+  EXPECT_EQ(refusal(), folder_.path("oracle-h-1.safetensors") +
+                           ": found networks wired as 'encoder lstm, actor sees encoding, "
+                           "estimate', expected 'encoder lstm, actor sees encoding, estimate, "
+                           "terrain'");
 }
 
 TEST_F(ModelsTest, RefuseANetworkThatSeesOtherScales) {
@@ -65,9 +73,7 @@ TEST_F(ModelsTest, RefuseANetworkThatSeesOtherScales) {
       << refusal();
 }
 
-TEST_F(ModelsTest, ThatAreStudyModelsAreRead) {
-  put("tcn-1.safetensors");  // a reader of study models takes a policy too
-  EXPECT_EQ(load(), Names{"tcn-1"});
+TEST_F(ModelsTest, RefuseAFileThatIsNeitherAPolicyNorAStudyModel) {
   write_file(folder_.path("pl-gm-1.safetensors"), "something else");
   EXPECT_NE(refusal().find("pl-gm-1.safetensors"), std::string::npos) << refusal();
 }

@@ -6,9 +6,8 @@
 
 #include <numeric>
 
-#include "rt/base/errors.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/tools/study/random_oracle.h"
+#include "tests/tools/study/random_model.h"
 #include "tools/study/experiments.h"
 
 namespace sandrunner::study {
@@ -16,7 +15,7 @@ namespace {
 
 Model random_oracle(const std::string& key, const std::string& actor) {
   const TemporaryFolder folder;
-  write_random_oracle(folder.path(key + "-1.safetensors"), actor);
+  write_random_model(folder.path(key + "-1.safetensors"), actor);
   return load_models(folder.path(""), {}, sim::load_raibo()).at(0);
 }
 
@@ -83,10 +82,6 @@ TEST_F(OraclesTest, AnActorThatIgnoresTheTerrainHasNoAttributionToIt) {
 TEST_F(OraclesTest, NumbersAreTheSameForAnyThreads) {
   EXPECT_EQ(to_json({{measure(with_history_, 1)}}).dump(),
             to_json({{measure(with_history_, 2)}}).dump());
-}
-
-TEST_F(OraclesTest, RefuseAnActorThatDoesNotSeeTheGround) {
-  EXPECT_THROW(measure(random_oracle("oracle-h", "encoding, estimate")), InputError);
 }
 
 }  // namespace

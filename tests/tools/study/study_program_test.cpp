@@ -7,7 +7,7 @@
 
 #include "policy/policy_file.h"
 #include "tests/support/program_test.h"
-#include "tests/tools/study/random_oracle.h"
+#include "tests/tools/study/random_model.h"
 
 namespace sandrunner {
 namespace {
@@ -92,10 +92,9 @@ TEST_F(StudyProgramTest, AKilledRunGoesOnAndEndsInTheSameBytes) {
 
 TEST_F(StudyProgramTest, ShowsWhatTheOraclesDependOnAndGoesOnWithTheSameBytes) {
   std::filesystem::create_directory(folder_.path("oracles"));
-  write_random_oracle(folder_.path("oracles/oracle-h-1.safetensors"),
-                      "encoding, estimate, terrain");
-  write_random_oracle(folder_.path("oracles/oracle-o-1.safetensors"),
-                      "estimate, proprioception, terrain");
+  write_random_model(folder_.path("oracles/oracle-h-1.safetensors"), "encoding, estimate, terrain");
+  write_random_model(folder_.path("oracles/oracle-o-1.safetensors"),
+                     "estimate, proprioception, terrain");
   const std::string common = "--from oracles --only E8 --runs 1 --grid-runs 1 ";
   ASSERT_EQ(run(common + "--threads 1 --out whole"), 0) << error();
   const std::string page = read("whole/report.html");
@@ -113,7 +112,7 @@ TEST_F(StudyProgramTest, ShowsWhatTheOraclesDependOnAndGoesOnWithTheSameBytes) {
 }
 
 TEST_F(StudyProgramTest, AGridThatIsKilledGoesOnAndEndsInTheSameBytesForAnyThreads) {
-  put("oracle-h-1");  // a reader of study models takes a policy too
+  write_random_model(folder_.path("models/oracle-h-1.safetensors"), "encoding, estimate, terrain");
   const std::string common =
       "--from models --only E7 --runs 1 --grid-runs 16 --grid-cells 2 --threads ";
   ASSERT_EQ(run(common + "1 --out whole"), 0) << error();

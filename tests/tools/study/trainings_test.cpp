@@ -11,6 +11,7 @@
 #include "rt/base/output_files.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
+#include "tools/study/controllers.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/train_config.h"
 
@@ -33,7 +34,16 @@ std::map<std::string, std::string> settings_of(const std::string& file) {
   return settings;
 }
 
-TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListed) {
+std::string wiring_of(const std::map<std::string, std::string>& settings) {
+  const auto text = [&](const char* key) {
+    const std::string& quoted = settings.at(key);
+    return quoted.substr(1, quoted.size() - 2);
+  };
+  return learner::wiring_text(learner::parse_encoder("encoder", text("network.encoder")),
+                              learner::parse_actor_inputs("actor", text("network.actor")));
+}
+
+TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListedAndIsWiredAsItsController) {
   std::map<std::string, std::map<std::string, std::string>> expected = {
       {"ours", {}},
       {"env-rigid", {{"ground.rigid_envs", "64"}, {"ground.patchy_envs", "0"}}},
@@ -72,12 +82,14 @@ TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListed) {
   for (const auto& file : std::filesystem::directory_iterator(kStudy + "/trainings")) {
     const std::string name = file.path().stem();
     found.insert(name);
+    const auto settings = settings_of(file.path());
     std::map<std::string, std::string> changed;
-    for (const auto& [key, value] : settings_of(file.path())) {
+    for (const auto& [key, value] : settings) {
       if (built_in.at(key) != value) changed[key] = value;
     }
     ASSERT_TRUE(expected.contains(name)) << name;
     EXPECT_EQ(changed, expected.at(name)) << name;
+    EXPECT_EQ(wiring_of(settings), study::find_controller(name)->wiring) << name;
   }
   EXPECT_EQ(found.size(), expected.size());
 }

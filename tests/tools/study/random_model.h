@@ -9,17 +9,19 @@
 
 namespace sandrunner {
 
-/// Writes a study model for Raibo with random weights and the usual settings of a training, whose
-/// actor sees these parts (`network.actor`).
-inline void write_random_oracle(const std::string& path, const std::string& actor) {
+/// Writes a study model for Raibo with random weights and the usual settings of a training but for
+/// these, `network.actor` and `network.encoder`.
+inline void write_random_model(const std::string& path, const std::string& actor,
+                               const std::string& encoder = "lstm") {
   ConfigTree settings;
   train::add_training_layers(settings, sim::load_raibo());
   train::read_task_config(settings);
   const PolicyFile policy = parse_policy_file(shipped_policy_text(), "the shipped policy");
   train::StudyModelFile file;
   file.spec = policy.spec;
-  file.spec.provenance = {{"config", settings.effective() + "network.encoder = \"lstm\"\n" +
-                                         "network.actor = \"" + actor + "\"\n"}};
+  file.spec.provenance = {{"config", settings.effective() + "network.encoder = \"" + encoder +
+                                         "\"\nnetwork.actor = \"" + actor + "\"\n"}};
+  file.sizes.encoder = learner::parse_encoder("encoder", encoder);
   file.sizes.actor_sees = learner::parse_actor_inputs("actor", actor);
   file.scales = {policy.parameters.observation_mean, policy.parameters.observation_variance,
                  policy.parameters.observation_clip};
