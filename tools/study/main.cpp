@@ -4,10 +4,10 @@
 
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
-#include "tools/study/measurements.h"
-#include "tools/study/models.h"
-#include "tools/study/options.h"
-#include "tools/study/report.h"
+#include "tools/study/experiments/measurements.h"
+#include "tools/study/experiments/models.h"
+#include "tools/study/experiments/options.h"
+#include "tools/study/page/report.h"
 
 namespace sandrunner::study {
 namespace {
