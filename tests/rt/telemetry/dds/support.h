@@ -3,9 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,7 +10,6 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <random>
 #include <string>
 #include <thread>
 #include <utility>
@@ -25,52 +21,18 @@
 #include "rt/telemetry/dds/sandrunner.h"
 #include "rt/telemetry/dds/telemetry.h"
 #include "tests/rt/core/fake_robot.h"
+#include "tests/rt/dds/own_domain.h"
 #include "tests/rt/telemetry/example_tick.h"
 #include "tests/support/wait_until.h"
 
 namespace sandrunner {
 
-/// A domain of its own, drawn from 100 to 200 and reserved by the name of a socket until this
-/// process ends, so that tests that run at the same time never meet.
+/// The table [dds] with a domain of its own.
 inline DdsConfig test_config() {
   DdsConfig config;
-  std::random_device random;
-  for (int tries = 0; tries < 1000; ++tries) {
-    config.domain = 100 + static_cast<int>(random() % 101);
-    const std::string name = "sandrunner-test-domain-" + std::to_string(config.domain);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    name.copy(address.sun_path + 1, name.size());  // abstract: no file
-    const int held = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (bind(held, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) break;
-    close(held);
-  }
+  config.domain = own_domain();
   return config;
 }
-
-/// The ports of a domain's first `count` participants, taken: as if there were so many already.
-class TakenPorts {
- public:
-  TakenPorts(int domain, int count) {
-    for (int port = 7410 + 250 * domain; port < 7410 + 250 * domain + 2 * count; ++port) {
-      sockets_.push_back(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-      sockaddr_in address{};
-      address.sin_family = AF_INET;
-      address.sin_port = htons(static_cast<std::uint16_t>(port));
-      const int bound =
-          bind(sockets_.back(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
-      EXPECT_EQ(bound, 0) << port;
-    }
-  }
-  ~TakenPorts() {
-    for (const int socket : sockets_) close(socket);
-  }
-  TakenPorts(const TakenPorts&) = delete;
-  TakenPorts& operator=(const TakenPorts&) = delete;
-
- private:
-  std::vector<int> sockets_;
-};
 
 inline void sleep_s(double duration_s) {
   std::this_thread::sleep_for(std::chrono::duration<double>(duration_s));

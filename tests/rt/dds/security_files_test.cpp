@@ -7,8 +7,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/dds/participant.h"
-#include "rt/telemetry/dds/dds_config.h"
-#include "tests/rt/telemetry/dds/support.h"
+#include "tests/rt/dds/own_domain.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -38,10 +37,10 @@ class SecurityFilesTest : public testing::Test {
   }
   /// What the robot says; empty: it starts.
   std::string refusal() const {
-    DdsConfig config = test_config();
-    config.security_dir = folder_.path("ours");
+    DdsNetwork network = own_network();
+    network.security_dir = folder_.path("ours");
     try {
-      const DdsParticipant robot(config);
+      const DdsParticipant robot(network);
       return "";
     } catch (const InputError& error) {
       return one_line(error.what());

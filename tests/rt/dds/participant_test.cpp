@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rt/dds/participant.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rt/base/errors.h"
+#include "tests/rt/dds/own_domain.h"
+
+namespace sandrunner {
+namespace {
+
+TEST(DdsNetworkTest, OnThisComputerThereIsNoMulticast) {
+  const std::string xml = cyclone_xml({}, "robot");
+  EXPECT_NE(xml.find("<AllowMulticast>false</AllowMulticast>"), std::string::npos);
+  EXPECT_EQ(xml.find("Security"), std::string::npos);
+}
+
+TEST(DdsNetworkTest, TheNameOfAnInterfaceIsWrittenAsXml) {
+  DdsNetwork network;
+  network.interface = "eth<0";
+  EXPECT_NE(cyclone_xml(network, "robot").find("eth&lt;0"), std::string::npos);
+}
+
+TEST(DdsParticipantTest, AnInterfaceThatDoesNotExistIsNamedInOneLine) {
+  DdsNetwork network;
+  network.domain = 230;
+  network.interface = "nosuch0";
+  testing::internal::CaptureStderr();
+  try {
+    DdsParticipant participant(network);
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(),
+                testing::HasSubstr("domain 230 on interface nosuch0 (nosuch0: does not "));
+    EXPECT_THAT(e.what(), testing::Not(testing::HasSubstr("\n")));
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // and the library prints nothing
+}
+
+TEST(DdsParticipantTest, RobotStartsBesideAHundredParticipants) {
+  const DdsNetwork network = own_network();
+  const TakenPorts others(network.domain, 100);
+  EXPECT_NO_THROW(DdsParticipant participant(network));
+}
+
+TEST(DdsParticipantTest, DomainWithoutAFreePlaceIsNamedWithTheWayOut) {
+  const DdsNetwork network = own_network();
+  const TakenPorts others(network.domain, kMostParticipants);
+  try {
+    DdsParticipant participant(network);
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr(" on interface lo: found 120 participants"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("dds.domain"));
+    EXPECT_THAT(e.what(), testing::Not(testing::HasSubstr("\n")));
+  }
+}
+
+}  // namespace
+}  // namespace sandrunner
