@@ -15,9 +15,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#include <cstring>
 #include <deque>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -25,7 +23,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/telemetry/view/embedded.h"
-#include "rt/telemetry/view/view_messages.h"
+#include "rt/telemetry/view/view_orders.h"
 #include "rt/telemetry/view/view_rules.h"
 
 namespace sandrunner {
@@ -47,24 +45,6 @@ constexpr std::chrono::seconds kHandshakeTime{5}, kIdleTime{60};
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-std::string dump(const nlohmann::ordered_json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-nlohmann::ordered_json ground_of(const GroundNow& ground) {
-  const auto object = [](const GroundSettings& values) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    for (const auto& [key, value] : values) json[key] = value;
-    return json;
-  };
-  return {{"preset", ground.wanted.preset},
-          {"set", object(ground.wanted.set)},
-          {"name", ground.name},
-          {"kind", ground.kind},
-          {"presets", ground.presets},
-          {"values", object(ground.values)}};
-}
-
 class Page;
 class Visitor;
 
@@ -76,17 +56,6 @@ struct Hub {
   std::uint64_t pages_so_far = 0;
   std::vector<Page*> pages;
   std::vector<Visitor*> visitors;  // in the order in which they came
-
-  std::string state() const {
-    const ViewPace::Status pace = parts.pace ? parts.pace->status() : ViewPace::Status();
-    nlohmann::ordered_json json = {{"say", "state"},
-                                   {"t_s", parts.feed.now_s()},
-                                   {"ended", parts.feed.ended()},
-                                   {"paused", pace.paused},
-                                   {"rate", pace.rate}};
-    if (parts.control) json["ground"] = ground_of(parts.control->ground());
-    return dump(json);
-  }
 };
 
 // One of the sockets that a server may have.
@@ -169,11 +138,17 @@ class Page : public std::enable_shared_from_this<Page> {
       greet(*hello);
     } else if (!greeted_) {
       return close(websocket::close_code::policy_error, "expected hello first");
-    } else if (const std::string refusal = follow(message); !refusal.empty()) {
-      answers_.push_back(dump({{"say", "refused"}, {"why", refusal}}));
+    } else {
+      follow(message);
     }
     send();
     read();
+  }
+
+  void follow(const PageMessage& message) {
+    ViewOrders::Outcome outcome = orders_.follow(message, has_key_);
+    if (!outcome.answer.empty()) answers_.push_back(std::move(outcome.answer));
+    if (outcome.changed) state_ = view_state(hub_.parts);
   }
 
   void greet(const PageHello& hello) {
@@ -185,78 +160,9 @@ class Page : public std::enable_shared_from_this<Page> {
         hub_.run, has_key_, hub_.parts.pace != nullptr, hub_.parts.desk != nullptr,
         hub_.parts.recorded, hub_.parts.feed.hello()));
     if (!hello.key.empty() && !has_key_) {
-      answers_.push_back(dump({{"say", "refused"}, {"why", "the key is not this run's"}}));
+      answers_.push_back(view_refusal("the key is not this run's"));
     }
-    send(hub_.state());
-  }
-
-  // Why not; empty: done.
-  std::string follow(const PageMessage& message) {
-    if (const auto* nonsense = std::get_if<PageNonsense>(&message)) return nonsense->why;
-    if (std::holds_alternative<PageHello>(message)) return "hello was said";
-    if (!has_key_) return "without the key this page only looks";
-    if (const auto* drive = std::get_if<PageDrive>(&message)) return follow(*drive);
-    if (const auto* request = std::get_if<PageRequest>(&message)) return follow(*request);
-    if (std::holds_alternative<PagePush>(message) ||
-        std::holds_alternative<PageSetOnLegs>(message) ||
-        std::holds_alternative<PageTerrain>(message)) {
-      return touch(message);
-    }
-    ViewPace* const pace = hub_.parts.pace;
-    if (!pace) return "this robot has its own time";
-    if (const auto* order = std::get_if<PagePace>(&message)) pace->set_rate(order->rate);
-    if (const auto* order = std::get_if<PagePause>(&message)) pace->pause(order->on);
-    if (const auto* order = std::get_if<PageStep>(&message)) pace->step(order->ticks);
-    state_ = hub_.state();
-    return {};
-  }
-
-  std::string follow(const PageDrive& drive) {
-    if (!hub_.parts.desk) return "this run takes no commands from a page";
-    const auto& [vx_mps, vy_mps, wz_radps] = drive.velocity;
-    // No publisher of DDS has a number of all ones.
-    const Twist twist{.linear_mps = {vx_mps, vy_mps, 0.0}, .angular_radps = {0.0, 0.0, wz_radps}};
-    switch (hub_.parts.desk->drive(twist, ~number_, id())) {
-      case CommandVerdict::kAccepted:
-        return {};
-      case CommandVerdict::kOtherPublisher:
-        return "another operator drives the robot";
-      case CommandVerdict::kNotFinite:
-      case CommandVerdict::kAbsurd:
-      case CommandVerdict::kObjection:  // a page speaks to one robot: nothing is objected
-        break;
-    }
-    return fmt::format("a velocity of {}, {} m/s, {} rad/s is absurd", vx_mps, vy_mps, wz_radps);
-  }
-
-  std::string follow(const PageRequest& request) {
-    if (!hub_.parts.desk) return "this run takes no commands from a page";
-    const RequestOutcome outcome = hub_.parts.desk->request(request.name, id());
-    answers_.push_back(dump({{"say", "answer"},
-                             {"to", request.name},
-                             {"accepted", outcome.accepted},
-                             {"text", outcome.text}}));
-    return {};
-  }
-
-  // Changes the robot or its ground.
-  std::string touch(const PageMessage& message) {
-    ViewControl* const control = hub_.parts.control;
-    if (!control)
-      return "only a simulated robot in lockstep can be touched, and its ground changed";
-    if (const auto* push = std::get_if<PagePush>(&message))
-      return control->push(push->direction_rad);
-    if (std::holds_alternative<PageSetOnLegs>(message)) return control->set_on_legs();
-    std::string refusal = control->set_ground(std::get<PageTerrain>(message).ground);
-    state_ = hub_.state();
-    return refusal;
-  }
-
-  // Among operators: no participant of DDS has an identity that begins with zeros.
-  OperatorId id() const {
-    OperatorId id{};
-    std::memcpy(id.data() + 8, &number_, sizeof number_);
-    return id;
+    send(view_state(hub_.parts));
   }
 
   void close(websocket::close_code code, const char* why) {
@@ -266,7 +172,7 @@ class Page : public std::enable_shared_from_this<Page> {
 
   Hub& hub_;
   Place place_;
-  const std::uint64_t number_ = ++hub_.pages_so_far;
+  ViewOrders orders_{hub_.parts, ++hub_.pages_so_far};
   websocket::stream<beast::tcp_stream, false> socket_;  // without compression, which is never asked
   beast::flat_buffer buffer_{2 * kViewMessageBytes};
   MessageRate rate_;
@@ -418,7 +324,7 @@ class ViewServer::Implementation {
     timer_.async_wait([this](Error error) {
       if (error) return;
       const bool state = ++ticks_ % kStateEvery == 0 && !hub_.pages.empty();
-      const std::string text = state ? hub_.state() : std::string();
+      const std::string text = state ? view_state(hub_.parts) : std::string();
       for (Page* const page : std::vector(hub_.pages)) page->send(text);
       for (Tcp::acceptor* const acceptor : std::exchange(refused_, {})) accept(*acceptor);
       tick();
