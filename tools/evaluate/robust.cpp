@@ -5,6 +5,31 @@
 #include "tools/evaluate/study.h"
 
 namespace sandrunner::evaluate {
+namespace {
+
+struct Case {
+  const char* name;
+  Trial trial;
+  double imu_turn_rad = 0.0;
+};
+
+sim::GroundParameters softer(sim::GroundParameters ground, double factor) {
+  ground.sigma_flat_npm3 /= factor;
+  ground.sigma_cone_npm3 /= factor;
+  return ground;
+}
+
+// Each leg in a quarter of the runs, and the IMU turned to another side.
+void turn_about(double imu_turn_rad, Group& group) {
+  for (std::size_t i = 0; i < group.trials.size(); ++i) {
+    Trial& t = group.trials[i];
+    t.loose_step.leg = static_cast<int>(i % kNumLegs);
+    const double turn_rad = i % 4 < 2 ? imu_turn_rad : -imu_turn_rad;
+    (i % 2 == 0 ? t.sensors.imu_pitch_rad : t.sensors.imu_roll_rad) = static_cast<float>(turn_rad);
+  }
+}
+
+}  // namespace
 
 Part Study::robust() {
   Part part{"robust", {}};
@@ -18,28 +43,18 @@ Part Study::robust() {
   const auto patch = [](sim::TerrainDescription& t, double from_x_m, sim::GroundParameters ground) {
     t.patches.push_back({from_x_m, ground});
   };
-  const auto softer = [&](double factor) {
-    sim::GroundParameters ground = sand.patches[0].ground;
-    ground.sigma_flat_npm3 /= factor;
-    ground.sigma_cone_npm3 /= factor;
-    return ground;
-  };
+  const sim::GroundParameters& usual = sand.patches[0].ground;
   sim::TerrainDescription strip = sand, quarter = sand, half = sand, alternating = rigid;
   constexpr double kLooseFrom_m = 3.0, kLooseTo_m = 3.6, kHardTo_m = 2.0;
-  patch(strip, kLooseFrom_m, softer(4.0));
-  patch(strip, kLooseTo_m, sand.patches[0].ground);
+  patch(strip, kLooseFrom_m, softer(usual, 4.0));
+  patch(strip, kLooseTo_m, usual);
   // Out of reach; one foot is moved there.
-  patch(quarter, 1e9, softer(4.0));
-  patch(half, 1e9, softer(2.0));
+  patch(quarter, 1e9, softer(usual, 4.0));
+  patch(half, 1e9, softer(usual, 2.0));
   for (int i = 1; i <= 4; ++i) {
     patch(alternating, kHardTo_m * i, (i % 2 == 1 ? sand : rigid).patches[0].ground);
   }
 
-  struct Case {
-    const char* name;
-    Trial trial;
-    double imu_turn_rad = 0.0;
-  };
   const sim::Terrain<float>* const plain = add(sand);
   const auto on = [](const sim::Terrain<float>* terrain, auto... change) {
     Trial t;
@@ -81,14 +96,7 @@ Part Study::robust() {
       trial.command.target.vx_mps = speed;
       trial.duration_s = 10.0;
       Group g = group("dry-sand", c.name, trial);
-      // Each leg in a quarter of the runs, and the IMU turned to another side.
-      for (std::size_t i = 0; i < g.trials.size(); ++i) {
-        Trial& t = g.trials[i];
-        t.loose_step.leg = static_cast<int>(i % kNumLegs);
-        const double turn_rad = i % 4 < 2 ? c.imu_turn_rad : -c.imu_turn_rad;
-        (i % 2 == 0 ? t.sensors.imu_pitch_rad : t.sensors.imu_roll_rad) =
-            static_cast<float>(turn_rad);
-      }
+      turn_about(c.imu_turn_rad, g);
       part.groups.push_back(g);
     }
   }

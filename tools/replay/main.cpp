@@ -139,10 +139,14 @@ void serve(Player& player) {
   while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 
-// Compares, and draws what is asked for; returns the exit code.
-int replay(const Arguments& arguments, std::optional<Player>& player) {
+struct Compared {
   std::optional<ReplayDifference> difference;
-  std::uint64_t compared = 0, not_compared = 0, drawn = 0, last_tick = 0;
+  std::uint64_t ticks = 0, not_compared = 0, last_tick = 0;
+};
+
+// What each part of a recording does to the player and to what was compared so far.
+RecordingVisitor visitor_of(const Arguments& arguments, std::optional<Player>& player,
+                            Compared& compared) {
   RecordingVisitor visitor;
   visitor.begin = [&](const RecordingInfo& info) {
     player.emplace(info, arguments);
@@ -153,20 +157,19 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     }
   };
   visitor.tick = [&](const TickRecord& recorded) {
-    last_tick = recorded.input.sensors.tick;
-    const double t_s = static_cast<double>(last_tick) * kControlPeriod_s;
+    compared.last_tick = recorded.input.sensors.tick;
+    const double t_s = static_cast<double>(compared.last_tick) * kControlPeriod_s;
     if (t_s > arguments.to_s) return false;
     const bool compares = player->replay && player->in_step;
     std::optional<ReplayDifference> found;
     if (compares) found = player->replay->check(recorded);
     if (t_s < arguments.from_s) return true;
-    ++(compares ? compared : not_compared);
-    ++drawn;
+    ++(compares ? compared.ticks : compared.not_compared);
     if (player->observer) player->observer->add(recorded);
     if (player->feed) player->feed->add(recorded);
-    if (found && !difference) difference = std::move(found);
+    if (found && !compared.difference) compared.difference = std::move(found);
     // A picture wants the rest too.
-    return (!difference && player->replay) || player->observer;
+    return (!compared.difference && player->replay) || player->observer;
   };
   visitor.lost = [&](std::uint64_t first, std::optional<std::uint64_t> last, bool by_damage) {
     player->in_step = false;
@@ -183,48 +186,59 @@ int replay(const Arguments& arguments, std::optional<Player>& player) {
     if (kind != "push" && kind != "terrain" && kind != "hand") return;
     fmt::print("before tick {} ({}): {}: {}\n", tick, seconds(tick), kind, one_line(text));
   };
-  const RecordingContents contents = read_recording(arguments.file, visitor);
+  return visitor;
+}
+
+// What a recording lacks; empty: nothing.
+std::string lacking(const RecordingContents& contents, const std::string& file) {
+  if (!contents.damage.empty()) return contents.damage;
+  if (!contents.complete) {
+    return fmt::format("{}: the recording was cut, it is read up to its last chunk", file);
+  }
+  if (contents.lost == 0) return {};
+  // Which of them were slots that the loop skipped stood in the lost ones.
+  return fmt::format("{}: up to {} ticks were lost while recording, they are not compared", file,
+                     contents.lost);
+}
+
+// Compares, and draws what is asked for; returns the exit code.
+int replay(const Arguments& arguments, std::optional<Player>& player) {
+  Compared compared;
+  const RecordingContents contents =
+      read_recording(arguments.file, visitor_of(arguments, player, compared));
 
   if (player->observer) {
     const RunRecord record = player->observer->take_record();
-    if (!arguments.plot_dir.empty() && drawn > 0) {
+    if (!arguments.plot_dir.empty() && compared.ticks + compared.not_compared > 0) {
       prepare_folder(arguments.plot_dir, "--plot");
       fmt::print("wrote {}\n", write_run_files(record, arguments.plot_dir));
     }
   }
-  std::string lacks = contents.damage;
-  if (lacks.empty() && !contents.complete) {
-    lacks =
-        fmt::format("{}: the recording was cut, it is read up to its last chunk", arguments.file);
-  } else if (lacks.empty() && contents.lost > 0) {
-    // Which of them were slots that the loop skipped stood in the lost ones.
-    lacks = fmt::format("{}: up to {} ticks were lost while recording, they are not compared",
-                        arguments.file, contents.lost);
-  }
+  const std::string lacks = lacking(contents, arguments.file);
   if (!player->replay) {
     throw InputError(fmt::format(
         "{}: begins at tick {} without the state of controller and network there, because ticks "
         "before it were lost: it cannot be replayed",
         arguments.file, contents.info.first_tick));
   }
-  if (difference) {
+  if (const auto& difference = compared.difference) {
     fmt::print("DIFFERS at tick {} ({}): {}\n", difference->tick, seconds(difference->tick),
                difference->what);
     return kExitFailed;
   }
-  if (compared == 0) {
+  if (compared.ticks == 0) {
     fmt::print("NOTHING COMPARED: the recording has {}\n",
                contents.ticks == 0 ? "no ticks"
                                    : fmt::format("none to compare in this range, it ends at {}",
-                                                 seconds(last_tick)));
+                                                 seconds(compared.last_tick)));
     if (lacks.empty()) return kExitFailed;
   } else {
-    fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared,
+    fmt::print("{} ticks and {} policy steps compared: every bit agrees\n", compared.ticks,
                player->replay->policy_steps());
   }
-  if (not_compared > 0) {
+  if (compared.not_compared > 0) {
     fmt::print("{} ticks behind lost ones have no state to start from: NOT COMPARED\n",
-               not_compared);
+               compared.not_compared);
   }
   if (!lacks.empty()) throw InputError(lacks);
   return kExitOk;

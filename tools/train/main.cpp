@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <thread>
 
 #include "rt/base/command_line.h"
@@ -57,88 +58,100 @@ void judge(const TrainConfig& config, const sim::Robot& robot, const std::string
   fmt::print("\n");
 }
 
-int run(int argc, char** argv) {
+struct Arguments {
   TrainingOptions options;
-  options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::string config_file, from_file, judged_file, robot_name = "raibo";
   std::vector<std::string> assignments;
   bool resume = false, explain = false;
+};
+
+// Nothing if the command line asked for help alone.
+std::optional<Arguments> parse(int argc, char** argv) {
+  Arguments a;
+  a.options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   CLI::App app{"Trains a policy from random weights on randomised deformable ground.",
                "sandrunner-train"};
   app.add_option(
-         "--out", options.out,
+         "--out", a.options.out,
          "folder for checkpoint.bin, policy.safetensors, best.safetensors, curve.csv, curve.html, "
          "curve.png (required)")
       ->type_name("DIR");
   app.add_option(
-         "--config", config_file,
+         "--config", a.config_file,
          "TOML with settings that differ from the built-in ones (tools/train/training.toml)")
       ->type_name("FILE");
-  app.add_option("--robot", robot_name,
+  app.add_option("--robot", a.robot_name,
                  "robot to train: raibo, go2, or the robot file of another one "
                  "(sim/robot/README.md)")
       ->type_name("NAME|FILE")
       ->capture_default_str();
-  app.add_option("--set", assignments, "one setting; may be repeated")
+  app.add_option("--set", a.assignments, "one setting; may be repeated")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
-  app.add_option("--threads", options.threads, "worker threads; the weights do not depend on them")
+  app.add_option("--threads", a.options.threads,
+                 "worker threads; the weights do not depend on them")
       ->check(CLI::Range(1, 256))
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "seed of the weights and environments")
+  app.add_option("--seed", a.options.seed, "seed of the weights and environments")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N")
       ->capture_default_str();
-  app.add_flag("--resume", resume, "continue from the checkpoint in --out");
-  app.add_option("--from", from_file,
+  app.add_flag("--resume", a.resume, "continue from the checkpoint in --out");
+  app.add_option("--from", a.from_file,
                  "policy file to go on from instead of random weights: for other ground or another "
                  "robot")
       ->type_name("FILE");
-  app.add_option("--judge", judged_file,
+  app.add_option("--judge", a.judged_file,
                  "run the battery of these settings with a policy file or study model, and end")
       ->type_name("FILE");
-  app.add_flag("--explain", explain, "say what the lines of progress mean, and end");
+  app.add_flag("--explain", a.explain, "say what the lines of progress mean, and end");
   app.footer(
       "Examples:\n"
       "  sandrunner-train --out runs/a --seed 2\n"
       "  sandrunner-train --out runs/a --resume");
-  if (!parse_command_line(app, argc, argv)) return kExitOk;
-  if (explain) {
+  if (!parse_command_line(app, argc, argv)) return std::nullopt;
+  if (!a.explain && a.judged_file.empty() && a.options.out.empty()) {
+    throw InputError("--out: found none, expected a folder");
+  }
+  if (a.resume && !a.from_file.empty()) {
+    throw InputError("--from: expected without --resume, which has weights of its own");
+  }
+  return a;
+}
+
+int run(const Arguments& a) {
+  if (a.explain) {
     fmt::print("{}", Progress::explanation());
     return kExitOk;
   }
-  if (judged_file.empty() && options.out.empty())
-    throw InputError("--out: found none, expected a folder");
-  if (resume && !from_file.empty()) {
-    throw InputError("--from: expected without --resume, which has weights of its own");
-  }
+  const std::string& out = a.options.out;
   ConfigTree tree;
-  const sim::Robot robot = sim::load_robot(robot_name);
+  const sim::Robot robot = sim::load_robot(a.robot_name);
   add_training_layers(tree, robot);
-  if (!config_file.empty()) tree.add_file(config_file);
-  for (const std::string& assignment : assignments) tree.set(assignment);
+  if (!a.config_file.empty()) tree.add_file(a.config_file);
+  for (const std::string& assignment : a.assignments) tree.set(assignment);
   const TrainConfig config = read_train_config(tree);
   check_robot(config.task, robot);
-  if (!judged_file.empty()) {
-    judge(config, robot, judged_file, options.threads);
+  if (!a.judged_file.empty()) {
+    judge(config, robot, a.judged_file, a.options.threads);
     return kExitOk;
   }
-  if (!resume && std::filesystem::exists(Training::checkpoint_path(options.out))) {
+  if (!a.resume && std::filesystem::exists(Training::checkpoint_path(out))) {
     throw InputError(
-        fmt::format("--out: '{}' holds a training; give --resume or another folder", options.out));
+        fmt::format("--out: '{}' holds a training; give --resume or another folder", out));
   }
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
-  Training training(config, robot, options);
-  if (!from_file.empty()) training.go_on_from(read_policy_file(from_file));
-  if (resume) training.resume();
-  prepare_folder(options.out, "--out");
-  if (!resume) training.start();
+  Training training(config, robot, a.options);
+  if (!a.from_file.empty()) training.go_on_from(read_policy_file(a.from_file));
+  if (a.resume) training.resume();
+  prepare_folder(out, "--out");
+  if (!a.resume) training.start();
   fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
   std::fflush(stdout);
   training.run(interrupted);
-  print_end(options.out, config.learner.network.are_a_robots());
+  print_end(out, config.learner.network.are_a_robots());
   return kExitOk;
 }
 
@@ -146,6 +159,8 @@ int run(int argc, char** argv) {
 }  // namespace sandrunner::train
 
 int main(int argc, char** argv) {
-  return sandrunner::run_program("sandrunner-train",
-                                 [&] { return sandrunner::train::run(argc, argv); });
+  return sandrunner::run_program("sandrunner-train", [&] {
+    const auto arguments = sandrunner::train::parse(argc, argv);
+    return arguments ? sandrunner::train::run(*arguments) : sandrunner::kExitOk;
+  });
 }
