@@ -8,6 +8,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
+#include "rt/run/robot_scene.h"
 #include "rt/telemetry/view/view_page.h"
 #include "sim/step/ground_truth.h"
 
@@ -17,24 +18,8 @@ namespace {
 Vector3 vector_of(const sim::Vec3<float>& v) { return {v.x, v.y, v.z}; }
 
 RunScene scene_of(const Environments& environments, int env) {
-  const sim::Robot& robot = environments.robot();
-  const sim::RobotModel<double>& model = robot.model;
-  const auto array = [](const sim::Vec3<double>& v) { return Vector3{v.x, v.y, v.z}; };
-  RunScene scene;
+  RunScene scene = robot_scene(environments.robot(), environments.task().terrain(env));
   scene.terrain = "training ground";
-  scene.robot = robot.description;
-  scene.mass_kg = model.mass();
-  scene.motor_constant = robot.motor_constant_nmpsqrtw;
-  scene.base_box_size_m = array(2.0 * model.base_box_half_m);
-  scene.base_box_center_m = array(model.base_box_centre_m);
-  scene.foot_radius_m = model.foot_radius_m;
-  const sim::Terrain<float> terrain = environments.task().terrain(env);
-  scene.granular_ground = terrain.ground[0].is_granular > 0.0f;
-  if (terrain.highest > 0.0f) {
-    scene.ground_height_m = [terrain](double x_m, double y_m) -> double {
-      return sim::surface_at(terrain, static_cast<float>(x_m), static_cast<float>(y_m)).height;
-    };
-  }
   return scene;
 }
 
