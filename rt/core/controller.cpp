@@ -27,10 +27,6 @@ bool leans(const ImuSample& imu) noexcept {
   return w * w - x * x - y * y + z * z < kCosine * (w * w + x * x + y * y + z * z);
 }
 
-bool is_zero(const VelocityCommand& command) noexcept {
-  return command.vx_mps == 0.0 && command.vy_mps == 0.0 && command.wz_radps == 0.0;
-}
-
 }  // namespace
 
 Controller::Controller(const ControllerConfig& config, Mode start)
@@ -195,7 +191,7 @@ void Controller::begin_stop(std::uint64_t tick) noexcept {
   state_.restless_tick = tick;
 }
 
-/// From where the joints are commanded to be now: they carry the robot.
+/// From where the joints are commanded to be: they carry the robot.
 void Controller::begin_lowering(std::uint64_t tick) noexcept {
   state_.stopping = kStopAndLie;
   state_.folding = 1;
@@ -265,12 +261,9 @@ void Controller::enter(Mode mode, const SensorFrame& sensors) noexcept {
     case Mode::kStandUp:
       state_.stopping = 0;
       state_.folding = distance(measured_rad, stand.nominal_rad) < stand.skip_fold_rad ? 0 : 1;
-      if (state_.folding != 0) {
-        start_motion(measured_rad, fold_rad_, std::max(stand.fold_s, stand.gain_ramp_s), tick);
-      } else {
-        start_motion(measured_rad, stand.nominal_rad, std::max(stand.extend_s, stand.gain_ramp_s),
-                     tick);
-      }
+      start_motion(measured_rad, state_.folding != 0 ? fold_rad_ : stand.nominal_rad,
+                   std::max(state_.folding != 0 ? stand.fold_s : stand.extend_s, stand.gain_ramp_s),
+                   tick);
       break;
     case Mode::kStand:
       if (from == Mode::kWalk) {
@@ -352,7 +345,7 @@ VelocityCommand Controller::shape(const OperatorCommand& command, std::uint64_t 
   now.vx_mps = slew(now.vx_mps, wanted.vx_mps, step_mps);
   now.vy_mps = slew(now.vy_mps, wanted.vy_mps, step_mps);
   now.wz_radps = slew(now.wz_radps, wanted.wz_radps, stop ? stop_step_radps_ : max_step_radps_);
-  if (!is_zero(now)) state_.zero_since_tick = tick;
+  if (now.vx_mps != 0.0 || now.vy_mps != 0.0 || now.wz_radps != 0.0) state_.zero_since_tick = tick;
   return {now.vx_mps, now.vy_mps,
           shape_yaw_rate(now.wz_radps, now.vx_mps, now.vy_mps, shaping.centripetal_limit_mps2)};
 }
