@@ -20,13 +20,11 @@ Outcome estimate_matters_more(Case& c) {
   bool both = true, neither = true;
   std::string text;
   for (const char* oracle : oracle_controllers()) {
-    const Figure e = ablation(c, oracle, "e"), terrain = ablation(c, oracle, "T");
-    Figure ratio;
-    for (const auto& [seed, value] : e) ratio[seed] = {value.value / terrain.at(seed).value};
-    both = both && median(ratio) >= 2.0;
-    neither = neither && median(ratio) < 1.0;
+    const Figure times = ratio(ablation(c, oracle, "e"), ablation(c, oracle, "T"));
+    both = both && median(times) >= 2.0;
+    neither = neither && median(times) < 1.0;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", find_controller(oracle)->name,
-                        printed(ratio, 1.0, 2));
+                        printed(times, 1.0, 2));
   }
   return {both, neither, text + " times that of T"};
 }

@@ -39,7 +39,4 @@ inline constexpr double kRigidLowerOnTrack = 0.061, kRigidLowerOnGrass = 0.101;
 inline constexpr double kYawSand_radps = 0.92, kYawAll_radps = 0.94;
 inline constexpr double kYawMattress1_radps = 0.71, kYawMattress2_radps = 1.54;
 
-/// "about 20 times faster than the DRFT method".
-inline constexpr double kFasterThanDrft = 20.0;
-
 }  // namespace sandrunner::study::paper

@@ -103,6 +103,12 @@ bool is_far_from_share(const Figure& figure, double x) {
   return every_seed(figure, [=](double v) { return std::fabs(v - x) > 0.30; });
 }
 
+Figure ratio(const Figure& a, const Figure& b) {
+  Figure result;
+  for (const auto& [seed, value] : a) result[seed] = {value.value / b.at(seed).value};
+  return result;
+}
+
 double excess(const Figure& a, const Figure& b) { return median(a) / median(b) - 1.0; }
 
 double kendall_tau(const std::vector<double>& a, const std::vector<double>& b) {

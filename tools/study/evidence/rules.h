@@ -49,6 +49,8 @@ bool is_far_from(const Figure& figure, double x, double share = 0.15);
 /// The median is within 15 percentage points of x; every seed is off by more than 30.
 bool is_share(const Figure& figure, double x);
 bool is_far_from_share(const Figure& figure, double x);
+/// A over B, seed by seed.
+Figure ratio(const Figure& a, const Figure& b);
 /// Median of A over median of B, less 1.
 double excess(const Figure& a, const Figure& b);
 /// Kendall's tau of two orders of the same things: 1 if they agree, -1 if one is the other

@@ -90,14 +90,6 @@ double median_of(std::vector<double> values) {
   return quantile(values, 0.5);
 }
 
-double mean_where(const std::vector<double>& values, const std::vector<double>& flags) {
-  std::vector<double> chosen;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (flags[i] == 1.0) chosen.push_back(values[i]);
-  }
-  return mean_of(chosen);
-}
-
 double least_of(const std::vector<double>& values) {
   double least = kNan;
   for (const double v : values) least = std::fmin(least, v);

@@ -43,8 +43,6 @@ Measured measured_from(const Json& json);
 double mean_of(const std::vector<double>& values);
 /// nan if there are none, or one of them is nan.
 double median_of(std::vector<double> values);
-/// Mean of the values for which the flag is 1.
-double mean_where(const std::vector<double>& values, const std::vector<double>& flags);
 double least_of(const std::vector<double>& values);
 double greatest_of(const std::vector<double>& values);
 

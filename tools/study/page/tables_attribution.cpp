@@ -13,13 +13,6 @@
 namespace sandrunner::study {
 namespace {
 
-// A figure over another one, seed by seed.
-Figure ratio(const Figure& figure, const Figure& over) {
-  Figure result;
-  for (const auto& [seed, value] : figure) result[seed] = {value.value / over.at(seed).value};
-  return result;
-}
-
 // What the figures rest on, and whether integrated gradients add up.
 std::string states_table(const Evidence& evidence) {
   HtmlTable table{{"controller", "seeds", "robots, 4 s each", "states", "robots that fell, %",
