@@ -43,9 +43,6 @@ inline constexpr int kCommandSize = 3;  ///< the first of them: vx, vy, yaw rate
 inline constexpr int kEstimateSize = 8;
 
 inline constexpr std::array<const char*, kNumLegs> kLegNames = {"LF", "RF", "LH", "RH"};
-inline constexpr std::array<const char*, kNumJoints> kJointNames = {
-    "LF_HAA", "LF_HFE", "LF_KFE", "RF_HAA", "RF_HFE", "RF_KFE",
-    "LH_HAA", "LH_HFE", "LH_KFE", "RH_HAA", "RH_HFE", "RH_KFE"};
 
 template <typename T>
 using JointArray = std::array<T, kNumJoints>;

@@ -9,6 +9,7 @@
 
 #include "policy/policy_file.h"
 #include "rt/core/split_mix.h"
+#include "tests/support/joint_names.h"
 
 namespace sandrunner {
 

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/support/joint_names.h"
+
 namespace sandrunner {
 namespace {
 

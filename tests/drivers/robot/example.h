@@ -6,6 +6,7 @@
 
 #include "drivers/robot/hardware_config.h"
 #include "drivers/robot/hardware_fit.h"
+#include "tests/support/joint_names.h"
 
 namespace sandrunner {
 

@@ -11,6 +11,7 @@
 #include "rt/base/clock_ns.h"
 #include "rt/core/safety_gate.h"
 #include "tests/rt/core/test_robot.h"
+#include "tests/support/joint_names.h"
 
 namespace sandrunner {
 namespace {

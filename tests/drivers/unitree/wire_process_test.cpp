@@ -21,6 +21,7 @@
 
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
+#include "tests/support/joint_names.h"
 #include "tools/hil/emulated/unitree_peer.h"
 
 namespace sandrunner::unitree {

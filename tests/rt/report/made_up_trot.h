@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "rt/report/run_record.h"
+#include "tests/support/joint_names.h"
 
 namespace sandrunner {
 

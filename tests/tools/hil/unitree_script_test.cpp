@@ -11,6 +11,7 @@
 #include "rt/base/errors.h"
 #include "rt/core/faults.h"
 #include "rt/core/messages.h"
+#include "tests/support/joint_names.h"
 #include "tools/hil/unitree_runs.h"
 
 namespace sandrunner::hil {
