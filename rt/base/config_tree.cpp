@@ -171,12 +171,12 @@ void ConfigTree::add_file(const std::string& path) {
   add_layer(read_input_file(path, "a TOML file"), path, true);
 }
 
-void ConfigTree::set(const std::string& assignment) {
+void ConfigTree::set(const std::string& assignment, const std::string& option) {
   const std::size_t equals = assignment.find('=');
   const std::string path = assignment.substr(0, equals);
-  const std::string origin = "--set " + path;
   if (equals == std::string::npos || path.find_first_not_of(kPathCharacters) != std::string::npos) {
-    throw InputError(one_line("--set " + assignment + ": expected --set path.to.key=value"));
+    throw InputError(
+        one_line(fmt::format("{}: found '{}', expected path.to.key=value", option, assignment)));
   }
   const std::string value = assignment.substr(equals + 1);
   const bool bare_word =
@@ -184,15 +184,16 @@ void ConfigTree::set(const std::string& assignment) {
   // A line break would let further keys in.
   const bool one_value = value.find_first_of("\r\n") == std::string::npos;
   try {
-    if (one_value) return add_layer(path + " = " + value, origin, false);
+    if (one_value) return add_layer(path + " = " + value, option, false);
   } catch (const InputError&) {
     // perhaps a bare word
   }
   if (!bare_word) {
-    throw InputError(one_line(origin + ": found '" + value +
-                              "', expected a TOML value (strings in quotes unless one word)"));
+    throw InputError(one_line(
+        fmt::format("{}: {}: found '{}', expected a TOML value (strings in quotes unless one word)",
+                    option, path, value)));
   }
-  set_text(path, value, origin);
+  set_text(path, value, option);
 }
 
 void ConfigTree::set_text(const std::string& path, const std::string& value,

@@ -40,8 +40,8 @@ class ConfigTree {
   /// Adds a layer from a file.
   void add_file(const std::string& path);
   /// Adds a layer of one "path.to.key=value". The value is TOML; a bare word that is no TOML value
-  /// (dry-sand, runs/a.csv) is taken as a string.
-  void set(const std::string& assignment);
+  /// (dry-sand, runs/a.csv) is taken as a string. `option` names it in errors.
+  void set(const std::string& assignment, const std::string& option = "--set");
   /// Adds a layer of one string, whatever is in it (a path of the command line). `option` names it
   /// in errors.
   void set_text(const std::string& path, const std::string& value, const std::string& option);

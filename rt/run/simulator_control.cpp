@@ -51,7 +51,7 @@ GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& w
   return now;
 }
 
-// Throws InputError: the line that --set gives.
+// Throws InputError: the line that --set gives, but for its own name.
 sim::TerrainDescription read(const WantedGround& wanted, const std::string& settings) {
   ConfigTree tree;
   if (wanted.preset.empty()) {
@@ -68,7 +68,7 @@ sim::TerrainDescription read(const WantedGround& wanted, const std::string& sett
       throw InputError(
           fmt::format("terrain: '{}', expected one of {}", one_line(key), fmt::join(keys, ", ")));
     }
-    tree.set(fmt::format("terrain.{}={}", key, value));
+    tree.set(fmt::format("terrain.{}={}", key, value), "page");
   }
   return sim::read_terrain(tree);
 }

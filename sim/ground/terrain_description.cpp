@@ -107,14 +107,15 @@ const char* kind_name(GroundKind kind) noexcept { return kKinds[static_cast<int>
 
 std::vector<std::string> terrain_preset_names() { return kPresets; }
 
-void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file) {
+void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file,
+                       const std::string& option) {
   if (std::find(kPresets.begin(), kPresets.end(), preset_or_file) != kPresets.end()) {
     config.add_text(embedded_terrain_file(preset_or_file + ".toml"), "preset " + preset_or_file);
     return;
   }
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(preset_or_file, unreadable)) {
-    throw InputError(fmt::format("--terrain: '{}' is neither a preset ({}) nor a file{}",
+    throw InputError(fmt::format("{}: '{}' is neither a preset ({}) nor a file{}", option,
                                  preset_or_file, fmt::join(kPresets, ", "),
                                  did_you_mean(preset_or_file, kPresets)));
   }

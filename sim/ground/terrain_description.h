@@ -31,8 +31,9 @@ const char* kind_name(GroundKind kind) noexcept;
 /// Names of the presets built in: "dry-sand", "rigid", ...
 std::vector<std::string> terrain_preset_names();
 
-/// Adds the preset or file that `--terrain` names as a layer of `config`. Throws InputError.
-void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file);
+/// Adds a preset or file as a layer of `config`; `option` names it in errors. Throws InputError.
+void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file,
+                       const std::string& option = "--terrain");
 
 /// Reads the table [terrain] of `config`. Throws InputError.
 TerrainDescription read_terrain(ConfigTree& config);

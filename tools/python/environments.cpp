@@ -43,7 +43,7 @@ Environments::Settings Environments::read_settings(const EnvironmentsOptions& op
   ConfigTree tree;
   train::add_training_layers(tree, robot);
   if (!options.config_file.empty()) tree.add_file(options.config_file);
-  for (const std::string& setting : options.settings) tree.set(setting);
+  for (const std::string& setting : options.settings) tree.set(setting, "settings");
   const auto block_envs = tree.integer("learner.block_envs", 64, 1, 1 << 16);
   if (options.envs % block_envs != 0) {
     throw InputError(

@@ -46,8 +46,8 @@ Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
   model.foot_radius_m = checked("foot_radius_m", foot_radius_m, 1e-3, 1.0);
   model.foot_width_m = checked("foot_width_m", foot_width_m, 0.0, 1.0);
   ConfigTree tree;
-  sim::add_terrain_layer(tree, ground);
-  for (const std::string& setting : settings) tree.set(setting);
+  sim::add_terrain_layer(tree, ground, "ground");
+  for (const std::string& setting : settings) tree.set(setting, "settings");
   const sim::TerrainDescription description = sim::read_terrain(tree);
   tree.reject_unknown();
   for (const sim::TerrainPatch& patch : description.patches) {

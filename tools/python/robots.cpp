@@ -68,8 +68,8 @@ Robots::Robots(const std::string& robot, int count, const std::string& ground,
 sim::Terrain<float> Robots::make_ground(const std::string& ground,
                                         const std::vector<std::string>& settings) {
   ConfigTree tree;
-  sim::add_terrain_layer(tree, ground);
-  for (const std::string& setting : settings) tree.set(setting);
+  sim::add_terrain_layer(tree, ground, "ground");
+  for (const std::string& setting : settings) tree.set(setting, "settings");
   const sim::TerrainDescription description = sim::read_terrain(tree);
   tree.reject_unknown();
   const sim::TerrainDescription usual;

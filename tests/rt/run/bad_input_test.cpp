@@ -101,7 +101,7 @@ TEST_F(BadInputTest, TerrainsAreRefusedWithFileAndLine) {
 }
 
 TEST_F(BadInputTest, SettingsAreRefusedWithTheirKey) {
-  expect_refused("--set nonsense", "--set nonsense: expected");
+  expect_refused("--set nonsense", "--set: found 'nonsense', expected");
   expect_refused("--set terrain.nosuch=1", "unknown key 'terrain.nosuch'");
   expect_refused("--set terrain.stiffness_npm=-1", "found -1");
   expect_refused("--set controller.gate.tilt_fault_deg=nan", "found nan");

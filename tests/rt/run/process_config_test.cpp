@@ -186,8 +186,8 @@ TEST(ProcessConfigTest, InvalidValueIsRefused) {
   };
   for (const auto& c : cases) {
     const std::string assignment = c.assignment;
-    const std::string origin = "--set " + assignment.substr(0, assignment.find('='));
-    expect_refused([&] { config_of("rigid", {assignment}); }, {origin + ": ", c.expected});
+    const std::string place = "--set: " + assignment.substr(0, assignment.find('=')) + ": ";
+    expect_refused([&] { config_of("rigid", {assignment}); }, {place, c.expected});
   }
 }
 

@@ -218,13 +218,11 @@ TEST_F(ViewControlTest, GroundOfAnotherKindThrowsNobodyUp) {
   EXPECT_LT(height_m(std::ranges::max(ticks, {}, height_m)), 0.6);
 }
 
-TEST_F(ViewControlTest, WhatSetRefusesIsRefusedInTheSameLine) {
+TEST_F(ViewControlTest, WhatSetRefusesIsRefusedInTheSameWords) {
   EXPECT_EQ(say(R"({"say":"terrain","preset":"","set":{"friction":9}})"),
-            "--set terrain.friction: terrain.friction: found 9, expected a finite number from 0 "
-            "to 5");
+            "page: terrain.friction: found 9, expected a finite number from 0 to 5");
   EXPECT_EQ(say(R"({"say":"terrain","preset":"","set":{"packing":-1}})"),
-            "--set terrain.packing: terrain.packing: found -1, expected a finite number from 0 "
-            "to 1");
+            "page: terrain.packing: found -1, expected a finite number from 0 to 1");
   EXPECT_EQ(say(R"({"say":"terrain","preset":"","set":{"roughness_m":0.1}})"),
             "terrain: 'roughness_m', expected one of sigma_flat_npm3, sigma_cone_npm3, "
             "stiffness_npm, friction, drag, packing");

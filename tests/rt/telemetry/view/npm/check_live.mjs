@@ -149,7 +149,7 @@ async function touches() {
   await ground("values.sigma_flat_npm3 === 250000");
   await ground("values.sigma_cone_npm3 === 50000");
   await fill("friction", "9");
-  await until(page, "/^--set terrain.friction: .* from 0 to 5$/.test(document.getElementById('refusal').textContent)");
+  await until(page, "/^page: terrain.friction: .* from 0 to 5$/.test(document.getElementById('refusal').textContent)");
   await ground("values.friction === 0.8");
   await page.select("#preset", "wet-sand");
   await ground("name === 'wet-sand'");
