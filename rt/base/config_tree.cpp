@@ -8,13 +8,14 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <sstream>
+#include <span>
 #include <utility>
 
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
 #include "rt/base/likely_meant.h"
 #include "rt/base/toml_depth.h"
+#include "rt/base/toml_text.h"
 
 namespace sandrunner {
 
@@ -67,35 +68,6 @@ namespace {
 
 constexpr std::string_view kBareWordCharacters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./~+:@";
-/// Letters, digits, _, - and the dot.
-constexpr std::string_view kPathCharacters = kBareWordCharacters.substr(0, 26 + 26 + 10 + 3);
-
-std::string toml_text(const std::string& value) {
-  std::ostringstream out;
-  out << toml::toml_formatter{toml::value<std::string>{value},
-                              toml::format_flags::allow_unicode_strings};
-  return out.str();
-}
-
-std::string toml_text(double value) {
-  std::string text = fmt::format("{}", value);  // shortest digits that read back to the same bits
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return text;
-}
-
-std::string describe(const toml::node& node) {
-  constexpr std::size_t kLongest = 60;
-  if (const auto* value = node.as_string()) {
-    const std::string quoted = toml_text(value->get());
-    return quoted.size() <= kLongest ? quoted : quoted.substr(0, kLongest) + "...";
-  }
-  if (const auto* value = node.as_floating_point()) return toml_text(value->get());
-  if (const auto* value = node.as_integer()) return std::to_string(value->get());
-  if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
-  if (const auto* value = node.as_array()) return fmt::format("an array of {}", value->size());
-  if (node.is_table()) return "a table";
-  return "a date or time";
-}
 
 template <typename T>
 std::string describe_range(const std::string& noun, T min, T max) {
@@ -105,21 +77,6 @@ std::string describe_range(const std::string& noun, T min, T max) {
   if (has_min) return fmt::format("{} of at least {}", noun, min);
   if (has_max) return fmt::format("{} of at most {}", noun, max);
   return noun;
-}
-
-/// A number within the range, or nothing.
-std::optional<double> number_in(const toml::node& node, double min, double max) {
-  const std::optional<double> value = node.value<double>();
-  if (!value || !(node.is_floating_point() || node.is_integer())) return std::nullopt;
-  if (!std::isfinite(*value) || *value < min || *value > max) return std::nullopt;
-  return value;
-}
-
-/// A key as it is written in a dotted path.
-std::string key_text(std::string_view key) {
-  const bool bare = key.find_first_not_of(kPathCharacters) == std::string_view::npos &&
-                    key.find('.') == std::string_view::npos && !key.empty();
-  return bare ? std::string(key) : toml_text(std::string(key));
 }
 
 using Key = std::pair<std::string, const toml::node*>;
@@ -174,7 +131,8 @@ void ConfigTree::add_file(const std::string& path) {
 void ConfigTree::set(const std::string& assignment, const std::string& option) {
   const std::size_t equals = assignment.find('=');
   const std::string path = assignment.substr(0, equals);
-  if (equals == std::string::npos || path.find_first_not_of(kPathCharacters) != std::string::npos) {
+  if (equals == std::string::npos ||
+      path.find_first_not_of(kTomlPathCharacters) != std::string::npos) {
     throw InputError(
         one_line(fmt::format("{}: found '{}', expected path.to.key=value", option, assignment)));
   }
@@ -198,19 +156,7 @@ void ConfigTree::set(const std::string& assignment, const std::string& option) {
 
 void ConfigTree::set_text(const std::string& path, const std::string& value,
                           const std::string& option) {
-  std::string quoted;
-  for (const char c : value) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += {'\\', c};
-    } else if (code < 0x20 || code == 0x7f) {
-      constexpr const char* kDigits = "0123456789abcdef";
-      quoted += {'\\', 'u', '0', '0', kDigits[code >> 4], kDigits[code & 15]};
-    } else {
-      quoted += c;
-    }
-  }
-  add_layer(path + " = \"" + quoted + "\"", option, false);
+  add_layer(path + " = " + toml_quoted(value), option, false);
 }
 
 ConfigTree::Found ConfigTree::find(const std::string& path) const {
@@ -318,13 +264,7 @@ std::vector<double> ConfigTree::numbers(const std::string& path,
       result.push_back(*value);
     }
   }
-  std::string text;
-  bool finite = true;
-  for (const double value : result) {
-    text += (text.empty() ? "" : ", ") + toml_text(value);
-    finite = finite && std::isfinite(value);
-  }
-  record_->values[path] = finite ? "[" + text + "]" : std::string();
+  record_->values[path] = toml_text(std::span<const double>(result));
   return result;
 }
 
@@ -360,13 +300,9 @@ std::vector<double> ConfigTree::repeated(const std::string& path,
   for (std::size_t i = few; i < all; ++i) {
     if (result[i] != result[i % few]) size = all;
   }
-  std::string text;
-  bool finite = true;
-  for (std::size_t i = 0; i < size; ++i) {
-    text += (text.empty() ? "" : ", ") + toml_text(result[i]);
-    finite = finite && std::isfinite(result[i]);
-  }
-  record_->values[path] = !finite ? std::string() : size == 1 ? text : "[" + text + "]";
+  std::string text = toml_text(std::span<const double>(result).first(size));
+  if (size == 1 && !text.empty()) text = text.substr(1, text.size() - 2);  // without an array
+  record_->values[path] = text;
   return result;
 }
 
