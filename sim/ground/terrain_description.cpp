@@ -122,6 +122,12 @@ void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file,
   config.add_file(preset_or_file);
 }
 
+TerrainDescription terrain_preset(const std::string& name) {
+  ConfigTree config;
+  add_terrain_layer(config, name);
+  return read_terrain(config);
+}
+
 std::span<const Setting<GroundParameters>> ground_settings() noexcept { return kGround; }
 
 std::vector<SettingLine> terrain_settings() {

@@ -35,6 +35,9 @@ std::vector<std::string> terrain_preset_names();
 void add_terrain_layer(ConfigTree& config, const std::string& preset_or_file,
                        const std::string& option = "--terrain");
 
+/// The preset of this name. Throws InputError.
+TerrainDescription terrain_preset(const std::string& name);
+
 /// Reads the table [terrain] of `config`. Throws InputError.
 TerrainDescription read_terrain(ConfigTree& config);
 

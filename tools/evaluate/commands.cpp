@@ -17,15 +17,15 @@ double commanded_other(CommandPlane plane, int row) {
 
 Part Study::commands() {
   Part part{"commands", {}};
-  sim::TerrainDescription soft = preset("dry-sand");
+  sim::TerrainDescription soft = sim::terrain_preset("dry-sand");
   soft.patches[0].ground.sigma_flat_npm3 = 1e6;
   soft.patches[0].ground.sigma_cone_npm3 = 0.15e6;
   struct Ground {
     const char* name;
     const sim::Terrain<float>* terrain;
   };
-  const std::array<Ground, 3> grounds = {{{"dry-sand", add(preset("dry-sand"))},
-                                          {"rigid", add(preset("rigid"))},
+  const std::array<Ground, 3> grounds = {{{"dry-sand", add(sim::terrain_preset("dry-sand"))},
+                                          {"rigid", add(sim::terrain_preset("rigid"))},
                                           {"soft", add(soft)}}};
   for (const CommandPlane plane : {CommandPlane::kSideways, CommandPlane::kTurning}) {
     const bool sideways = plane == CommandPlane::kSideways;

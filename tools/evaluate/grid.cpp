@@ -20,7 +20,7 @@ Part Study::grid() {
   Part part{"grid", {}};
   for (int flat = 0; flat < kGridSize; ++flat) {
     for (int cone = 0; cone < kGridSize; ++cone) {
-      sim::TerrainDescription ground = preset("dry-sand");
+      sim::TerrainDescription ground = sim::terrain_preset("dry-sand");
       Group g;
       g.ground = "sand";
       g.sigma_flat_npm3 = 1e6 + 9e6 * flat / (kGridSize - 1);

@@ -33,7 +33,8 @@ void turn_about(double imu_turn_rad, Group& group) {
 
 Part Study::robust() {
   Part part{"robust", {}};
-  const sim::TerrainDescription sand = preset("dry-sand"), rigid = preset("rigid");
+  const sim::TerrainDescription sand = sim::terrain_preset("dry-sand"),
+                                rigid = sim::terrain_preset("rigid");
   // Dry sand with other parameters.
   const auto changed = [&](auto change) {
     sim::TerrainDescription t = sand;

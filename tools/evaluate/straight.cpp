@@ -7,7 +7,7 @@ namespace sandrunner::evaluate {
 Part Study::straight() {
   Part part{"straight", {}};
   for (const char* name : {"dry-sand", "rigid", "wet-sand", "grass", "athletic-track", "vinyl"}) {
-    const sim::Terrain<float>* terrain = add(preset(name));
+    const sim::Terrain<float>* terrain = add(sim::terrain_preset(name));
     for (int i = 1; i <= 8; ++i) {
       Trial trial;
       trial.terrain = terrain;

@@ -32,11 +32,11 @@ sim::RigidState<float> in_float(const sim::RigidState<double>& from) {
 Study::Study(const StudySettings& settings, const sim::Robot& robot)
     : settings_(settings),
       robot_(robot),
-      foot_(sim::make_foot_profile(preset("dry-sand"), robot_.model)) {
+      foot_(sim::make_foot_profile(sim::terrain_preset("dry-sand"), robot_.model)) {
   // All grounds are level, so a start serves for all of them. The simulator makes it, so that there
   // is one definition.
   sim::SimulatorConfig config;
-  config.terrain = preset("rigid");
+  config.terrain = sim::terrain_preset("rigid");
   for (int run = 0; run < std::max(settings.runs, settings.grid_runs); ++run) {
     config.seed = run == 0 ? 0 : run_seed(run);
     sim::RobotState<float> start;
@@ -47,12 +47,6 @@ Study::Study(const StudySettings& settings, const sim::Robot& robot)
 
 std::uint64_t Study::run_seed(int run) const noexcept {
   return (settings_.seed - 1) * 1'000'000 + static_cast<std::uint64_t>(run);
-}
-
-sim::TerrainDescription Study::preset(const std::string& name) {
-  ConfigTree tree;
-  sim::add_terrain_layer(tree, name);
-  return sim::read_terrain(tree);
 }
 
 const sim::Terrain<float>* Study::add(const sim::TerrainDescription& terrain) {

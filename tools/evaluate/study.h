@@ -52,8 +52,7 @@ class Study {
   const sim::Robot& robot() const noexcept { return robot_; }
   const sim::FootProfile<double>& foot() const noexcept { return foot_; }
 
-  /// A ground that ships.
-  static sim::TerrainDescription preset(const std::string& name);
+  /// Keeps a ground for trials.
   const sim::Terrain<float>* add(const sim::TerrainDescription& terrain);
   /// The state in which run i starts: run 0 in the nominal pose, the others disturbed, as
   /// `sandrunner --start walk --seed` does with the seeds 0, 1, 2, ... for the default seed 1.

@@ -18,7 +18,7 @@ Part Study::turn() {
       {"backwards", {-1.0, 0.0, 0.0}}, {"stand", {0.0, 0.0, 0.0}},
   };
   for (const char* name : {"dry-sand", "rigid"}) {
-    const sim::Terrain<float>* terrain = add(preset(name));
+    const sim::Terrain<float>* terrain = add(sim::terrain_preset(name));
     for (const Case& c : kCases) {
       Trial trial;
       trial.terrain = terrain;

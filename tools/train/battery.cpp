@@ -37,12 +37,6 @@ TaskConfig without_randomness(TaskConfig c) {
   return c;
 }
 
-sim::TerrainDescription preset(const std::string& name) {
-  ConfigTree tree;
-  sim::add_terrain_layer(tree, name);
-  return sim::read_terrain(tree);
-}
-
 int whole_blocks(std::size_t runs) {
   return (static_cast<int>(runs) + kBlock - 1) / kBlock * kBlock;
 }
@@ -97,13 +91,13 @@ std::deque<Battery::Ground> Battery::make_grounds(const BatterySettings& setting
                        sim::convert_terrain<float>(sim::make_terrain(terrain, foot, robot.model)),
                        terrain_features(terrain.patches.front().ground, factor)});
   };
-  if (hard) add(preset("rigid"), 1.0);
+  if (hard) add(sim::terrain_preset("rigid"), 1.0);
   if (!yields) return grounds;
   if (g.yielding == sim::GroundKind::kLinear) {
     for (const auto& [name, wanted_npm] :
          {std::pair{"stiff-spring", 33e3}, std::pair{"spring", 10e3}, std::pair{"soft-spring", 4e3},
           std::pair{"softest", settings.softest_spring_npm}}) {
-      sim::TerrainDescription spring = preset("athletic-track");
+      sim::TerrainDescription spring = sim::terrain_preset("athletic-track");
       spring.name = name;
       sim::GroundParameters& p = spring.patches.front().ground;
       p.stiffness_npm = std::clamp(wanted_npm, g.spring_low, g.spring_high);
@@ -121,14 +115,14 @@ std::deque<Battery::Ground> Battery::make_grounds(const BatterySettings& setting
     add(terrain, inertial);
   };
   for (const char* name : {"wet-sand", "grass", "dry-sand"}) {
-    const sim::TerrainDescription terrain = preset(name);
+    const sim::TerrainDescription terrain = sim::terrain_preset(name);
     const sim::GroundParameters& p = terrain.patches.front().ground;
     const bool within =
         p.sigma_flat_npm3 >= g.sigma_flat_low && p.sigma_flat_npm3 <= g.sigma_flat_high &&
         p.sigma_cone_npm3 >= g.sigma_cone_low && p.sigma_cone_npm3 <= g.sigma_cone_high;
     if (within) add_soil(terrain);
   }
-  sim::TerrainDescription softest = preset("dry-sand");
+  sim::TerrainDescription softest = sim::terrain_preset("dry-sand");
   softest.name = "softest";
   sim::GroundParameters& p = softest.patches.front().ground;
   p.sigma_flat_npm3 = std::clamp(settings.softest_flat_npm3, g.sigma_flat_low, g.sigma_flat_high);

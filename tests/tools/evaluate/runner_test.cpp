@@ -67,7 +67,7 @@ TEST_F(RunnerTest, FiguresDoNotDependOnTheOtherRobotsOfThePack) {
 
 TEST_F(RunnerTest, DisturbancesActAndFollowTheSeed) {
   Trial trial;
-  trial.terrain = study_.add(Study::preset("rigid"));
+  trial.terrain = study_.add(sim::terrain_preset("rigid"));
   trial.start = &study_.start(0);
   trial.duration_s = 1.5;
   trial.seed = 3;
@@ -92,7 +92,7 @@ TEST_F(RunnerTest, DisturbancesActAndFollowTheSeed) {
 
 TEST_F(RunnerTest, AnObserverSeesEveryStepOfEachTrial) {
   Trial trial;
-  trial.terrain = study_.add(Study::preset("dry-sand"));
+  trial.terrain = study_.add(sim::terrain_preset("dry-sand"));
   trial.duration_s = 0.5;
   std::vector<Trial> trials(11, trial);
   for (std::size_t i = 0; i < trials.size(); ++i)
@@ -119,7 +119,7 @@ TEST_F(RunnerTest, AnObserverSeesEveryStepOfEachTrial) {
 
 TEST_F(RunnerTest, LooseStepSinksIn) {
   // The second patch is out of reach; only LooseStep puts a foot on it.
-  sim::TerrainDescription ground = Study::preset("dry-sand");
+  sim::TerrainDescription ground = sim::terrain_preset("dry-sand");
   sim::TerrainPatch soft{1e9, ground.patches[0].ground};
   soft.ground.sigma_flat_npm3 /= 4.0;
   soft.ground.sigma_cone_npm3 /= 4.0;
@@ -167,7 +167,7 @@ class EachRobotTest : public testing::TestWithParam<std::string> {
 
   Trial walk(const char* ground, double speed_mps) {
     Trial trial;
-    trial.terrain = study_.add(Study::preset(ground));
+    trial.terrain = study_.add(sim::terrain_preset(ground));
     trial.start = &study_.start(0);
     trial.command = {{speed_mps, 0.0, 0.0}, 0.0, policy_.spec().envelope.acceleration_mps2};
     trial.duration_s = 5.0;

@@ -21,7 +21,7 @@ constexpr double kStepHz = kControlHz;  // as the robot's step
 constexpr double kBeadsStiffness = 1040.0;  // k/m, 1/s^2
 constexpr double kBeadsDrag_m = 0.087;      // d1
 
-sim::GroundParameters dry_sand() { return evaluate::Study::preset("dry-sand").patches[0].ground; }
+sim::GroundParameters dry_sand() { return sim::terrain_preset("dry-sand").patches[0].ground; }
 
 // Slope of log y over log x.
 double exponent(const std::vector<double>& x, const std::vector<double>& y) {

@@ -87,7 +87,7 @@ Measured run_fairness_on_task(const Lab& lab, const Model& model) {
 }  // namespace
 
 sim::TerrainDescription beach(int run) {
-  sim::TerrainDescription ground = evaluate::Study::preset("dry-sand");
+  sim::TerrainDescription ground = sim::terrain_preset("dry-sand");
   if (run == 0) return ground;
   const auto draw = [&](int k, double low, double high) {
     const double u = sim::random_uniform(
@@ -105,17 +105,16 @@ sim::TerrainDescription beach(int run) {
 sim::TerrainDescription training_ground(const Controller& controller, const sim::Robot& robot) {
   const std::string_view key = controller.key;
   if (key == "env-rigid" || key == "pl-rigid" || key == "teacher-rigid") {
-    return evaluate::Study::preset("rigid");
+    return sim::terrain_preset("rigid");
   }
-  sim::TerrainDescription ground = evaluate::Study::preset("dry-sand");
+  sim::TerrainDescription ground = sim::terrain_preset("dry-sand");
   sim::GroundParameters& g = ground.patches[0].ground;
   if (key == "env-quasistatic") g.inertial_drag = g.added_mass = false;
   if (key == "env-linear") {
     constexpr double kStiffness_npm = 10e3, kDampingRatio = 0.5;
     g.kind = sim::GroundKind::kLinear;
     g.stiffness_npm = kStiffness_npm;
-    g.damping_nspm =
-        2.0 * kDampingRatio * std::sqrt(kStiffness_npm * robot.model.mass() / kNumLegs);
+    g.damping_nspm = train::spring_damping_nspm(kStiffness_npm, kDampingRatio, robot.model.mass());
   }
   return ground;
 }

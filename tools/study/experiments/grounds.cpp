@@ -9,7 +9,7 @@ namespace {
 void add_turns(Lab& lab, const Model& model, const std::string& ground, double rate_radps,
                Measured& measured) {
   for (const double command : {rate_radps, -rate_radps}) {
-    evaluate::Trial trial = lab.trial(evaluate::Study::preset(ground), {0.0, 0.0, command});
+    evaluate::Trial trial = lab.trial(sim::terrain_preset(ground), {0.0, 0.0, command});
     trial.duration_s = 10.0;
     measured.groups.push_back(turn_group(ground, command, lab.run(model, lab.repeat(trial))));
   }
@@ -22,7 +22,7 @@ Measured run_grounds(Lab& lab, const Model& model) {
   for (const char* ground : {"vinyl", "athletic-track", "grass"}) {
     for (const double command : straight_commands()) {
       // As the paper: 5 m to speed up before the start line.
-      evaluate::Trial trial = lab.trial(evaluate::Study::preset(ground), {command, 0.0, 0.0});
+      evaluate::Trial trial = lab.trial(sim::terrain_preset(ground), {command, 0.0, 0.0});
       trial.duration_s = 6.0;
       trial.longest_s = 40.0;
       trial.track_begin_m = 5.0;
@@ -47,8 +47,8 @@ Measured run_mattress(Lab& lab, const Model& model) {
 
 Measured run_foam(Lab& lab, const Model& model) {
   constexpr double kFoamFrom_m = 2.0, kCommand_mps = 0.5;
-  sim::TerrainDescription ground = evaluate::Study::preset("rigid");
-  ground.patches.push_back({kFoamFrom_m, evaluate::Study::preset("memory-foam").patches[0].ground});
+  sim::TerrainDescription ground = sim::terrain_preset("rigid");
+  ground.patches.push_back({kFoamFrom_m, sim::terrain_preset("memory-foam").patches[0].ground});
   evaluate::Trial trial = lab.trial(ground, {kCommand_mps, 0.0, 0.0});
   trial.duration_s = 12.0;
   trial.ground_changes_at_m = kFoamFrom_m;

@@ -90,7 +90,7 @@ Measured run_hidden_state(Lab& lab, const Model& model) {
   std::vector<std::vector<Ran>> runs;
   Collected all;
   for (const char* ground : kGrounds) {
-    evaluate::Trial trial = lab.trial(evaluate::Study::preset(ground), {1.0, 0.0, 0.0});
+    evaluate::Trial trial = lab.trial(sim::terrain_preset(ground), {1.0, 0.0, 0.0});
     trial.duration_s = 10.0;
     std::vector<evaluate::Trial> trials = lab.repeat(trial);
     trials.resize(std::min(trials.size(), kRuns));

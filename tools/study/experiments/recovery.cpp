@@ -62,7 +62,7 @@ double swing_ratio(const Ran& run, std::size_t at) {
 
 // Dry sand of which one foot will find a looser part, out of reach otherwise.
 sim::TerrainDescription sand_with_loose_patch(double factor) {
-  sim::TerrainDescription ground = evaluate::Study::preset("dry-sand");
+  sim::TerrainDescription ground = sim::terrain_preset("dry-sand");
   sim::GroundParameters loose = ground.patches[0].ground;
   loose.sigma_flat_npm3 *= factor;
   loose.sigma_cone_npm3 *= factor;
@@ -90,8 +90,8 @@ RunGroup loose_stance(Lab& lab, const Model& model, const char* scenario, double
 
 RunGroup transition(Lab& lab, const Model& model, double command) {
   constexpr double kWetFrom_m = 8.0;
-  sim::TerrainDescription ground = evaluate::Study::preset("dry-sand");
-  ground.patches.push_back({kWetFrom_m, evaluate::Study::preset("wet-sand").patches[0].ground});
+  sim::TerrainDescription ground = sim::terrain_preset("dry-sand");
+  ground.patches.push_back({kWetFrom_m, sim::terrain_preset("wet-sand").patches[0].ground});
   evaluate::Trial trial = lab.trial(ground, {command, 0.0, 0.0});
   trial.duration_s = 6.0;
   trial.track_begin_m = 10.0;
