@@ -8,6 +8,7 @@
 #include "estimator/heading.h"
 #include "rt/core/messages.h"
 #include "sim/ground/terrain_description.h"
+#include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::train {
 namespace {
@@ -22,17 +23,11 @@ constexpr double kYawLength_m = 0.5;  // a yaw rate as a speed
 constexpr double kSpringDamping = 0.5, kSpringFriction = 0.8;
 
 // The training's task without what is drawn.
-TaskConfig without_randomness(TaskConfig c) {
-  c.episode.length_s = 1e6;
+TaskConfig without_randomness(const TaskConfig& training) {
+  TaskConfig c = without_variety(training);
   c.episode.reset_joint_rad = c.episode.reset_speed_mps = c.episode.reset_rate_radps = kStart;
   c.episode.reset_tilt_rad = 0.0;
-  c.episode.push_probability = 0.0;
-  c.ground.rigid_envs = c.ground.patchy_envs = 0;
-  const RobotSettings training = c.robot;
-  c.robot = {};
-  c.robot.latency_s = training.latency_s;
-  c.robot.torque_speed_line = training.torque_speed_line;
-  c.robot.rotor_inertia_low = c.robot.rotor_inertia_high = 1.0;
+  c.robot.latency_s = training.robot.latency_s;
   c.noise = {};
   return c;
 }

@@ -14,15 +14,8 @@ constexpr double kFastest_mps = 3.0;
 }  // namespace
 
 train::TaskConfig plain_task(const sim::Robot& robot) {
-  train::TaskConfig c = train::shipped_task_config(robot);
-  c.episode.length_s = kNever;
-  c.episode.push_probability = 0.0;
+  train::TaskConfig c = train::without_variety(train::shipped_task_config(robot));
   c.episode.reset_nominal_share = 0.0;
-  c.ground.rigid_envs = c.ground.patchy_envs = 0;
-  const bool torque_speed_line = c.robot.torque_speed_line;
-  c.robot = {};
-  c.robot.torque_speed_line = torque_speed_line;
-  c.robot.rotor_inertia_low = c.robot.rotor_inertia_high = 1.0;
   c.noise.level_high = c.noise.joint_offset_rad = 0.0;
   return c;
 }

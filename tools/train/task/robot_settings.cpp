@@ -88,4 +88,16 @@ TaskConfig shipped_task_config(const sim::Robot& robot) {
   return read_task_config(tree);
 }
 
+TaskConfig without_variety(TaskConfig config) {
+  constexpr double kNever = 1e6;  // s; longer than any run
+  config.episode.length_s = kNever;
+  config.episode.push_probability = 0.0;
+  config.ground.rigid_envs = config.ground.patchy_envs = 0;
+  const bool torque_speed_line = config.robot.torque_speed_line;
+  config.robot = {};
+  config.robot.torque_speed_line = torque_speed_line;
+  config.robot.rotor_inertia_low = config.robot.rotor_inertia_high = 1.0;
+  return config;
+}
+
 }  // namespace sandrunner::train

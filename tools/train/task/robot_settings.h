@@ -27,4 +27,8 @@ void add_training_layers(ConfigTree& config, const sim::Robot& robot);
 /// What `sandrunner-train` takes for this robot without settings of one's own.
 TaskConfig shipped_task_config(const sim::Robot& robot);
 
+/// The same training with one robot, that of the file, on ground that is not chosen by the number
+/// of the environment, without pushes and without an end but a fall.
+TaskConfig without_variety(TaskConfig config);
+
 }  // namespace sandrunner::train
