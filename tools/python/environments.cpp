@@ -2,20 +2,15 @@
 #include "tools/python/environments.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "rt/base/config_tree.h"
-#include "rt/base/errors.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/train_config.h"
 
 namespace sandrunner::python {
 namespace {
-
-constexpr int kMostEnvs = 1 << 20, kMostThreads = 256;
 
 sim::BatchWidth checked_width(int width) {
   if (width == 0) return sim::best_batch_width();
@@ -29,17 +24,12 @@ sim::BatchWidth checked_width(int width) {
   return static_cast<sim::BatchWidth>(width);
 }
 
-void require_count(const char* name, int found, int most) {
-  if (found >= 1 && found <= most) return;
-  throw InputError(fmt::format("{}: found {}, expected 1 to {}", name, found, most));
-}
-
 }  // namespace
 
 Environments::Settings Environments::read_settings(const EnvironmentsOptions& options,
                                                    const sim::Robot& robot) {
-  require_count("num_envs", options.envs, kMostEnvs);
-  require_count("threads", options.threads, kMostThreads);
+  checked("num_envs", options.envs, 1, kMostRobots);
+  checked("threads", options.threads, 1, kMostThreads);
   ConfigTree tree;
   train::add_training_layers(tree, robot);
   if (!options.config_file.empty()) tree.add_file(options.config_file);
@@ -78,8 +68,7 @@ Environments::Environments(const EnvironmentsOptions& options, const sim::Robot&
       details_(envs_),
       terminated_(static_cast<std::size_t>(envs_)),
       truncated_(terminated_),
-      ended_(terminated_),
-      process_(getpid()) {
+      ended_(terminated_) {
   task_.watch(&details_);
   observe();
 }
@@ -91,7 +80,7 @@ void Environments::observe() {
 }
 
 void Environments::restart(std::uint64_t seed) {
-  require_own_process();
+  process_.require("VectorEnv");
   task_.restart(seed);
   steps_ = 0;
   std::ranges::fill(terminated_, std::uint8_t{0});
@@ -101,16 +90,8 @@ void Environments::restart(std::uint64_t seed) {
   observe();
 }
 
-void Environments::require_own_process() const {
-  if (getpid() == process_) return;
-  throw InputError(
-      "VectorEnv: found a process that was forked after the environments were made, expected the "
-      "one that "
-      "made them: its threads do not live on in a fork");
-}
-
 void Environments::step(const float* actions) {
-  require_own_process();
+  process_.require("VectorEnv");
   const auto count = static_cast<std::size_t>(envs_) * kNumJoints;
   const float* const bad =
       std::find_if_not(actions, actions + count, [](float a) { return std::isfinite(a); });

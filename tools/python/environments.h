@@ -9,6 +9,7 @@
 #include "rt/base/worker_pool.h"
 #include "sim/batch/batch.h"
 #include "sim/robot/robot_model.h"
+#include "tools/python/checks.h"
 #include "tools/train/data/rollout.h"
 #include "tools/train/task/task.h"
 
@@ -82,7 +83,6 @@ class Environments {
   Environments(const EnvironmentsOptions& options, const sim::Robot& robot,
                const Settings& settings);
 
-  void require_own_process() const;
   void observe();
   void step_block(int block, const float* actions);
 
@@ -99,7 +99,7 @@ class Environments {
   bool moves_ = true;
   double transitions_ = 0.0, late_ = 0.0;
   int steps_ = 0;  // of the present window
-  int process_;    // that made the threads: they do not live on in a fork
+  OwnProcess process_;
   std::atomic<bool> busy_ = false;
 };
 

@@ -5,17 +5,10 @@
 
 #include <algorithm>
 
-#include "rt/base/config_tree.h"
-#include "rt/base/errors.h"
-#include "sim/ground/terrain_description.h"
+#include "tools/python/checks.h"
 
 namespace sandrunner::python {
 namespace {
-
-double checked(const char* name, double found, double least, double most) {
-  if (found >= least && found <= most) return found;
-  throw InputError(fmt::format("{}: found {}, expected {} to {}", name, found, least, most));
-}
 
 FootForce force_of(const sim::Terrain<double>& terrain, const sim::FootProfile<double>& foot,
                    const double* position, const double* velocity, double rate_hz,
@@ -45,11 +38,7 @@ Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
   sim::RobotModel<double> model;
   model.foot_radius_m = checked("foot_radius_m", foot_radius_m, 1e-3, 1.0);
   model.foot_width_m = checked("foot_width_m", foot_width_m, 0.0, 1.0);
-  ConfigTree tree;
-  sim::add_terrain_layer(tree, ground, "ground");
-  for (const std::string& setting : settings) tree.set(setting, "settings");
-  const sim::TerrainDescription description = sim::read_terrain(tree);
-  tree.reject_unknown();
+  const sim::TerrainDescription description = read_ground(ground, settings);
   for (const sim::TerrainPatch& patch : description.patches) {
     if (patch.ground.kind == sim::GroundKind::kRigid) {
       throw InputError(fmt::format(

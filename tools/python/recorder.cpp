@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/python/recorder.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 
@@ -11,6 +9,7 @@
 #include "rt/run/robot_scene.h"
 #include "rt/telemetry/view/view_page.h"
 #include "sim/step/ground_truth.h"
+#include "tools/python/checks.h"
 
 namespace sandrunner::python {
 namespace {
@@ -23,16 +22,11 @@ RunScene scene_of(const Environments& environments, int env) {
   return scene;
 }
 
-int checked(const Environments& environments, int env) {
-  if (env >= 0 && env < environments.envs()) return env;
-  throw InputError(fmt::format("env: found {}, expected 0 to {}", env, environments.envs() - 1));
-}
-
 }  // namespace
 
 Recorder::Recorder(Environments& environments, int env)
     : environments_(environments),
-      env_(checked(environments, env)),
+      env_(checked("env", env, 0, environments.envs() - 1)),
       record_{.scene = scene_of(environments, env_)},
       rows_(record_.scene) {}
 

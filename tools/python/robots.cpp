@@ -2,22 +2,18 @@
 #include "tools/python/robots.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "estimator/cost_of_transport.h"
-#include "rt/base/config_tree.h"
-#include "rt/base/errors.h"
-#include "sim/ground/terrain_description.h"
 #include "sim/step/actuator.h"
 
 namespace sandrunner::python {
 namespace {
 
-constexpr int kMostRobots = 1 << 20, kMostTicks = 1'000'000;
+constexpr int kMostTicks = 1'000'000;
 
 template <typename Record>
 void require_finite(const char* what, int robot, const Record& record) {
@@ -26,11 +22,6 @@ void require_finite(const char* what, int robot, const Record& record) {
   if (std::ranges::all_of(values, [](float v) { return std::isfinite(v); })) return;
   throw InputError(
       fmt::format("{}: found a number that is not finite at robot {}, expected none", what, robot));
-}
-
-int checked(const char* name, int found, int most) {
-  if (found >= 1 && found <= most) return found;
-  throw InputError(fmt::format("{}: found {}, expected 1 to {}", name, found, most));
 }
 
 sim::StepSettings settings_at(double step_hz) {
@@ -48,9 +39,8 @@ Robots::Robots(const std::string& robot, int count, const std::string& ground,
                const std::vector<std::string>& settings, double step_hz, int threads)
     : robot_(sim::load_robot(robot)),
       foot_(sim::make_foot_profile({}, robot_.model)),
-      batch_(checked("num_robots", count, kMostRobots), foot_, settings_at(step_hz)),
-      pool_(checked("threads", threads, 256)),
-      process_(getpid()),
+      batch_(checked("num_robots", count, 1, kMostRobots), foot_, settings_at(step_hz)),
+      pool_(checked("threads", threads, 1, kMostThreads)),
       states_(static_cast<std::size_t>(count)),
       drives_(states_.size()),
       reports_(states_.size()),
@@ -67,11 +57,7 @@ Robots::Robots(const std::string& robot, int count, const std::string& ground,
 
 sim::Terrain<float> Robots::make_ground(const std::string& ground,
                                         const std::vector<std::string>& settings) {
-  ConfigTree tree;
-  sim::add_terrain_layer(tree, ground, "ground");
-  for (const std::string& setting : settings) tree.set(setting, "settings");
-  const sim::TerrainDescription description = sim::read_terrain(tree);
-  tree.reject_unknown();
+  const sim::TerrainDescription description = read_ground(ground, settings);
   const sim::TerrainDescription usual;
   if (description.foot_shape != usual.foot_shape ||
       description.hydraulic_factor != usual.hydraulic_factor) {
@@ -148,12 +134,8 @@ void Robots::stand(const std::vector<int>& robots) {
 }
 
 void Robots::advance(int ticks) {
-  checked("ticks", ticks, kMostTicks);
-  if (getpid() != process_) {
-    throw InputError(
-        "Batch: found a process that was forked after the batch was made, expected the one that "
-        "made it: its threads do not live on in a fork");
-  }
+  checked("ticks", ticks, 1, kMostTicks);
+  process_.require("Batch");
   for (int r = 0; r < batch_.size(); ++r) {
     require_finite("drive", r, drives_[static_cast<std::size_t>(r)]);
   }

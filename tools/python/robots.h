@@ -8,6 +8,7 @@
 #include "rt/base/worker_pool.h"
 #include "sim/batch/batch.h"
 #include "sim/robot/robot_model.h"
+#include "tools/python/checks.h"
 
 namespace sandrunner::python {
 
@@ -50,7 +51,7 @@ class Robots {
   sim::FootProfile<double> foot_;
   sim::Batch batch_;
   WorkerPool pool_;
-  int process_;  // that made the threads
+  OwnProcess process_;
   std::vector<sim::RobotState<float>> states_;
   std::vector<sim::BatchDrive<float>> drives_;
   std::vector<sim::BatchReport<float>> reports_;
