@@ -56,8 +56,9 @@ int play_unitree(const Arguments& a, const ProcessConfig& config) {
   for (const std::string& text : a.faults) {
     faults.push_back(read_unitree_fault(text, config.robot.description));
   }
-  UnitreeBench bench(config, std::move(faults), a.walk_s);
+  // First: the threads of DDS take the priority over, or a busy computer loses commands.
   become_real_time();
+  UnitreeBench bench(config, std::move(faults), a.walk_s);
   to_standard_error(
       fmt::format("sandrunner-hil: the robot is there, in domain {} on {}; Ctrl-C "
                   "ends it\n",
