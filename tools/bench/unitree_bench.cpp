@@ -116,12 +116,14 @@ Report run_unitree_bench(const std::string& hardware, int rounds) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, kTerrain);
   tree.add_file(hardware);
+  const std::string kind = tree.text("hardware.kind", "");
+  if (kind != "unitree") {
+    throw InputError(
+        fmt::format("{}: hardware.kind: found '{}', expected 'unitree'", hardware, kind));
+  }
   for (const char* setting : kNetwork) tree.set(setting);
   PolicyRunner policy(load_shipped_policy(shipped_policy_for(tree)));
   const ProcessConfig config = read_process_config(tree, policy.spec());
-  if (!config.unitree) {
-    throw InputError(fmt::format("{}: expected hardware.kind = \"unitree\"", hardware));
-  }
   std::array<std::vector<double>, kShares.size()> with_us, without_us, ratio;
   for (int round = 0; round < rounds; ++round) {
     // Either goes first in turn.
