@@ -116,7 +116,7 @@ Report run_unitree_bench(const std::string& hardware, int rounds) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, kTerrain);
   tree.add_file(hardware);
-  const std::string kind = tree.text("hardware.kind", "");
+  const std::string kind = tree.text("hardware.kind", "can");
   if (kind != "unitree") {
     throw InputError(
         fmt::format("{}: hardware.kind: found '{}', expected 'unitree'", hardware, kind));
