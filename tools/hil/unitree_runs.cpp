@@ -113,7 +113,7 @@ constexpr auto kRuns = std::to_array<UnitreeRun>({
 constexpr int kFaultyJoint = 2;
 constexpr double kOthersWalk_s = 1.0;
 constexpr double kSpeedTolerance = 0.05;
-constexpr double kAfterwards_s = 2.5;  // the wire's damping is over
+constexpr double kSilent_s = 0.3;  // without a command: the wire's damping is over
 constexpr double kMost_s = 90.0;
 constexpr double kQuestion_s = 0.01;
 constexpr double kHeldUp_s = 0.004;
@@ -242,13 +242,12 @@ UnitreeVerdict run_unitree(const UnitreeRun& run, const UnitreePlace& place, int
     command.insert(command.end(), {"--set", assignment});
   }
   ControllerProcess controller(command, dir);
-  double time_s = 0.0, afterwards_s = 0.0;
+  double time_s = 0.0;
   const UnitreeReport report = bench.play(
       [&] {
         time_s += kQuestion_s;
         const bool over = controller.ended() || (run.exit_code < 0 && bench.all_faults_made());
-        if (over) afterwards_s += kQuestion_s;
-        return afterwards_s < kAfterwards_s && time_s < kMost_s;
+        return !(over && bench.silent_s() >= kSilent_s) && time_s < kMost_s;
       },
       controller.pid());
   write_file(dir + "/bench.json", unitree_report_json(report));
