@@ -199,7 +199,8 @@ int run(int argc, char** argv) {
   unitree_runs_command->add_option("--out", u.out_dir, "folder for a folder of each run")
       ->required();
   unitree_runs_command->add_option("--terrain", u.terrain, "ground");
-  unitree_runs_command->add_option("--speed", u.speed_mps, "m/s of the walk, kept to 5 %");
+  unitree_runs_command->add_option("--speed", u.speed_mps,
+                                   "m/s commanded to walk; kept to 5 % as in process");
   unitree_runs_command->add_option("--walk", u.walk_s, "s of the walk");
   unitree_runs_command->add_option("--set", u.assignments, "one setting, for both; may be repeated")
       ->allow_extra_args(false);
