@@ -33,7 +33,8 @@ constexpr const char* kTerrain = "dry-sand";
 constexpr const char* kNetwork[] = {"hardware.unitree.interface=lo", "hardware.unitree.domain=75"};
 constexpr std::array kShares = {0.5, 0.99, 0.999};
 constexpr std::array kNames = {"p50", "p99", "p999"};
-using Ticks_us = std::array<double, kShares.size()>;
+/// Of the whole tick, at kShares, us.
+using TickTimes = std::array<double, kShares.size()>;
 
 /// `sandrunner-hil`, the program beside this one; killed with this object.
 class EmulatedRobot {
@@ -69,7 +70,7 @@ struct DidNotWalk : std::runtime_error {
 };
 
 /// Stands up, walks and lies down. Throws DidNotWalk.
-Ticks_us ticks_of(RobotIo& robot, const ProcessConfig& config, PolicyRunner& policy) {
+TickTimes ticks_of(RobotIo& robot, const ProcessConfig& config, PolicyRunner& policy) {
   const CommandSource command("0.5,0,0");
   RunScript script(command, {.walk_s = kWalk_s}, true);
   SystemClock clock;
@@ -79,7 +80,7 @@ Ticks_us ticks_of(RobotIo& robot, const ProcessConfig& config, PolicyRunner& pol
   if (script.fall_reason() != nullptr) {
     throw DidNotWalk(fmt::format("the robot did not walk: {}", script.fall_reason()));
   }
-  Ticks_us ticks_us;
+  TickTimes ticks_us;
   for (std::size_t i = 0; i < kShares.size(); ++i) {
     ticks_us[i] = 1e-3 * static_cast<double>(end.report.control.busy.quantile_ns(kShares[i]));
   }
@@ -88,7 +89,7 @@ Ticks_us ticks_of(RobotIo& robot, const ProcessConfig& config, PolicyRunner& pol
 
 /// A computer that was held up for some ms has stopped the robot: once more.
 template <typename Run>
-Ticks_us try_again(const Run& run) {
+TickTimes try_again(const Run& run) {
   for (int left = kTries; --left > 0;) {
     try {
       return run();
@@ -98,14 +99,14 @@ Ticks_us try_again(const Run& run) {
   return run();
 }
 
-Ticks_us over_dds(const std::string& hardware, const ProcessConfig& config, PolicyRunner& policy) {
+TickTimes over_dds(const std::string& hardware, const ProcessConfig& config, PolicyRunner& policy) {
   config.driver->fork_processes();
   const EmulatedRobot emulated(hardware);
   const std::unique_ptr<RobotIo> robot = config.driver->connect();
   return ticks_of(*robot, config, policy);
 }
 
-Ticks_us without_dds(const ProcessConfig& config, PolicyRunner& policy) {
+TickTimes without_dds(const ProcessConfig& config, PolicyRunner& policy) {
   SimulatorBeside robot(config.robot, config.simulator, kRobotPriority);
   return ticks_of(robot, config, policy);
 }
@@ -127,7 +128,7 @@ Report run_unitree_bench(const std::string& hardware, int rounds) {
   std::array<std::vector<double>, kShares.size()> with_us, without_us, ratio;
   for (int round = 0; round < rounds; ++round) {
     // Either goes first in turn.
-    Ticks_us with, without;
+    TickTimes with, without;
     const auto run_with = [&] {
       with = try_again([&] { return over_dds(hardware, config, policy); });
     };
