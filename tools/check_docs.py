@@ -200,9 +200,10 @@ def run_blocks(tree, documents, programs):
         for number, info, lines in document.blocks:
             if info.split()[1:] != ['tested']:
                 continue
-            script = '\n'.join(lines).replace('build/release/bin', str(programs))
             with tempfile.TemporaryDirectory() as home:
-                script = script.replace('/tmp/', home + '/')
+                # In this order: the programs may lie in /tmp themselves.
+                script = '\n'.join(lines).replace('/tmp/', home + '/')
+                script = script.replace('build/release/bin', str(programs))
                 try:
                     done = subprocess.run(['bash', '-euo', 'pipefail', '-c', script], cwd=tree,
                                           env={**os.environ, 'HOME': home}, timeout=120,

@@ -73,6 +73,14 @@ class CheckDocsTest(unittest.TestCase):
         self.assertIn("exit code 3", run("exit 3"))
         self.assertIn('without "b"', run("echo a  # prints b"))
 
+    def test_a_block_runs_the_programs_of_the_folder_that_is_given(self):
+        block = "```sh tested\nbuild/release/bin/sandrunner  # prints walks\n```\n"
+        with tempfile.TemporaryDirectory(dir="/tmp") as bin_:
+            file = pathlib.Path(bin_, "sandrunner")
+            file.write_text("#!/bin/sh\necho walks\n")
+            file.chmod(0o755)
+            self.assertEqual(findings({"README.md": block}, "--run", bin_), "")
+
     def test_a_subject_of_more_than_72_characters_is_too_long(self):
         self.assertEqual(findings({}, "--commits", "HEAD^", subject="a" * 72), "")
         self.assertIn("73 characters", findings({}, "--commits", "HEAD^", subject="a" * 73))
