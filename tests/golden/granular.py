@@ -90,7 +90,7 @@ def static_rows(tyre):
 
 def drop(tyre, place, height, inertia, filtered, dt):
     """Greatest depth and force, and the force's standard deviation over the last of 2 s, of 5 kg that fall on the foot,
-    let go with its centre at `height`. Semi-implicit Euler; the added mass takes the acceleration as the backward
+    released with its centre at `height`. Semi-implicit Euler; the added mass takes the acceleration as the backward
     difference of the velocity."""
     depths = np.linspace(0.0, 0.2, 20001)
     quasistatic = tyre.force(depths, place)

@@ -73,7 +73,7 @@ if [[ ! -e $kernel/vmlinux ]]; then
   number() { od -An "-tu$2" "-j$1" "-N$2" "$image"; }
   dd if="$image" bs=1M iflag=skip_bytes,count_bytes skip=$((($(number 497 1) + 1) * 512 + $(number 584 4))) \
     count=$(($(number 588 4) - 4)) status=none | xz -dc >"$new/vmlinux"
-  mv -T "$new" "$kernel" 2>/dev/null || true # somebody else was quicker
+  mv -T "$new" "$kernel" 2>/dev/null || true # another call was quicker
   trap - EXIT
 fi
 
