@@ -141,7 +141,7 @@ def sentences(documents):
         for number, text in paragraphs(document):
             text = re.sub(r'`[^`]*`', 'code', text)
             text = re.sub(r'\[([^\]]*)\]\([^)]*\)', r'\1', text)
-            for sentence in re.split(r'(?<=[.!?:;])[)*"]*\s+', text):
+            for sentence in re.split(r'(?<=[.!?])[)*"]*\s+', text):
                 words = len(re.findall(r'[A-Za-z]\S*', sentence))
                 if words > WORDS_IN_SENTENCE:
                     yield (document.path, number, f'found a sentence of {words} words, expected at '

@@ -52,6 +52,7 @@ class CheckDocsTest(unittest.TestCase):
         text = "\n".join(["a b c d e f g h i j"] * 3)
         self.assertEqual(findings({"README.md": text + ".\nShort.\n"}), "")
         self.assertIn("a sentence of 31 words", findings({"README.md": text + " k.\n"}))
+        self.assertIn("a sentence of 31 words", findings({"README.md": text.replace("j", "j;") + " k.\n"}))
 
     def test_words_that_have_a_plainer_one_are_named(self):
         said = findings({"README.md": "The price.\n`price`\n", "rt/core/a.h": "int somebody = 0;  // somebody\n"})
