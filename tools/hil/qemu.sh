@@ -149,5 +149,5 @@ if [[ -n $out ]]; then
   tar -x -C "$out" -f "$work/out.tar" 2>/dev/null || true
 fi
 ((status % 2 == 1 && status < 254)) && exit $((status / 2))
-echo "qemu.sh: the guest did not report within $limit s (QEMU's exit code $status)" >&2
+echo "qemu.sh: the guest did not report within $limit s (QEMU's exit code $status); --limit S gives it more" >&2
 exit 125
