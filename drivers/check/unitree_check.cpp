@@ -14,6 +14,7 @@
 namespace sandrunner {
 namespace {
 
+constexpr double kAtStop_rad = 0.01;  // a robot that lies rests its knees on their stops
 constexpr std::int64_t kPicture_ns = 100'000'000;
 constexpr std::int64_t kReaderTime_ns = 1'000'000'000;
 constexpr double kSwitcherTime_s = 1.0;
@@ -78,7 +79,7 @@ std::string unitree_state_table(const UnitreeConfig& config, const unitree::Robo
                                  "rad", "stops, rad", "degC", "mode", "lost");
   for (int j = 0; j < kNumJoints; ++j) {
     const double q = state.position_rad[j];
-    const bool past = q < robot.lower_rad[j] || q > robot.upper_rad[j];
+    const bool past = q < robot.lower_rad[j] - kAtStop_rad || q > robot.upper_rad[j] + kAtStop_rad;
     text += fmt::format("{:<16}{:>5}{:>10.3f}{:>9.3f}{:>9.3f}{:>7}{:>6}{:>6}{}{}\n",
                         robot.joint_names[j], unitree::motor_of(j), q, robot.lower_rad[j],
                         robot.upper_rad[j], state.temperature_degc[j], state.mode[j], state.lost[j],

@@ -15,6 +15,7 @@
 #include "tools/bench/learner_bench.h"
 #include "tools/bench/policy_bench.h"
 #include "tools/bench/realtime_bench.h"
+#include "tools/bench/unitree_bench.h"
 
 namespace sandrunner {
 namespace {
@@ -23,7 +24,7 @@ int run(int argc, char** argv) {
   CLI::App app("Measures how fast sandrunner is on this machine.", "sandrunner-bench");
   app.require_subcommand(1);
 
-  std::string json_path;
+  std::string json_path, hardware;
   int rounds = 11;
   CLI::App* batch = app.add_subcommand(
       "batch", "steps per second of robots trotting on sand, against MuJoCo in the same run");
@@ -35,7 +36,13 @@ int run(int argc, char** argv) {
       "rt",
       "wake-up of the control thread against cyclictest, policy step against Eigen and a read "
       "floor, exchange between threads against a mutex");
-  for (CLI::App* command : {batch, contact, learner, rt}) {
+  CLI::App* unitree = app.add_subcommand(
+      "unitree", "tick of the control thread of a Unitree robot over DDS, against one without DDS");
+  unitree
+      ->add_option("--hardware", hardware, "file of kind unitree; its interface is taken to be lo")
+      ->type_name("FILE")
+      ->required();
+  for (CLI::App* command : {batch, contact, learner, rt, unitree}) {
     command->add_option("--json", json_path, "file for the figures")->type_name("FILE");
     command->add_option("--rounds", rounds, "interleaved rounds")
         ->check(CLI::Range(1, 10000))
@@ -58,6 +65,7 @@ int run(int argc, char** argv) {
     bench::run_handover_bench(rounds, report);
     bench::run_wakeup_bench(rounds, report);
   }
+  if (unitree->parsed()) report = bench::run_unitree_bench(hardware, rounds);
   print(report);
   if (file) {
     file->write(to_json(report));

@@ -56,8 +56,9 @@ int play_unitree(const Arguments& a, const ProcessConfig& config) {
   for (const std::string& text : a.faults) {
     faults.push_back(read_unitree_fault(text, config.robot.description));
   }
-  UnitreeBench bench(config, std::move(faults), a.walk_s);
+  // First: the threads of DDS take the priority over, or a busy computer loses commands.
   become_real_time();
+  UnitreeBench bench(config, std::move(faults), a.walk_s);
   to_standard_error(
       fmt::format("sandrunner-hil: the robot is there, in domain {} on {}; Ctrl-C "
                   "ends it\n",
@@ -198,7 +199,8 @@ int run(int argc, char** argv) {
   unitree_runs_command->add_option("--out", u.out_dir, "folder for a folder of each run")
       ->required();
   unitree_runs_command->add_option("--terrain", u.terrain, "ground");
-  unitree_runs_command->add_option("--speed", u.speed_mps, "m/s of the walk, kept to 5 %");
+  unitree_runs_command->add_option("--speed", u.speed_mps,
+                                   "m/s commanded to walk; kept to 5 % as in process");
   unitree_runs_command->add_option("--walk", u.walk_s, "s of the walk");
   unitree_runs_command->add_option("--set", u.assignments, "one setting, for both; may be repeated")
       ->allow_extra_args(false);

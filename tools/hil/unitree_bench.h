@@ -51,6 +51,8 @@ class UnitreeBench {
   /// that faults kill or stop; 0: none.
   UnitreeReport play(const std::function<bool()>& more, pid_t controller = 0);
   bool all_faults_made() const noexcept { return made_ == script_.size(); }
+  /// Since the last command that the robot follows.
+  double silent_s() const noexcept { return now_s() - commanded_s_; }
 
  private:
   struct Drive {

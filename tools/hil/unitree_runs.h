@@ -37,7 +37,7 @@ struct UnitreePlace {
   std::string hardware;  ///< file of kind "unitree"
   std::string out_dir;   ///< gets a folder for each run
   std::string terrain = "dry-sand";
-  double speed_mps = 1.0;                ///< forward
+  double speed_mps = 1.0;                ///< commanded, forward
   double walk_s = 20.0;                  ///< of the run in which nothing goes wrong; of others 1 s
   std::vector<std::string> assignments;  ///< of --set, for both
 };

@@ -9,6 +9,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 class UnitreeCheckTest : public testing::Test {
  protected:
@@ -50,6 +51,8 @@ TEST_F(UnitreeCheckTest, ARobotThatIsWellHasNoProblem) {
 }
 
 TEST_F(UnitreeCheckTest, AKneeAtItsStopIsWellAndOneFarPastItIsNot) {
+  findings_.states.state.position_rad[2] = -2.703;
+  EXPECT_THAT(unitree_check_report(config_, robot_, findings_), Not(HasSubstr("past its stop")));
   findings_.states.state.position_rad[2] = -2.75;
   EXPECT_THAT(problems(), IsEmpty());
   EXPECT_THAT(unitree_check_report(config_, robot_, findings_), HasSubstr("past its stop"));

@@ -42,6 +42,16 @@ TEST(ShippedPolicyTest, StandsAgainWhereItWentBackwardsOnTheSoftestSand) {
   EXPECT_TRUE(result.survived) << result.fall_reason;
 }
 
+TEST(ShippedPolicyTest, Go2StandsAgainWhereverInItsStrideAWalkEnds) {
+  // It steps on the spot under a command of zero, until Stand takes over.
+  PolicyRunner policy(load_shipped_policy("go2"));
+  const ProcessConfig config = config_of("dry-sand", {"robot=go2"}, policy.spec());
+  for (const double walk_s : {1.2, 1.3, 1.4, 2.0}) {
+    const RunResult result = run_once(config, policy, {.walk_s = walk_s});
+    EXPECT_TRUE(result.survived) << walk_s << " s: " << result.fall_reason;
+  }
+}
+
 TEST(ShippedPolicyTest, StandsForAMinuteAfterAWalkThatLeftItsFeetInTheSand) {
   // By 30 N m of hip abduction at first, where 28 for long are an overload.
   PolicyRunner policy(load_shipped_policy());

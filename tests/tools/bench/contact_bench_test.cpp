@@ -130,6 +130,7 @@ TEST(ContactBenchTest, ProgramRefusesBadInput) {
   EXPECT_EQ(exit_code("contact --json " + testing::TempDir()), 2);
   EXPECT_EQ(exit_code("contact --drops 5"), 2);
   EXPECT_EQ(exit_code("learner --rounds 0"), 2);
+  EXPECT_EQ(exit_code("unitree --hardware " SANDRUNNER_CAN_EXAMPLE), 2);
 }
 
 }  // namespace

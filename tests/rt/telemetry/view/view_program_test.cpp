@@ -45,9 +45,11 @@ Json figures(const std::string& file) {
   return json;
 }
 
-TEST(ViewProgramTest, ARunThatIsLookedAtHeldAndSteppedIsTheSameToTheBit) {
+class ViewedRobotTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(ViewedRobotTest, ARunThatIsLookedAtHeldAndSteppedIsTheSameToTheBit) {
   const TemporaryFolder folder;
-  const std::string run = "--start walk --duration 1 --out ";
+  const std::string run = "--robot " + GetParam() + " --start walk --duration 1 --out ";
   ASSERT_EQ(run_shell(SANDRUNNER_PROGRAM " " + run + folder.path("plain")).code, 0);
   ChildProcess program(
       viewed(run + folder.path("viewed") + " --set view.port=0", folder.path("errors")));
@@ -68,6 +70,9 @@ TEST(ViewProgramTest, ARunThatIsLookedAtHeldAndSteppedIsTheSameToTheBit) {
             figures(folder.path("plain/summary.json")));
   EXPECT_EQ(read_file(folder.path("viewed/run.csv")), read_file(folder.path("plain/run.csv")));
 }
+
+INSTANTIATE_TEST_SUITE_P(Robot, ViewedRobotTest, testing::Values("raibo", "go2"),
+                         [](const auto& param_info) { return param_info.param; });
 
 TEST(ViewProgramTest, ARunThatIsTouchedIsRecordedWithWhatWasDoneToItAndReplays) {
   const TemporaryFolder folder;
