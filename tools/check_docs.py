@@ -141,7 +141,7 @@ def sentences(documents):
         for number, text in paragraphs(document):
             text = re.sub(r'`[^`]*`', 'code', text)
             text = re.sub(r'\[([^\]]*)\]\([^)]*\)', r'\1', text)
-            for sentence in re.split(r'(?<=[.!?:;])[)*"]*\s+', text):
+            for sentence in re.split(r'(?<=[.!?])[)*"]*\s+', text):
                 words = len(re.findall(r'[A-Za-z]\S*', sentence))
                 if words > WORDS_IN_SENTENCE:
                     yield (document.path, number, f'found a sentence of {words} words, expected at '
@@ -200,9 +200,10 @@ def run_blocks(tree, documents, programs):
         for number, info, lines in document.blocks:
             if info.split()[1:] != ['tested']:
                 continue
-            script = '\n'.join(lines).replace('build/release/bin', str(programs))
             with tempfile.TemporaryDirectory() as home:
-                script = script.replace('/tmp/', home + '/')
+                # In this order: the programs may lie in /tmp themselves.
+                script = '\n'.join(lines).replace('/tmp/', home + '/')
+                script = script.replace('build/release/bin', str(programs))
                 try:
                     done = subprocess.run(['bash', '-euo', 'pipefail', '-c', script], cwd=tree,
                                           env={**os.environ, 'HOME': home}, timeout=120,

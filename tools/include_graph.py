@@ -4,6 +4,7 @@
 each, if an include points up or to a sibling, if files include each other in a circle, or if what has to know no
 simulator reaches one, by whatever way."""
 
+import argparse
 import fnmatch
 import graphlib
 import pathlib
@@ -99,7 +100,10 @@ def mistakes(includes):
 
 
 def main():
-    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("root", metavar="ROOT", nargs="?", type=pathlib.Path,
+                        default=pathlib.Path(__file__).parent.parent)
+    root = parser.parse_args().root
     includes = read_includes(root)
     for layer in layers(includes):
         for name in layer:

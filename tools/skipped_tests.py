@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """skipped_tests.py RESULTS: the tests that did not run according to ctest's JUnit file, by the reason that each printed."""
+import argparse
 import re
-import sys
 import textwrap
 import xml.etree.ElementTree as xml
 
@@ -9,8 +9,10 @@ import xml.etree.ElementTree as xml
 # REASON".
 REASON = re.compile(r"^\S+:\d+: Skipped\n(.+)|skipped: (.+)", re.MULTILINE | re.IGNORECASE)
 
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("results", metavar="RESULTS")
 tests = {}
-for case in xml.parse(sys.argv[1]).iter("testcase"):
+for case in xml.parse(parser.parse_args().results).iter("testcase"):
     if case.get("status") == "notrun":
         found = REASON.search(case.findtext("system-out") or "")
         reason = (found[1] or found[2]) if found else "it printed no reason"

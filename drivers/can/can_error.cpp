@@ -34,7 +34,7 @@ const char* words(const CanError& error) noexcept {
   if (error.bus_off) return "bus-off";
   if (error.restarted) return "restarted after bus-off";
   if (error.transceiver) return "transceiver fault";
-  if (error.no_acknowledge) return "nobody acknowledges";
+  if (error.no_acknowledge) return "no node acknowledges";
   if (error.error_passive) return "error passive";
   if (error.send_timeout) return "send timeout";
   if (error.receive_overflow) return "receive overflow";

@@ -40,7 +40,7 @@ class Check {
     if (task_.nudge && !config_.hanging) {
       throw InputError(
           "check --nudge: hardware.hanging is false, expected true: hang the robot so that every "
-          "joint is free, and nobody within reach; then add --set hardware.hanging=true");
+          "joint is free, and no person within reach; then add --set hardware.hanging=true");
     }
     judge_plan();
     open_buses();
@@ -99,7 +99,7 @@ class Check {
       look.exchange();
       trace.push_back(look.position_rad());
       if (const auto line = lines_.next()) return *line;
-      if (lines_.ended()) throw InputError("standard input has ended: nobody answers");
+      if (lines_.ended()) throw InputError("standard input: found its end, expected an answer");
     }
   }
 
@@ -184,8 +184,8 @@ class Check {
     if (!may_be_powered()) return;
     to_standard_error(
         "\nEach drive will push its joint a little, by about 0.1 rad. The robot hangs, every joint "
-        "is "
-        "free, nobody is within reach.\nIf another joint moves than the one that is named, or "
+        "is free, no person is within reach.\nIf another joint moves than the one that is named, "
+        "or "
         "another way: press Enter at once, it stops. Enter begins (s and Enter skips it)\n");
     DriveLook look(config_, sockets_);
     JointTrace ignored;

@@ -56,9 +56,9 @@ std::vector<std::string> unitree_check_problems(const UnitreeConfig& config,
   std::vector<std::string> problems =
       unitree::state_problems(config, robot, f.states, f.wrong_state_type);
   if (!f.commands_are_read) {
-    problems.push_back(fmt::format(
-        "{}: found {}, expected the robot", unitree::kCommandTopic,
-        f.wrong_command_type ? "a reader of another type" : "nobody who reads commands"));
+    problems.push_back(
+        fmt::format("{}: found {}, expected the robot", unitree::kCommandTopic,
+                    f.wrong_command_type ? "a reader of another type" : "no reader of commands"));
   }
   // While sport mode is on, it commands the robot itself.
   if (f.foreign_commands > 0 && f.mode && f.mode->empty()) {
@@ -67,8 +67,8 @@ std::vector<std::string> unitree_check_problems(const UnitreeConfig& config,
   }
   if (!f.mode && config.release_sport_mode) {
     problems.emplace_back(
-        "motion_switcher: found no answer, expected firmware 1.0.24 or later; if somebody has "
-        "switched sport mode off: hardware.unitree.release_sport_mode=false");
+        "motion_switcher: found no answer, expected firmware 1.0.24 or later; if sport "
+        "mode is off already: hardware.unitree.release_sport_mode=false");
   }
   return problems;
 }

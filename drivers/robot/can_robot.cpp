@@ -217,7 +217,7 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
     lines += fmt::format("{}: {} frames sent, {} received", config.buses[b].interface, c.sent,
                          c.received);
     if (c.not_sent > 0) lines += fmt::format(", {} NOT SENT ({})", c.not_sent, words(c.refusal));
-    if (c.foreign > 0) lines += fmt::format(", {} of nobody", c.foreign);
+    if (c.foreign > 0) lines += fmt::format(", {} not from these drives", c.foreign);
     if (c.overflowed > 0) lines += fmt::format(", {} LOST in the kernel", c.overflowed);
     if (c.bus_off > 0) lines += fmt::format(", BUS OFF {} times", c.bus_off);
     if (c.errors > 0) lines += fmt::format(", {} error frames", c.errors);

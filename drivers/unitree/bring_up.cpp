@@ -45,9 +45,8 @@ std::string active_mode(RobotLink& link) {
                                           [&] { link.wait(after_s(0.01)); });
   if (!answer) {
     fail(
-        "the robot's service motion_switcher does not answer: found nobody who says whether sport "
-        "mode is on, expected firmware 1.0.24 or later; if somebody has switched it off: "
-        "hardware.unitree.release_sport_mode=false");
+        "motion_switcher: found no answer on whether sport mode is on, expected firmware 1.0.24 or "
+        "later; if sport mode is off already: hardware.unitree.release_sport_mode=false");
   }
   const auto name = mode_name(answer->data);
   if (answer->code != 0 || !name) {
@@ -207,7 +206,7 @@ void bring_up(RobotLink& link, const UnitreeConfig& config, const RobotFigures& 
                     "its name, expected that of a Go2",
                     kCommandTopic));
   }
-  fail(fmt::format("{}: found nobody who reads commands, expected the robot", kCommandTopic));
+  fail(fmt::format("{}: found no reader of commands, expected the robot", kCommandTopic));
 }
 
 }  // namespace sandrunner::unitree

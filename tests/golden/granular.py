@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes cone.csv, static_depth.csv and drop.csv beside this script. Needs numpy (Debian: python3-numpy).
+"""Writes cone.csv, static_depth.csv and drop.csv next to this script. Needs numpy (Debian: python3-numpy).
 
 The granular law of one foot, written from its equations and sharing nothing with the simulator: Aguilar & Goldman's
 developing cone as the paper generalises it (section S11), gated by the greatest depth so far, and the moving average of
 the normal force (eq. S16). Constants are those of the paper's authors' code, whose foot is a tyre lying on its side with
 r_h = 4 A/P. Depth z positive down, SI units; stress gradients in MN/m^3.
 """
+import argparse
 import pathlib
 
 import numpy as np
+
+argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
 
 FOLDER = pathlib.Path(__file__).parent
 NU, THETA = 2.0, np.pi / 3.0  # recruitment rate, angle of the cone's side
@@ -87,7 +90,7 @@ def static_rows(tyre):
 
 def drop(tyre, place, height, inertia, filtered, dt):
     """Greatest depth and force, and the force's standard deviation over the last of 2 s, of 5 kg that fall on the foot,
-    let go with its centre at `height`. Semi-implicit Euler; the added mass takes the acceleration as the backward
+    released with its centre at `height`. Semi-implicit Euler; the added mass takes the acceleration as the backward
     difference of the velocity."""
     depths = np.linspace(0.0, 0.2, 20001)
     quasistatic = tyre.force(depths, place)

@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes random_network.safetensors and random_network.csv beside this script. Needs numpy (Debian: python3-numpy).
+"""Writes random_network.safetensors and random_network.csv next to this script. Needs numpy (Debian: python3-numpy).
 
 A network of random weights in the layout of policy/README.md without golden example and metadata, and 50 consecutive
 steps of it from zero memory, computed in double precision from the formulas there (paper, "Controller structure") by
 code that shares nothing with the project's. A row: number of the step, raw observation (33), output of the LSTM (64),
 estimate before scaling (8), estimate in physical units (8), action before scaling (12).
 """
+import argparse
 import json
 import pathlib
 import struct
 
 import numpy as np
+
+argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
 
 STEPS = 50
 FOLDER = pathlib.Path(__file__).parent

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes rft.csv beside this script: stresses of resistive force theory on a plate, per zeta (plane) or xi (space) and
+"""Writes rft.csv next to this script: stresses of resistive force theory on a plate, per zeta (plane) or xi (space) and
 depth, at tilts beta and directions of motion gamma below the horizontal, toward +x. x along the motion, z up.
 
 Plane: C. Li, T. Zhang, D. Goldman, Science 339 (2013), generic coefficients. Space: S. Agarwal, D. Goldman, K. Kamrin,
 PNAS 120 (2023), polynomials in x1 = sin g, x2 = cos b, x3 = cos psi cos g sin b + sin g cos b; here psi = 0.
 """
+import argparse
 import pathlib
 from math import cos, pi, sin
+
+argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
 
 
 def plane(b, g):

@@ -52,6 +52,7 @@ class CheckDocsTest(unittest.TestCase):
         text = "\n".join(["a b c d e f g h i j"] * 3)
         self.assertEqual(findings({"README.md": text + ".\nShort.\n"}), "")
         self.assertIn("a sentence of 31 words", findings({"README.md": text + " k.\n"}))
+        self.assertIn("a sentence of 31 words", findings({"README.md": text.replace("j", "j;") + " k.\n"}))
 
     def test_words_that_have_a_plainer_one_are_named(self):
         said = findings({"README.md": "The price.\n`price`\n", "rt/core/a.h": "int somebody = 0;  // somebody\n"})
@@ -72,6 +73,14 @@ class CheckDocsTest(unittest.TestCase):
         self.assertEqual(run("echo a  b > /tmp/x; cat /tmp/x  # prints a b"), "")
         self.assertIn("exit code 3", run("exit 3"))
         self.assertIn('without "b"', run("echo a  # prints b"))
+
+    def test_a_block_runs_the_programs_of_the_folder_that_is_given(self):
+        block = "```sh tested\nbuild/release/bin/sandrunner  # prints walks\n```\n"
+        with tempfile.TemporaryDirectory(dir="/tmp") as bin_:
+            file = pathlib.Path(bin_, "sandrunner")
+            file.write_text("#!/bin/sh\necho walks\n")
+            file.chmod(0o755)
+            self.assertEqual(findings({"README.md": block}, "--run", bin_), "")
 
     def test_a_subject_of_more_than_72_characters_is_too_long(self):
         self.assertEqual(findings({}, "--commits", "HEAD^", subject="a" * 72), "")

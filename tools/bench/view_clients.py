@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """tools/bench/view_clients.py [--rounds N] [--seconds S] [SANDRUNNER]: what clients of --view cost a run in real time.
 
-Runs the robot in real time in turn without a client and with four: two that read, one that is stopped (SIGSTOP) and
-one that reads a byte a second. Prints a line for each run and the medians. Exit code 1: the clients are noticed. That is:
-ticks skipped or records dropped more often than without, start lateness (p99, p99.9) or tick (p99) longer by more than 5 %,
-more than 2 % of a core a client for the server's thread, or 16 MB more memory. For a computer that does nothing else. Clients,
-which look from other computers, run on any processor but the last, which the control thread has."""
+Runs the robot in real time, alternately without a client and with four: two that read, one that is stopped (SIGSTOP)
+and one that reads a byte a second. Prints a line for each run and the medians. Exit code 1: the clients have a measurable
+effect. That is one of these: more ticks skipped or records dropped than without, start lateness (p99, p99.9) or tick (p99)
+longer by more than 5 %, more than 2 % of a core per client for the server's thread, 16 MB more memory. Run it on an idle
+computer. The clients stand for those on other computers: they run on any processor but the last, which the control thread
+has."""
 
 import argparse
 import json
@@ -134,7 +135,7 @@ def main():
                if with_four[i] > (without[i] if i < 2 else
                                   SLOWER * without[i] if i < 5 else
                                   without[i] + (len(KINDS) * CORE_PERCENT_A_CLIENT if i == 5 else MORE_MB))]
-    print(f"NOTICED: {'; '.join(noticed)}" if noticed else "the clients are not noticed")
+    print(f"MEASURABLE EFFECT: {'; '.join(noticed)}" if noticed else "the clients have no measurable effect")
     return 1 if noticed else 0
 
 

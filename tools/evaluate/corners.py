@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/evaluate/corners.py POLICY: holds a policy's own envelope against falls. From each of its corners to each other
-as a step and back, through the whole controller (sandrunner), on every preset and on sand of 1/0.15 MN/m^3, from the
-nominal pose, disturbed starts and after standing up. Prints runs and falls for each ground and corner, and of each fall
-how it came and how it is repeated; ends with 1 if there was one. The envelope is that of the policy file
-(sandrunner-policy envelope)."""
+"""tools/evaluate/corners.py POLICY: tests a policy's own envelope for falls. Each run steps from one corner of the
+envelope to another and back, through the whole controller (sandrunner). The grounds are every preset and sand of 1/0.15
+MN/m^3; the robot starts in the nominal pose, disturbed, or by standing up. Prints runs and falls for each ground and
+corner, and for each fall how it happened and how to repeat it. Exit code 1: a run fell. The envelope is that of the
+policy file (sandrunner-policy envelope)."""
 
 import argparse
 import collections
@@ -74,7 +74,7 @@ def main():
     parser.add_argument('policy', type=pathlib.Path)
     parser.add_argument('--robot', help='raibo, go2 or a robot file (default: raibo)')
     parser.add_argument('--bin', type=pathlib.Path, default=TREE / 'build/release/bin', help='folder of the programs')
-    parser.add_argument('--runs', type=int, help='so many of them, drawn by chance (default: all 3,822)')
+    parser.add_argument('--runs', type=int, help='number of runs, drawn at random (default: all 3,822)')
     options = parser.parse_args()
     commands = corners(*envelope(options.policy))
     jobs = [(ground, start, first, second) for ground in GROUNDS for start in STARTS

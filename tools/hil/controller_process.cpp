@@ -33,6 +33,9 @@ void see_stopped_thread(int options) {
 
 ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
                                      const std::string& folder) {
+  // A path is one from here, not from the folder; a name is looked for in PATH.
+  const bool is_path = command[0].find('/') != std::string::npos;
+  const std::string program = is_path ? std::filesystem::absolute(command[0]).string() : command[0];
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
@@ -50,7 +53,8 @@ ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
   posix_spawnattr_setschedpolicy(&attributes, SCHED_OTHER);
   posix_spawnattr_setschedparam(&attributes, &ordinary);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSCHEDULER);
-  const int error = posix_spawnp(&pid_, words[0], &files, &attributes, words.data(), environ);
+  const int error =
+      posix_spawnp(&pid_, program.c_str(), &files, &attributes, words.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) {

@@ -12,7 +12,9 @@ namespace sandrunner::hil {
 /// The controller as a process of its own.
 class ControllerProcess {
  public:
-  /// Starts it in `folder`; what it prints goes into log.txt there. Throws InputError.
+  /// Starts it in `folder`. A program with a slash in its name is a path from the caller's own
+  /// folder, one without is looked for in PATH. What it prints goes into log.txt in `folder`.
+  /// Throws InputError.
   ControllerProcess(const std::vector<std::string>& command, const std::string& folder);
   /// Kills it if it still runs.
   ~ControllerProcess();

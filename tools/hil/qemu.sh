@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/hil/qemu.sh [--parallel] [--out DIR] [--limit S] [--bin DIR] COMMAND: boots Debian's
-# PREEMPT_RT kernel in QEMU with real SocketCAN (can0 to can3, CAN FD; vcan0, vcan1), runs the shell
-# command in it, and ends with its exit code. sandrunner, sandrunner-hil and the programs of
-# build/release/bin that the command names are in the guest's path; it runs in /hil, where the files
-# of drivers/robot/examples lie. What it leaves in /out is brought to DIR.
+# tools/hil/qemu.sh [--parallel] [--file FILE] [--out DIR] [--limit S] [--bin DIR] COMMAND: boots
+# Debian's PREEMPT_RT kernel in QEMU with real SocketCAN (can0 to can3, CAN FD; vcan0, vcan1), runs
+# the shell command in it, and ends with its exit code. sandrunner, sandrunner-hil and the programs
+# of build/release/bin that the command names are in the guest's path. The command runs in /hil,
+# which has the files of drivers/robot/examples and FILE (--file may be repeated), without input.
+# What it leaves in /out is copied to DIR.
 #
-#   (without)   one processor, virtual time: an instruction takes a nanosecond, whatever the host
-#               does besides
+#   (without)   one processor, virtual time: an instruction takes a nanosecond, whatever else the
+#               host does
 #   --parallel  two processors, the host's time: threads are really parallel, and nothing is
 #               repeatable
 #
-# Ends with 77 and one line where that is not to be had (no QEMU, no kernel to download): tests then
-# skip. 125: the guest did not report, or not within --limit seconds (default 170). The kernel comes
-# from Debian's package, whose name is asked for at run time, and is kept in
+# Ends with 77 and one line if QEMU or a kernel to download is missing: tests then skip. Ends with
+# 125 if the guest did not report within --limit seconds (default 170). The kernel comes from
+# Debian's package, whose name apt-cache gives, and is kept in
 # ${XDG_CACHE_HOME:-~/.cache}/sandrunner-hil.
 set -euo pipefail
 for word; do
@@ -21,10 +22,11 @@ for word; do
 done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
-bin=$root/build/release/bin out="" limit=170 parallel=false
+bin=$root/build/release/bin out="" limit=170 parallel=false files=()
 while (($# > 1)); do
   case $1 in
   --parallel) parallel=true && shift ;;
+  --file) files+=("$2") && shift 2 ;;
   --out) out=$2 && shift 2 ;;
   --limit) limit=$2 && shift 2 ;;
   --bin) bin=$2 && shift 2 ;;
@@ -32,10 +34,13 @@ while (($# > 1)); do
   esac
 done
 if (($# != 1)); then
-  echo "qemu.sh: found $# commands, expected one: [--parallel] [--out DIR] [--limit S] [--bin DIR] COMMAND" >&2
+  echo "qemu.sh: found $# commands, expected one: [--parallel] [--file FILE] [--out DIR] [--limit S] [--bin DIR] COMMAND" >&2
   exit 2
 fi
 command=$1
+for file in "${files[@]}"; do
+  [[ -f $file ]] || { echo "qemu.sh: --file: found no file '$file'" >&2 && exit 2; }
+done
 
 skip() {
   echo "qemu.sh: skipped: $1" >&2
@@ -68,7 +73,7 @@ if [[ ! -e $kernel/vmlinux ]]; then
   number() { od -An "-tu$2" "-j$1" "-N$2" "$image"; }
   dd if="$image" bs=1M iflag=skip_bytes,count_bytes skip=$((($(number 497 1) + 1) * 512 + $(number 584 4))) \
     count=$(($(number 588 4) - 4)) status=none | xz -dc >"$new/vmlinux"
-  mv -T "$new" "$kernel" 2>/dev/null || true # somebody else was quicker
+  mv -T "$new" "$kernel" 2>/dev/null || true # another call was quicker
   trap - EXIT
 fi
 
@@ -79,7 +84,7 @@ guest=$work/guest
 mkdir -p "$guest"/{bin,usr/bin,dev,proc,sys,tmp,out,hil,modules}
 cp "$(command -v busybox)" "$guest/bin/busybox"
 find "$kernel" -name '*.ko' -exec cp -t "$guest/modules" {} +
-cp "$root"/drivers/robot/examples/*.toml "$guest/hil"
+cp "$root"/drivers/robot/examples/*.toml "${files[@]}" "$guest/hil"
 programs=()
 for program in "$bin"/*; do
   name=${program##*/}
@@ -114,7 +119,7 @@ done
 cd /hil
 for p in /usr/bin/*; do sha256sum $p | sed 's#/usr/bin/##; s#^#guest #'; done
 echo "guest: Linux $(uname -rv)"
-sh /command
+sh /command </dev/null
 result=$?
 (cd /out && tar -c . >/dev/vda)
 # The only way to tell QEMU (isa-debug-exit): it ends with 2 x result + 1.
@@ -144,5 +149,5 @@ if [[ -n $out ]]; then
   tar -x -C "$out" -f "$work/out.tar" 2>/dev/null || true
 fi
 ((status % 2 == 1 && status < 254)) && exit $((status / 2))
-echo "qemu.sh: the guest did not report within $limit s (QEMU's exit code $status)" >&2
+echo "qemu.sh: the guest did not report within $limit s (QEMU's exit code $status); --limit S gives it more" >&2
 exit 125

@@ -3,12 +3,12 @@
 """make_wheel.py PACKAGE VERSION FOLDER: packs the built package into a wheel in FOLDER, with the shared libraries that
 its module needs and that a Python on the same system need not have. Prints the wheel's path."""
 
+import argparse
 import base64
 import hashlib
 import pathlib
 import re
 import subprocess
-import sys
 import sysconfig
 import zipfile
 
@@ -33,7 +33,12 @@ def oldest_libc(files: list[pathlib.Path]) -> str:
 
 
 def main() -> None:
-    package, version, folder = pathlib.Path(sys.argv[1]), sys.argv[2], pathlib.Path(sys.argv[3])
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("package", metavar="PACKAGE", type=pathlib.Path)
+    parser.add_argument("version", metavar="VERSION")
+    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
+    options = parser.parse_args()
+    package, version, folder = options.package, options.version, options.folder
     (module,) = package.glob("_native.*.so")
     contents = {f"sandrunner/{file.name}": file.read_bytes() for file in sorted(package.iterdir()) if file.is_file()}
     needed = libraries(module)

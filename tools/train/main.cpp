@@ -22,14 +22,17 @@
 namespace sandrunner::train {
 namespace {
 
+constexpr const char* kDefaultRobot = "raibo";
+
 std::atomic<bool> interrupted{false};
 
 // Where the policy is, and how to go on.
-void print_end(const std::string& out, bool are_a_robots) {
+void print_end(const std::string& out, const std::string& robot, bool are_a_robots) {
   std::string policy = out + "/best.safetensors";
   if (!std::filesystem::exists(policy)) policy = out + "/policy.safetensors";
   if (are_a_robots) {
-    fmt::print("wrote {}: run it with sandrunner --policy {}\n", out, policy);
+    const std::string of_robot = robot == kDefaultRobot ? "" : "--robot " + robot + " ";
+    fmt::print("wrote {}: run it with sandrunner {}--policy {}\n", out, of_robot, policy);
   } else {
     fmt::print("wrote {}: no robot runs {}, a study model\n", out, policy);
   }
@@ -60,7 +63,7 @@ void judge(const TrainConfig& config, const sim::Robot& robot, const std::string
 
 struct Arguments {
   TrainingOptions options;
-  std::string config_file, from_file, judged_file, robot_name = "raibo";
+  std::string config_file, from_file, judged_file, robot_name = kDefaultRobot;
   std::vector<std::string> assignments;
   bool resume = false, explain = false;
 };
@@ -151,7 +154,7 @@ int run(const Arguments& a) {
   fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
   std::fflush(stdout);
   training.run(interrupted);
-  print_end(out, config.learner.network.are_a_robots());
+  print_end(out, a.robot_name, config.learner.network.are_a_robots());
   return kExitOk;
 }
 

@@ -86,11 +86,11 @@ TEST(CheckReportTest, WhatABusShowedIsNamed) {
   std::vector<FoundBus> buses(4);
   EXPECT_THAT(bus_problems(example_hardware("mit"), buses), IsEmpty());
   buses[0].not_sent = 3;
-  buses[1] = {.error_frames = 5, .error = "nobody acknowledges"};
+  buses[1] = {.error_frames = 5, .error = "no node acknowledges"};
   buses[2].foreign = 2;
   EXPECT_THAT(bus_problems(example_hardware("mit"), buses),
               ElementsAre(HasSubstr("can0: 3 frames were not taken"),
-                          HasSubstr("can1: 5 error frames, last: nobody acknowledges"),
+                          HasSubstr("can1: 5 error frames, last: no node acknowledges"),
                           HasSubstr("can2: 2 frames that are no reply")));
 }
 

@@ -78,7 +78,7 @@ TEST_F(UnitreeCheckTest, NamesWhatIsWrong) {
                   HasSubstr("250 states a second, expected 500"),
                   HasSubstr("500 ticks a second, expected 1000"),
                   HasSubstr("RF_HAA: found 90 degrees C"), HasSubstr("battery: found 5 %"),
-                  HasSubstr("remote control: found none"), HasSubstr("nobody who reads commands"),
+                  HasSubstr("remote control: found none"), HasSubstr("no reader of commands"),
                   HasSubstr("3 commands of another program")));
 }
 

@@ -343,7 +343,7 @@ TEST_F(WireProcessTest, ARemoteThatIsOffIsRefused) {
 TEST_F(WireProcessTest, AServiceThatDoesNotAnswerIsNamed) {
   start();
   robot_->answers = false;
-  EXPECT_NE(refusal().find("motion_switcher does not answer"), std::string::npos) << refusal();
+  EXPECT_NE(refusal().find("motion_switcher: found no answer"), std::string::npos) << refusal();
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ class Batch:
         return self._native.models()
 
     def advance(self, ticks: int) -> None:
-        """So many steps of 1/step_hz, with the drives as they are."""
+        """Makes `ticks` steps of 1/step_hz, with the drives as they are."""
         self._native.advance(_check.integer("ticks", ticks, 1, 1_000_000))
 
     def set_state(self, state: np.ndarray, robots: Any = None) -> None:

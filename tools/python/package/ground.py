@@ -37,7 +37,7 @@ class Ground:
 
     @staticmethod
     def contacts(feet: int) -> np.ndarray:
-        """Memories of so many feet in the air: a structured array."""
+        """Memories of `feet` feet in the air: a structured array."""
         return _native.contacts(_check.integer("feet", feet, 1, 1 << 24))
 
     def step(self, contacts: np.ndarray, position: np.ndarray, velocity: np.ndarray, step_s: float) -> np.ndarray:

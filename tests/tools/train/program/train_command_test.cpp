@@ -340,7 +340,11 @@ TEST_F(TrainCommandTest, PolicyFileNamesTheRobotOfTheMapAndItsTorqueLimit) {
 }
 
 TEST_F(TrainCommandTest, ARobotThatShipsIsTrainedByItsName) {
-  ASSERT_EQ(run("go2", {"--set", "run.transitions=600", "--robot", "go2"}), 0);
+  const Ended ended =
+      run_process(training("go2", {"--set", "run.transitions=600", "--robot", "go2"}));
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("run it with sandrunner --robot go2 --policy "), std::string::npos)
+      << ended.out;
   const PolicySpec spec = policy("go2").spec;
   EXPECT_EQ(spec.provenance.at("robot"), "go2");
   EXPECT_EQ(spec.joint_names[0], "FL_hip_joint");
