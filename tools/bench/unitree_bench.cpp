@@ -127,7 +127,7 @@ Report run_unitree_bench(const std::string& hardware, int rounds) {
   const ProcessConfig config = read_process_config(tree, policy.spec());
   std::array<std::vector<double>, kShares.size()> with_us, without_us, ratio;
   for (int round = 0; round < rounds; ++round) {
-    // Either goes first in turn.
+    // They take turns to go first.
     TickTimes with, without;
     const auto run_with = [&] {
       with = try_again([&] { return over_dds(hardware, config, policy); });

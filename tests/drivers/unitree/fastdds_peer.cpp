@@ -4,8 +4,6 @@
 //   unitree_fastdds_peer DOMAIN
 // Publishes states at 500 Hz, reads commands and answers motion_switcher until SIGTERM; then prints
 // what it received.
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <sched.h>
 
 #include <array>
@@ -27,13 +25,13 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/fastdds_loopback.h"
 #include "unitree_apiPubSubTypes.h"
 #include "unitree_goPubSubTypes.h"
 
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using unitree_api::msg::dds_::Request_;
 using unitree_api::msg::dds_::Response_;
 using unitree_go::msg::dds_::LowCmd_;
@@ -164,21 +162,6 @@ LowState_ state_at(std::uint32_t tick_ms) {
   return state;
 }
 
-dds::DomainParticipant* make_participant(int domain) {
-  dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList.emplace_back("127.0.0.1");
-  qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
-  rtps::Locator_t loopback;
-  loopback.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(loopback, 127, 0, 0, 1);
-  qos.wire_protocol().builtin.initialPeersList.push_back(loopback);
-  qos.wire_protocol().builtin.metatrafficUnicastLocatorList.push_back(loopback);
-  return dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<dds::DomainId_t>(domain), qos);
-}
-
 template <typename PubSubType>
 dds::Topic* make_topic(dds::DomainParticipant* participant, const char* topic) {
   const dds::TypeSupport support(new PubSubType());
@@ -197,7 +180,9 @@ void take(dds::DataReader* reader, const Use& use) {
 }
 
 void play(int domain) {
-  dds::DomainParticipant* participant = make_participant(domain);
+  dds::DomainParticipant* participant =
+      dds::DomainParticipantFactory::get_instance()->create_participant(
+          static_cast<dds::DomainId_t>(domain), sandrunner::fastdds_loopback_qos());
   dds::Subscriber* subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   dds::Publisher* publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   dds::DataWriter* states = publisher->create_datawriter(

@@ -27,7 +27,7 @@ TEST(UnitreeFastDdsTest, ARobotOnAnotherDdsIsReleasedReadAndCommanded) {
   UnitreeConfig config;
   config.interface = "lo";
   config.domain = 60 + getpid() % 150;
-  ChildProcess robot({SANDRUNNER_UNITREE_FASTDDS_PEER, std::to_string(config.domain)});
+  ChildProcess robot({SANDRUNNER_FASTDDS_PEER, std::to_string(config.domain)});
   RobotState state;
   StateCounters counters;
   {

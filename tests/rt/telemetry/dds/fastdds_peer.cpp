@@ -8,9 +8,6 @@
 // of ros_discovery_info.
 // DISCOVERY is how it looks for the robot: "loopback", or "profile": as rmw_fastrtps, with the
 // default settings or those of the file that the environment names.
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -26,28 +23,18 @@
 #include <thread>
 
 #include "rosPubSubTypes.h"
+#include "tests/support/fastdds_loopback.h"
 
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 dds::DomainParticipantQos participant_qos(const std::string& discovery) {
   if (discovery == "profile") {
     dds::DomainParticipantFactory::get_instance()->load_profiles();
     return dds::DomainParticipantFactory::get_instance()->get_default_participant_qos();
   }
-  dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList.push_back("127.0.0.1");
-  qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
-  rtps::Locator_t loopback;
-  loopback.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(loopback, 127, 0, 0, 1);
-  qos.wire_protocol().builtin.initialPeersList.push_back(loopback);
-  qos.wire_protocol().builtin.metatrafficUnicastLocatorList.push_back(loopback);
-  return qos;
+  return sandrunner::fastdds_loopback_qos();
 }
 
 template <typename PubSubType>
