@@ -74,8 +74,8 @@ TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListedAndIsWiredAsItsCont
                     {"learner.learning_rate_min", "0.0005"},
                     {"learner.learning_rate_max", "0.0005"},
                     {"command.speed_start_mps", "4.0"},
-                    {"ground.sigma_flat_low_start", "500000.0"},
-                    {"ground.sigma_cone_low_start", "90000.0"}});
+                    {"ground.sigma_flat_low_start", "1000000.0"},
+                    {"ground.sigma_cone_low_start", "150000.0"}});
   }
   const auto built_in = settings_of("");
   std::set<std::string> found;
