@@ -62,10 +62,13 @@ inline void encode(const EncoderLayer& layer, const float* input, NetworkState& 
 constexpr std::size_t kHugePageBytes = 2 << 20;
 constexpr std::align_val_t kHugePageAlignment{kHugePageBytes};
 
-/// Memory of that size and alignment.
+/// Memory of that size and alignment, on a huge page or on small ones for good: the kernel would
+/// join small ones (which fork() and a lock make of it) later, while the policy thread reads them.
 void* allocate_huge_page() {
   void* const memory = ::operator new(kHugePageBytes, kHugePageAlignment);
-  madvise(memory, kHugePageBytes, MADV_HUGEPAGE);  // without it, small pages work too
+  madvise(memory, kHugePageBytes, MADV_HUGEPAGE);
+  *static_cast<volatile char*>(memory) = 0;
+  madvise(memory, kHugePageBytes, MADV_NOHUGEPAGE);
   return memory;
 }
 

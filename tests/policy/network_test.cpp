@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <new>
+#include <string>
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
@@ -160,6 +162,23 @@ TEST(NetworkTest, StepDoesNotAllocate) {
   EXPECT_EQ(number_of_allocations(), before);
   ::operator delete(::operator new(8));
   EXPECT_EQ(number_of_allocations(), before + 1) << "the counter does not count";
+}
+
+/// How many mappings of this process the kernel may move to huge pages whenever it likes.
+int mappings_to_be_joined() {
+  std::ifstream maps("/proc/self/smaps");
+  int count = 0;
+  for (std::string line; std::getline(maps, line);) {
+    if (line.starts_with("VmFlags:") && line.find(" hg") != std::string::npos) ++count;
+  }
+  return count;
+}
+
+// Such a move was seen as a page fault of the policy thread.
+TEST(NetworkTest, KernelMovesNoWeightsOnceTheyAreLoaded) {
+  const int before = mappings_to_be_joined();
+  const Network network(random_policy_file().parameters);
+  EXPECT_EQ(mappings_to_be_joined(), before);
 }
 
 TEST(NetworkTest, RefusesParametersOfAnotherSize) {
