@@ -8,10 +8,10 @@ const kMostFrames = 60000, kMostPrints = 8192, kMostTiles = 2048, kAgain_ms = 50
 
 /** The key of this server, taken out of the address bar; '' without. */
 function takeKey() {
-  const given = /^#key=(\w+)$/.exec(location.hash)?.[1];
+  const [, given, light] = /^#key=(\w+)(&light)?$/.exec(location.hash) ?? [];
   if (given) {
     sessionStorage.setItem('key', given);
-    history.replaceState(null, '', location.pathname);
+    history.replaceState(null, '', location.pathname + (light ? '#light' : ''));
   }
   return sessionStorage.getItem('key') ?? '';
 }
