@@ -14,7 +14,7 @@ namespace {
 // group. A person's second Ctrl-C takes longer.
 constexpr std::int64_t kTogether_ns = 100'000'000;
 
-const int kEnd = SIGRTMIN;  // wakes the thread for its end
+const int kEndSignal = SIGRTMIN;  // wakes the thread for its end
 
 constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
 constexpr std::array kIgnored = {SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN};
@@ -53,7 +53,7 @@ SignalWatch::SignalWatch() {
     }
     sigaddset(&watched_, number);
   }
-  sigaddset(&watched_, kEnd);
+  sigaddset(&watched_, kEndSignal);
   pthread_sigmask(SIG_BLOCK, &watched_, nullptr);
   thread_ = std::thread([this] {
     int number;
@@ -69,7 +69,7 @@ SignalWatch::SignalWatch() {
 
 SignalWatch::~SignalWatch() {
   end_ = true;
-  pthread_kill(thread_.native_handle(), kEnd);
+  pthread_kill(thread_.native_handle(), kEndSignal);
   thread_.join();
   pthread_sigmask(SIG_UNBLOCK, &watched_, nullptr);
 }
