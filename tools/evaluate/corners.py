@@ -28,25 +28,29 @@ STARTS = {'nominal': ['--start', 'walk'], 'disturbed': ['--start', 'walk', '--se
 
 
 def envelope(policy):
-    """Largest vx, -vx, |vy|, |yaw rate| that the policy file allows."""
+    """Largest vx, -vx, |vy|, |yaw rate| and |yaw rate| times speed that the policy file allows."""
     with policy.open('rb') as file:
         header = json.loads(file.read(int.from_bytes(file.read(8), 'little')))  # safetensors
-    found = [header['__metadata__'].get(f'sandrunner.envelope.{key}')
-             for key in ('forward_mps', 'backward_mps', 'lateral_mps', 'yaw_radps')]
+    found = [header['__metadata__'].get(f'sandrunner.{key}')
+             for key in ('envelope.forward_mps', 'envelope.backward_mps', 'envelope.lateral_mps', 'envelope.yaw_radps',
+                         'yaw_command_clip_mps2')]
     if None in found:
         sys.exit(f'corners.py: {policy}: found no envelope, expected one (sandrunner-policy envelope)')
     return [float(value) for value in found]
 
 
-def corners(forward, back, lateral, yaw):
+def corners(forward, back, lateral, yaw, centripetal):
     """Name -> command; diagonal ones on the ellipse within which the controller holds vx and vy."""
     d = 0.5 ** 0.5
-    return {'forward': (forward, 0, 0), 'back': (-back, 0, 0), 'left': (0, lateral, 0), 'right': (0, -lateral, 0),
+    found = {'forward': (forward, 0, 0), 'back': (-back, 0, 0), 'left': (0, lateral, 0), 'right': (0, -lateral, 0),
             'ccw': (0, 0, yaw), 'cw': (0, 0, -yaw), 'forward left': (d * forward, d * lateral, 0),
             'forward right': (d * forward, -d * lateral, 0), 'back left': (-d * back, d * lateral, 0),
             'back right': (-d * back, -d * lateral, 0), 'forward ccw': (forward, 0, yaw),
             'forward left cw': (d * forward, d * lateral, -yaw), 'back ccw': (-back, 0, yaw),
             'left cw': (0, lateral, -yaw)}
+    if forward * yaw > centripetal:  # where the controller begins to turn more slowly
+        found['fast ccw'] = (centripetal / yaw, 0, yaw)
+    return found
 
 
 def run(programs, policy, robot, job, commands, folder):
@@ -74,7 +78,7 @@ def main():
     parser.add_argument('policy', type=pathlib.Path)
     parser.add_argument('--robot', help='raibo, go2 or a robot file (default: raibo)')
     parser.add_argument('--bin', type=pathlib.Path, default=TREE / 'build/release/bin', help='folder of the programs')
-    parser.add_argument('--runs', type=int, help='number of runs, drawn at random (default: all 3,822)')
+    parser.add_argument('--runs', type=int, help='number of runs, drawn at random (default: all, 3,822 or 4,410)')
     options = parser.parse_args()
     commands = corners(*envelope(options.policy))
     jobs = [(ground, start, first, second) for ground in GROUNDS for start in STARTS

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -47,10 +48,11 @@ void import_policy(const std::string& input, const std::string& output, const st
 }
 
 void set_envelope(const std::string& input, const std::string& output,
-                  const CommandEnvelope& envelope) {
+                  const CommandEnvelope& envelope, std::optional<double> centripetal_mps2) {
   PolicyFile file = read_policy_file(input);
   file.spec.envelope = envelope;
   file.spec.has_envelope = true;
+  if (centripetal_mps2) file.spec.yaw_command_clip_mps2 = *centripetal_mps2;
   write_policy_file(output, file);
   fmt::print("wrote {}\n", output);
 }
@@ -152,6 +154,11 @@ int run(int argc, char** argv) {
   speed("--acceleration", envelope.acceleration_mps2, "largest change of vx and of vy, m/s^2");
   speed("--yaw-acceleration", envelope.yaw_acceleration_radps2,
         "largest change of the yaw rate, rad/s^2");
+  std::optional<double> centripetal_mps2;
+  envelope_command
+      ->add_option("--centripetal", centripetal_mps2,
+                   "largest |yaw rate| times speed, m/s^2 (default: that of IN)")
+      ->check(CLI::Range(1e-3, 100.0));
 
   std::string path;
   CLI::App* info_command = app.add_subcommand("info", "check a policy file and print its contents");
@@ -166,7 +173,7 @@ int run(int argc, char** argv) {
     if (name.empty()) name = std::filesystem::path(input).stem().string();
     import_policy(input, output, name);
   } else if (*envelope_command) {
-    set_envelope(input, output, envelope);
+    set_envelope(input, output, envelope, centripetal_mps2);
   } else if (*info_command) {
     print_info(path);
   }

@@ -60,6 +60,24 @@ TEST_F(PolicyCommandTest, InfoShowsWhatTheFileHolds) {
   }
 }
 
+TEST_F(PolicyCommandTest, EnvelopeIsWrittenAndTurnsAtSpeedAreNarrowedWhereAsked) {
+  write_policy_file(folder_.path("policy"), random_policy_file());
+  const std::string speeds =
+      " --forward 3 --backward 1 --lateral 0.5 --yaw 1.5 --acceleration 2 --yaw-acceleration 4";
+  ASSERT_EQ(run("envelope policy --out kept" + speeds), 0) << error();
+  const PolicySpec kept = read_policy_file(folder_.path("kept")).spec;
+  EXPECT_TRUE(kept.has_envelope);
+  EXPECT_EQ(kept.envelope.forward_mps, 3.0);
+  EXPECT_EQ(kept.envelope.backward_mps, 1.0);
+  EXPECT_EQ(kept.envelope.lateral_mps, 0.5);
+  EXPECT_EQ(kept.envelope.yaw_radps, 1.5);
+  EXPECT_EQ(kept.envelope.acceleration_mps2, 2.0);
+  EXPECT_EQ(kept.envelope.yaw_acceleration_radps2, 4.0);
+  EXPECT_EQ(kept.yaw_command_clip_mps2, random_policy_file().spec.yaw_command_clip_mps2);
+  ASSERT_EQ(run("envelope policy --out narrow --centripetal 1.25" + speeds), 0) << error();
+  EXPECT_EQ(read_policy_file(folder_.path("narrow")).spec.yaw_command_clip_mps2, 1.25);
+}
+
 TEST_F(PolicyCommandTest, HelpAndVersionSucceed) {
   EXPECT_EQ(run("--help"), 0);
   EXPECT_NE(output().find("import"), std::string::npos);
