@@ -68,10 +68,10 @@ Landing land(const std::string& terrain, const std::string& command, bool live, 
 TEST(GentleEndTest, AnInterruptedRobotMeetsTheGroundGently) {
   for (const char* terrain : {"rigid", "dry-sand"}) {
     for (const bool live : {false, true}) {
-      for (const char* command : {"2.5,0,0", "0,0,0"}) {
+      for (const char* command : {"3,0,0", "0,0,0"}) {
         const Landing landing = land(terrain, command, live, 1);
         SCOPED_TRACE(testing::Message() << terrain << (live ? " live " : " ") << command);
-        EXPECT_GE(landing.from_mps, command[0] == '2' ? 2.3 : -0.1);
+        EXPECT_GE(landing.from_mps, command[0] == '3' ? 2.7 : -0.1);
         EXPECT_TRUE(landing.touched);
         EXPECT_LT(landing.speed_mps, 0.5);
         EXPECT_LT(landing.fastest_mps, 0.5);
