@@ -62,8 +62,8 @@ inline void encode(const EncoderLayer& layer, const float* input, NetworkState& 
 constexpr std::size_t kHugePageBytes = 2 << 20;
 constexpr std::align_val_t kHugePageAlignment{kHugePageBytes};
 
-/// Memory of that size and alignment, on a huge page or on small ones for good: the kernel would
-/// join small ones (which fork() and a lock make of it) later, while the policy thread reads them.
+/// Memory of that size and alignment, on a huge page or on small ones for good. Small ones, into
+/// which fork() and a lock split a huge one, the kernel would join while the policy thread reads.
 void* allocate_huge_page() {
   void* const memory = ::operator new(kHugePageBytes, kHugePageAlignment);
   madvise(memory, kHugePageBytes, MADV_HUGEPAGE);

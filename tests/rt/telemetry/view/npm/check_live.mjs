@@ -20,7 +20,7 @@ async function open(url, viewport = { width: 480, height: 300 }) {  // what a ma
   page.on("request", (request) => {
     if (!/^(data|blob):/.test(request.url()) && new URL(request.url()).host !== new URL(url).host) errors.push(request.url());
   });
-  await page.goto(`${url}${url.includes("#") ? "&" : "#"}light`);  // such a machine comes to it after some seconds anyway
+  await page.goto(`${url}${url.includes("#") ? "&" : "#"}light`);  // as a slow machine draws after some seconds anyway
   await page.waitForFunction("window.sandrunner?.ready_ms", { timeout: 60000 });
   return page;
 }
