@@ -39,7 +39,8 @@ States clusters(int of_each = 30) {
   for (int i = 0; i < 3 * of_each; ++i) {
     const int cluster = i % 3, run = 2 * cluster + (i / 3) % 2;
     for (int k = 0; k < 5; ++k) {
-      const double noise = sim::random_normal(1, 2, static_cast<std::uint64_t>(5 * i + k));
+      const double noise = sim::random_normal(
+          1, 2, 5 * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(k));
       states.points(i, k) = 8.0 * (k == cluster) + 0.3 * noise;
     }
     const double phase = sim::random_uniform(1, 3, static_cast<std::uint64_t>(i));
