@@ -44,9 +44,10 @@ double length(const std::array<double, 3>& v) {
 
 }  // namespace
 
-double score_of(const BatteryFigures& f, const BatterySettings& s) {
+double score_of(const BatteryFigures& f, const BatterySettings& s, double most_alive) {
   const double cost = std::isfinite(f.cost_of_transport) ? f.cost_of_transport : 0.0;
-  return -(1000.0 * (1.0 - f.alive) + 1000.0 * std::max(0.0, f.error - s.tracked_error) + cost +
+  return -(1000.0 * std::max(0.0, most_alive - kAlike - f.alive) +
+           1000.0 * std::max(0.0, f.error - s.tracked_error) + cost +
            s.too_fast_weight * f.too_fast +
            s.drift_weight * (f.drift_mps + kYawLength_m * f.yaw_drift_radps));
 }

@@ -46,14 +46,18 @@ struct BatteryFigures {
   std::array<double, kForwardSpeeds> cost_of_transport_at{};  ///< likewise
 };
 
-/// The number by which policies are compared; larger is better. One fall in a battery of 225 runs
-/// counts more than any cost of transport, and so does an error of 0.005 beyond `tracked_error`: a
-/// robot that stands still gets nowhere. Of policies that survive and track alike the cheaper is
-/// better:
-///   -(1000 (1 - alive) + 1000 max(0, error - tracked_error)
+/// Policies survive alike whose shares of runs without a fall differ by no more than this: two runs
+/// of 225, about what other starts would change (one standard deviation).
+inline constexpr double kAlike = 0.01;
+
+/// The number by which the policies of a training are compared; larger is better. `most_alive` is
+/// the largest share that survived the battery so far. A fall more than `kAlike` allows counts more
+/// than any cost of transport, and so does an error of 0.005 beyond `tracked_error`: a robot that
+/// stands still gets nowhere. Of policies that survive and track alike the cheaper is better:
+///   -(1000 max(0, most_alive - kAlike - alive) + 1000 max(0, error - tracked_error)
 ///     + cost of transport + too_fast_weight too_fast
 ///     + drift_weight (drift + 0.5 m yaw drift))
-double score_of(const BatteryFigures& figures, const BatterySettings& settings);
+double score_of(const BatteryFigures& figures, const BatterySettings& settings, double most_alive);
 
 /// A fixed set of runs by which a training judges its policy: from rest to steady running forward
 /// at several speeds, backwards, sideways and turning, without noise or pushes, on the hard ground

@@ -19,7 +19,7 @@ void PenaltyGate::judge(const BatteryFigures& figures) {
 }
 
 void PenaltyGate::advance(double transitions) {
-  const double rise = (transitions - state_.transitions) / (settings_.rise_share * transitions_);
+  const double rise = (transitions - state_.transitions) / settings_.rise_transitions;
   state_.transitions = transitions;
   if (!settings_.enabled || state_.passed > 0.0) {
     if (transitions > wait_transitions_) state_.late += rise;

@@ -8,10 +8,10 @@ namespace sandrunner::train {
 
 /// Table `gate` of tools/train/training.toml.
 struct GateSettings {
-  bool enabled = false;      ///< off: as if every battery were passed
-  double least_alive = 0.0;  ///< share of the battery's runs that a policy must survive
-  double rise_share = 0.0;   ///< of the training in which the late penalties rise, if never stopped
-  double back_rate = 0.0;    ///< at which they go back, in units of that at which they rise
+  bool enabled = false;           ///< off: as if every battery were passed
+  double least_alive = 0.0;       ///< share of the battery's runs that a policy must survive
+  double rise_transitions = 0.0;  ///< in which the late penalties rise, if never stopped
+  double back_rate = 0.0;         ///< at which they go back, in units of that at which they rise
 };
 
 /// The late penalties wait for performance: their share rises while the latest battery was survived

@@ -185,6 +185,12 @@ std::string json_list(const std::vector<double>& values, std::size_t every) {
 
 }  // namespace
 
+double Progress::most_alive() const {
+  double most = 0.0;
+  for (const ProgressRow& row : rows_) most = std::max(most, row.battery.alive);
+  return most;
+}
+
 void Progress::save(learner::Checkpoint& checkpoint) const {
   const std::uint64_t count = rows_.size();
   checkpoint.put("progress.count", &count, 1);

@@ -31,6 +31,8 @@ struct ProgressRow {
 class Progress {
  public:
   void add(const ProgressRow& row) { rows_.push_back(row); }
+  /// The largest share that survived a battery.
+  double most_alive() const;
   void save(learner::Checkpoint& checkpoint) const;
   void load(const learner::Checkpoint& checkpoint);
 

@@ -37,7 +37,7 @@ constexpr Setting<B> kBattery[] = {
 using G = GateSettings;
 constexpr Setting<G> kGate[] = {
     {"least_alive", &G::least_alive, 0.0, 1.0},
-    {"rise_share", &G::rise_share, 1e-3, 1.0},
+    {"rise_transitions", &G::rise_transitions, 1.0, 1e13},
     {"back_rate", &G::back_rate, 0.0, 100.0},
 };
 

@@ -177,6 +177,7 @@ void Training::restore(const learner::Checkpoint& checkpoint) {
   checkpoint.get("battery.best", &best_, 1);
   best_parameters_.resize(best_.transitions > 0.0 ? learner_.averaged().size() : 0);
   checkpoint.get("battery.best_parameters", best_parameters_.data(), best_parameters_.size());
+  most_alive_ = progress_.most_alive();
   best_is_written_ = best_parameters_.empty();  // a file may be missing, or later than this
 }
 
@@ -277,8 +278,8 @@ void Training::run_battery() {
   figures_ = battery_->run(learner_.averaged());
   battery_cpu_s_ += cpu_seconds() - before_s;
   gate_.judge(figures_);
-  if (best_parameters_.empty() ||
-      score_of(figures_, config_.battery) > score_of(best_.battery, config_.battery)) {
+  most_alive_ = std::max(most_alive_, figures_.alive);
+  if (best_parameters_.empty() || score(figures_) > score(best_.battery)) {
     best_ = snapshot();
     best_parameters_ = learner_.averaged();
     best_is_written_ = false;
@@ -336,7 +337,7 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   r.command_speed_mps = task_.curriculum().speed_mps;
   r.ground_open = task_.curriculum().ground;
   r.battery = figures_;
-  r.score = score_of(figures_, config_.battery);
+  r.score = score(figures_);
   r.battery_share = battery_cpu_s_ / cpu_seconds();
   r.late = gate_.late();
   r.settled = 1.0 - gate_.unsettled();

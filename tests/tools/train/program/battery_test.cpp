@@ -95,15 +95,15 @@ TEST(BatteryTest, ScoreIsSurvivalThenTrackingThenCost) {
   good.alive = 1.0;
   good.error = s.tracked_error;
   good.cost_of_transport = 0.6;
-  const double score = score_of(good, s);
+  const double score = score_of(good, s, 1.0);
   const auto changed = [&](auto&& change) {
     BatteryFigures f = good;
     change(f);
-    return score_of(f, s);
+    return score_of(f, s, 1.0);
   };
   // A fall or a command that is not tracked is worse than a high cost.
   const double costly = changed([](BatteryFigures& f) { f.cost_of_transport = 1.2; });
-  EXPECT_LT(changed([](BatteryFigures& f) { f.alive = 1.0 - 1.0 / 225.0; }), costly);
+  EXPECT_LT(changed([](BatteryFigures& f) { f.alive = 1.0 - 3.0 / 225.0; }), costly);
   EXPECT_LT(changed([](BatteryFigures& f) { f.error += 0.02; }), costly);
   // Each cost counts; less error than is asked for does not.
   EXPECT_LT(costly, score);
@@ -111,7 +111,19 @@ TEST(BatteryTest, ScoreIsSurvivalThenTrackingThenCost) {
   EXPECT_LT(changed([](BatteryFigures& f) { f.drift_mps = 0.05; }), score);
   EXPECT_LT(changed([](BatteryFigures& f) { f.yaw_drift_radps = 0.05; }), score);
   EXPECT_EQ(changed([](BatteryFigures& f) { f.error = 0.0; }), score);
-  EXPECT_LT(score_of({}, s), -900.0);  // nobody is left, and no cost is defined
+  EXPECT_LT(score_of({}, s, 1.0), -900.0);  // nobody is left, and no cost is defined
+}
+
+// A training kept a policy of its first tenth, as none of the later and much better ones survived
+// quite as many runs.
+TEST(BatteryTest, OfPoliciesThatSurviveAlikeTheCheaperHasTheHigherScore) {
+  const BatterySettings s = config_with({}).battery;
+  BatteryFigures early, late;
+  early.alive = 220.0 / 225.0;
+  early.cost_of_transport = 0.78;
+  late.alive = 218.0 / 225.0;
+  late.cost_of_transport = 0.53;
+  EXPECT_GT(score_of(late, s, early.alive), score_of(early, s, early.alive));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ const std::vector<std::string> kSettings = {
     "episode.length_s=0.2",
     "battery.every_updates=0",
     "gate.enabled=false",
-    "gate.rise_share=0.4",
+    "gate.rise_transitions=5120",
     "reward.prior_start_transitions=0",
     "reward.prior_end_transitions=6400",
 };

@@ -9,7 +9,7 @@ namespace {
 constexpr double kTrackedError = 0.15;
 // The penalties rise by 0.1 in 1 of 100 transitions; the last 40 settle; the first 5 wait.
 constexpr GateSettings kSettings{
-    .enabled = true, .least_alive = 0.9, .rise_share = 0.1, .back_rate = 0.5};
+    .enabled = true, .least_alive = 0.9, .rise_transitions = 10.0, .back_rate = 0.5};
 
 PenaltyGate make_gate(const GateSettings& settings = kSettings) {
   return PenaltyGate(settings, kTrackedError, 100.0, 0.4, 5.0);
@@ -81,7 +81,7 @@ TEST(PenaltyGateTest, WithoutAWayBackPenaltiesWaitWhereTheyAre) {
   EXPECT_NEAR(gate.late(), 0.3, 1e-12);
 }
 
-TEST(PenaltyGateTest, SwitchedOffItGoesByTheShareOfTheTraining) {
+TEST(PenaltyGateTest, SwitchedOffPenaltiesRiseWhateverTheBatterySays) {
   GateSettings off = kSettings;
   off.enabled = false;
   PenaltyGate gate = make_gate(off);

@@ -34,7 +34,7 @@ const std::vector<std::string> kShort = {"--set", "run.envs=64",
                                          "--set", "battery.duration_s=1",
                                          "--set", "battery.tracked_error=100",
                                          "--set", "gate.least_alive=0",
-                                         "--set", "gate.rise_share=0.4",
+                                         "--set", "gate.rise_transitions=5120",
                                          "--set", "reward.prior_start_transitions=0",
                                          "--set", "reward.prior_end_transitions=6400"};
 // With a checkpoint after every window.
