@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "sim/lanes/random.h"
@@ -131,8 +132,12 @@ bool Simulator::carry_to_stand() noexcept {
 
 void Simulator::set_terrain(const TerrainDescription& terrain) {
   const auto kinds = [](const TerrainDescription& t) {
-    std::vector<GroundKind> all;
-    for (const TerrainPatch& patch : t.patches) all.push_back(patch.ground.kind);
+    std::vector<std::tuple<GroundKind, double, double>> all;
+    for (const TerrainPatch& patch : t.patches) {
+      const GroundParameters& g = patch.ground;
+      const bool springs = g.kind == GroundKind::kLinear;
+      all.emplace_back(g.kind, springs ? g.stiffness_npm : 0.0, springs ? g.coupling_npm : 0.0);
+    }
     return all;
   };
   if (kinds(terrain) != kinds(config_.terrain)) {

@@ -70,8 +70,8 @@ class Simulator final : public RobotIo {
   /// For a tick, moves the robot as a careful hand does towards its nominal pose, level and just
   /// above the ground where it is; no faster than encoders and IMU can follow. True: it is there.
   bool carry_to_stand() noexcept;
-  /// Other ground, with the feet as they were. Where it is of another kind, the robot is lifted out
-  /// of its holes, or hard ground would throw it up.
+  /// Other ground, with the feet as they were. Where it is of another kind, or springs of another
+  /// stiffness, the robot is lifted out of its holes, or hard ground would throw it up.
   void set_terrain(const TerrainDescription& terrain);
 
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "tests/sim/support.h"
@@ -363,17 +364,21 @@ TEST(SimulatorTest, AHandPutsARobotThatLiesOnItsBackUprightWithoutAJump) {
   EXPECT_NEAR(std::hypot(x.orientation.x, x.orientation.y), 0.0, 0.02);
 }
 
-TEST(SimulatorTest, HardGroundUnderFeetThatHaveSunkInLiftsThemOut) {
+TEST(SimulatorTest, HarderGroundUnderFeetThatHaveSunkInLiftsThemOut) {
   const Robot robot = load_raibo();
-  Simulator simulator(robot, config_of("dry-sand"));
-  run(simulator, robot, 2000);
-  const double deepest = std::ranges::max(simulator.report().penetration);
-  ASSERT_GT(deepest, 0.01);
-  const double before = simulator.state().robot.rigid.position.z;
-  simulator.set_terrain(config_of("rigid").terrain);
-  EXPECT_DOUBLE_EQ(simulator.state().robot.rigid.position.z, before + deepest);
-  run(simulator, robot, 400);
-  EXPECT_LT(simulator.state().robot.rigid.position.z, before + deepest + 0.05);
+  for (const auto& [soft, hard] :
+       {std::pair{"dry-sand", "rigid"}, std::pair{"air-mattress", "athletic-track"}}) {
+    SCOPED_TRACE(hard);
+    Simulator simulator(robot, config_of(soft));
+    run(simulator, robot, 2000);
+    const double deepest = std::ranges::max(simulator.report().penetration);
+    ASSERT_GT(deepest, 0.01);
+    const double before = simulator.state().robot.rigid.position.z;
+    simulator.set_terrain(config_of(hard).terrain);
+    EXPECT_DOUBLE_EQ(simulator.state().robot.rigid.position.z, before + deepest);
+    run(simulator, robot, 400);
+    EXPECT_LT(simulator.state().robot.rigid.position.z, before + deepest + 0.05);
+  }
 }
 
 }  // namespace
