@@ -177,7 +177,6 @@ void Training::restore(const learner::Checkpoint& checkpoint) {
   checkpoint.get("battery.best", &best_, 1);
   best_parameters_.resize(best_.transitions > 0.0 ? learner_.averaged().size() : 0);
   checkpoint.get("battery.best_parameters", best_parameters_.data(), best_parameters_.size());
-  most_alive_ = progress_.most_alive();
   best_is_written_ = best_parameters_.empty();  // a file may be missing, or later than this
 }
 
@@ -278,12 +277,16 @@ void Training::run_battery() {
   figures_ = battery_->run(learner_.averaged());
   battery_cpu_s_ += cpu_seconds() - before_s;
   gate_.judge(figures_);
-  most_alive_ = std::max(most_alive_, figures_.alive);
   if (best_parameters_.empty() || score(figures_) > score(best_.battery)) {
     best_ = snapshot();
     best_parameters_ = learner_.averaged();
     best_is_written_ = false;
   }
+}
+
+// Compared with all batteries so far, the latest among them.
+double Training::score(const BatteryFigures& figures) const {
+  return score_of(figures, config_.battery, std::max(progress_.most_alive(), figures_.alive));
 }
 
 Snapshot Training::snapshot() const {

@@ -64,9 +64,7 @@ class Training {
   void step_window();
   void settle();
   void run_battery();
-  double score(const BatteryFigures& figures) const {
-    return score_of(figures, config_.battery, most_alive_);
-  }
+  double score(const BatteryFigures& figures) const;
   Snapshot snapshot() const;
   void fall_back();
   ProgressRow make_row(const WindowStats& window, const learner::UpdateStats& update,
@@ -85,9 +83,8 @@ class Training {
   learner::Learner learner_;
   PenaltyGate gate_;
   std::optional<Battery> battery_;
-  BatteryFigures figures_;   // of the latest battery
-  double most_alive_ = 0.0;  // in any battery so far
-  Snapshot best_;            // with transitions 0: none yet
+  BatteryFigures figures_;  // of the latest battery
+  Snapshot best_;           // with transitions 0: none yet
   std::vector<float> best_parameters_;
   bool best_is_written_ = true;
   Progress progress_;
