@@ -113,6 +113,8 @@ inline GranularForce<S> granular_step(const Ground<S>& g, const FootProfile<S>& 
   c.filter = select(v * v_before < zero, min(c.filter + g.filter_step, one), c.filter);
   const S weight = S(0.8) * c.filter;
   f.normal = select(touching, max(fma(weight, c.force - f.raw, f.raw), zero), zero);
+  // A force that fades away would become a denormal number, which not every processor flushes.
+  f.normal = select(f.normal > S(1e-30), f.normal, zero);
   c.force = f.normal;
   f.friction_bound = select(both(touching, either(pushing, g.friction_gated == zero)),
                             g.friction * quasistatic, zero);

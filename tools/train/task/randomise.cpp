@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "estimator/cost_of_transport.h"
 #include "rt/core/command_shaping.h"
@@ -14,9 +15,7 @@
 namespace sandrunner::train {
 namespace {
 
-// Short of pi in their last digits: with all of them the draws, and so the weights of every seed,
-// would be others.
-constexpr double kHalfTurn_rad = 3.14159265, kDegree_rad = 3.14159265358979 / 180.0;
+constexpr double kHalfTurn_rad = std::numbers::pi, kDegree_rad = std::numbers::pi / 180.0;
 
 // Log-uniform between low and high; an exponent above 1 draws more often near low.
 double log_between(double low, double high, double share, double exponent) {
@@ -115,11 +114,13 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
   double inertial = 1.0;
   if (rigid) {
     p.kind = sim::GroundKind::kRigid;
-    // Half of the rigid robots walk on uneven ground, rougher as the curriculum opens.
-    const bool uneven = is_rigid(env) && env % block_envs_ >= g.rigid_envs / 2;
+    // Some of the rigid robots walk on uneven ground, rougher as the curriculum opens.
+    const bool uneven =
+        is_rigid(env) && env % block_envs_ >= (1.0 - g.rigid_uneven_share) * g.rigid_envs;
     p.roughness_m = uneven ? curriculum_.ground * uniform(env, e, 0.0, g.roughness_m) : 0.0;
     p.roughness_wavelength_m = g.roughness_wavelength_m;
-    p.roughness_seed = static_cast<std::uint64_t>(env) * 131 + e.draws;
+    p.roughness_seed =
+        sim::random_bits(seed_, static_cast<std::uint64_t>(env) + (2ull << 32), e.draws) >> 24;
   } else if (g.yielding == sim::GroundKind::kLinear) {
     const double low = log_between(g.spring_low_start, g.spring_low, curriculum_.ground, 1.0);
     p.kind = sim::GroundKind::kLinear;

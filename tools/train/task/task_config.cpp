@@ -69,6 +69,7 @@ constexpr Setting<G> kGround[] = {
     {"patch_loose_share", &G::patch_loose_share, 0.0, 1.0},
     {"patch_loose_factor", &G::patch_loose_factor, 1.0, 100.0},
     {"loose_step_share", &G::loose_step_share, 0.0, 1.0},
+    {"rigid_uneven_share", &G::rigid_uneven_share, 0.0, 1.0},
     {"roughness_m", &G::roughness_m, 0.0, 0.2},
     {"roughness_wavelength_m", &G::roughness_wavelength_m, 0.05, 100.0},
     {"sigma_flat_low_start", &G::sigma_flat_low_start, 1.0, 1e10},

@@ -79,6 +79,7 @@ struct GroundSettings {
   double patch_loose_share = 0;    ///< of the patches of soil that are softer
   double patch_loose_factor = 0;   ///< most by which they are, a divisor of sigma
   double loose_step_share = 0;     ///< of touchdowns on patchy ground: another patch, if softer
+  double rigid_uneven_share = 0;   ///< of the environments on rigid ground
   double roughness_m = 0;          ///< largest standard deviation of rigid ground's height
   double roughness_wavelength_m = 0;
   double sigma_flat_low_start = 0;  ///< softest at the start of the training, N/m^3
