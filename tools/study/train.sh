@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # tools/study/train.sh DIR SEED [NAME ...]: trains the controllers of trainings/ (all of them
 # without a name) with this seed in DIR/NAME-SEED. It continues a training that was interrupted. Of
-# one that is complete it puts the best policy and a short learning curve into DIR:
-# NAME-SEED.safetensors, NAME-SEED.csv. A student (pl-*) imitates the teacher of this seed in DIR.
-# TRANSITIONS: length of each training, the same for all controllers that are compared; a student's
-# is two thirds of it, on top of its teacher's.
+# one that is complete it puts the policy of the end and a short learning curve into DIR:
+# NAME-SEED.safetensors, NAME-SEED.csv. (Not the best policy of the battery: for some controllers
+# that is one of before the late penalties, so their training would differ in length and reward.) A
+# student (pl-*) imitates the teacher of this seed in DIR.
+# TRANSITIONS: length of each training, the same for all controllers that are compared; a teacher has
+# three fifths of it, its student the other two.
 # THREADS: worker threads of a training, without it all cores; weights do not depend on it.
 set -eu
 for word; do
@@ -33,8 +35,10 @@ for name in "$@"; do
   run=$out/$name-$seed
   length=$transitions
   teacher=
+  fifths=5
+  case $name in teacher-*) fifths=3 ;; pl-*) fifths=2 ;; esac
+  [ "$fifths" = 5 ] || length=$(awk -v all="$transitions" -v n="$fifths" 'BEGIN { printf "%.0f", n / 5 * all }')
   case $name in pl-*)
-    length=$(awk -v all="$transitions" 'BEGIN { printf "%.0f", 2 / 3 * all }')
     teacher=$out/teacher-${name#pl-}-$seed.safetensors
     if [ ! -f "$teacher" ]; then
       echo "train.sh: found no $teacher, expected that of teacher-${name#pl-}: train it first" >&2
@@ -49,7 +53,7 @@ for name in "$@"; do
     echo "train.sh: $run is not complete: run the same command again" >&2
     exit 1
   fi
-  cp "$run/best.safetensors" "$run.safetensors"
+  cp "$run/policy.safetensors" "$run.safetensors"
   # Every twentieth row and the last one.
   awk -F, -v names="transitions core_hours reward battery_alive battery_error \
 battery_cost_of_transport command_speed_mps ground_open" '

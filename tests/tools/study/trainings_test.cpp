@@ -104,7 +104,8 @@ class TrainScriptTest : public testing::Test {
     write_file(trainer,
                "#!/bin/sh\necho \"$@\" >> \"$LOG\"\n"
                "while [ \"$1\" != --out ]; do shift; done\nmkdir -p \"$2\"\n"
-               "echo weights > \"$2/best.safetensors\"; touch \"$2/checkpoint.bin\"\n"
+               "echo weights > \"$2/policy.safetensors\"; echo early > \"$2/best.safetensors\"; "
+               "touch \"$2/checkpoint.bin\"\n"
                "{ echo iteration,transitions,core_hours,reward,battery_alive,battery_error,"
                "battery_cost_of_transport,command_speed_mps,ground_open\n"
                "for i in $(seq $ROWS); do echo $i,$((i * 10)),1,2,3,4,5,6,7; done; } "
@@ -123,7 +124,7 @@ class TrainScriptTest : public testing::Test {
   const TemporaryFolder folder_;
 };
 
-TEST_F(TrainScriptTest, TrainsContinuesAndKeepsTheBestPolicyWithAShortCurve) {
+TEST_F(TrainScriptTest, TrainsContinuesAndKeepsThePolicyOfTheEndWithAShortCurve) {
   const std::string out = folder_.path("out");
   const Ended interrupted = run(29, {out, "2", "env-rigid"});
   EXPECT_EQ(interrupted.code, 1) << interrupted;
@@ -145,18 +146,20 @@ TEST_F(TrainScriptTest, TrainsContinuesAndKeepsTheBestPolicyWithAShortCurve) {
             line("env-rigid", "") + line("env-rigid", " --resume") + line("ours", ""));
 }
 
-TEST_F(TrainScriptTest, AStudentImitatesTheTeacherOfItsSeedForTwoThirdsOfTheLength) {
+TEST_F(TrainScriptTest, ATeacherHasThreeFifthsOfTheLengthAndItsStudentTheOtherTwo) {
   const std::string out = folder_.path("out");
   const Ended without = run(20, {out, "2", "pl-gm"});
   EXPECT_EQ(without.code, 2);
   EXPECT_NE(without.err.find("expected that of teacher-gm: train it first"), std::string::npos)
       << without;
-  write_file(out + "/teacher-gm-2.safetensors", "weights\n");
+  EXPECT_EQ(run(18, {out, "2", "teacher-gm"}).code, 0);
   const Ended ended = run(20, {out, "2", "pl-gm"});
   EXPECT_EQ(ended.code, 0) << ended;
   EXPECT_EQ(read_file(folder_.path("log")),
             "--config " + kStudy +
-                "/trainings/pl-gm.toml --set run.transitions=200 --set "
+                "/trainings/teacher-gm.toml --set run.transitions=180 --seed 2 --out " + out +
+                "/teacher-gm-2\n--config " + kStudy +
+                "/trainings/pl-gm.toml --set run.transitions=120 --set "
                 "imitation.teacher=" +
                 out + "/teacher-gm-2.safetensors --seed 2 --out " + out + "/pl-gm-2\n");
 }
