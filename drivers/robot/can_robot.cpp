@@ -78,6 +78,7 @@ void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   for (int j = 0; j < kNumJoints; ++j) {
     const Drive& drive = drives_[j];
     frame.joints.drive_fault[j] = drive.fault();
+    frame.joints.drive_warning[j] = drive.warning();
     if (drive.has_foreign_traffic(tick)) foreign |= std::uint64_t{1} << j;
     if (drive.replies() == 0) continue;
     frame.joints.position_rad[j] = drive.position_rad();
@@ -227,7 +228,8 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
     const Drive& d = robot.drives()[j];
     const std::uint64_t missing = d.sent() - std::min(d.sent(), d.replies());
     const std::uint64_t foreign = d.foreign_commands() + d.surplus_replies();
-    if (missing <= 1 && d.last_fault() == 0 && d.bad() == 0 && foreign == 0) continue;
+    const std::uint64_t trouble = d.last_fault() | d.last_warning();
+    if (missing <= 1 && trouble == 0 && d.bad() == 0 && foreign == 0) continue;
     lines += fmt::format("{}: {} of {} commands not answered", description.joint_names[j], missing,
                          d.sent());
     if (d.bad() > 0) lines += fmt::format(", {} replies of a wrong length", d.bad());
@@ -237,7 +239,7 @@ std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,
     if (d.surplus_replies() > 0) {
       lines += fmt::format(", {} replies that were not asked for", d.surplus_replies());
     }
-    if (d.last_fault() != 0) lines += "; " + drive_fault_words(config.drives[j], d.last_fault());
+    if (trouble != 0) lines += "; " + drive_fault_words(config.drives[j], trouble);
     lines += '\n';
   }
   const Imu::Counters imu = robot.imu().counters();

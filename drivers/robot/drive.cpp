@@ -156,9 +156,15 @@ void Drive::judge_power(bool was_silent) noexcept {
 
 void Drive::judge_supply() noexcept {
   // What a drive does not say (NaN) is neither.
-  set(DriveTrouble::kOverTemperature, state_.temperature_degc > temperature_limit_degc_);
-  set(DriveTrouble::kVoltage,
-      state_.voltage_v < voltage_low_v_ || state_.voltage_v > voltage_high_v_);
+  const double hot_degc = state_.temperature_degc - temperature_limit_degc_, v = state_.voltage_v;
+  const auto outside = [&](double share) {
+    return v < (1.0 - share) * voltage_low_v_ || v > (1.0 + share) * voltage_high_v_;
+  };
+  set(DriveTrouble::kOverTemperature, hot_degc > kTooHot_degc);
+  set(DriveTrouble::kVoltage, outside(kVoltageShare));
+  warning_ = (hot_degc > 0.0 ? static_cast<std::uint64_t>(DriveTrouble::kOverTemperature) : 0) |
+             (outside(0.0) ? static_cast<std::uint64_t>(DriveTrouble::kVoltage) : 0);
+  if (warning_ != 0) last_warning_ = warning_;
 }
 
 void Drive::lose_bus() noexcept {

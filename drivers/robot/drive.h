@@ -15,14 +15,17 @@ enum class DriveTrouble : std::uint64_t {
   kNotEnabled = 1u << 8,        ///< not enabled within kEnable_s of the command to enable
   kSwitchedOff = 1u << 9,       ///< off without a command of this program: reboot, time-out,
                                 ///< or the maker's tool
-  kOverTemperature = 1u << 10,  ///< above HardwareConfig::temperature_limit_degc
-  kVoltage = 1u << 11,          ///< its supply is outside the range
+  kOverTemperature = 1u << 10,  ///< above HardwareConfig::temperature_limit_degc, by kTooHot_degc
+  kVoltage = 1u << 11,          ///< its supply is outside the range, by kVoltageShare
   kBusOff = 1u << 12,           ///< its bus was off since the drives were enabled
   kForgotTimeout = 1u << 13,  ///< a drive that forgets_timeout() and whose supply was off, or that
                               ///< was silent for so long that it may have been. Until the next
                               ///< start, which writes it again
 };
 inline constexpr double kEnable_s = 0.1;
+/// Beyond its first limit, a warning, a drive is a fault: time to stop and to lie down.
+inline constexpr double kTooHot_degc = 10.0;
+inline constexpr double kVoltageShare = 0.05;
 
 /// The command of one exchange to a drive, at the joint.
 struct JointSetPoint {
@@ -71,8 +74,11 @@ class Drive {
   double velocity_radps() const noexcept { return velocity_radps_; }
   double torque_nm() const noexcept { return torque_nm_; }
   std::uint64_t fault() const noexcept { return state_.fault | trouble_; }
-  /// The last non-zero fault; may have cleared.
+  /// kOverTemperature and kVoltage, of their first limits.
+  std::uint64_t warning() const noexcept { return warning_; }
+  /// The last non-zero ones; may have cleared.
   std::uint64_t last_fault() const noexcept { return last_fault_; }
+  std::uint64_t last_warning() const noexcept { return last_warning_; }
   std::uint64_t tick() const noexcept { return tick_; }
   double temperature_degc() const noexcept { return state_.temperature_degc; }  ///< or NaN
   double voltage_v() const noexcept { return state_.voltage_v; }                ///< or NaN
@@ -109,7 +115,7 @@ class Drive {
   bool cleared_ = false;          // its fault, with the frame before
   DriveState state_;              // the newest, at its output
   double position_rad_ = 0.0, velocity_radps_ = 0.0, torque_nm_ = 0.0;
-  std::uint64_t trouble_ = 0, last_fault_ = 0, tick_ = 0;
+  std::uint64_t trouble_ = 0, last_fault_ = 0, warning_ = 0, last_warning_ = 0, tick_ = 0;
   std::uint64_t sent_ = 0, replies_ = 0, replies_off_ = 0, bad_ = 0;
   // Requests that may still be answered, of this kForget_ticks and of those before. A few of the
   // bring-up may be at the start.
@@ -117,7 +123,8 @@ class Drive {
   std::uint64_t surplus_ = 0, surplus_tick_ = 0, foreign_commands_ = 0, foreign_until_ = 0;
 };
 
-/// The text of a joint's drive_fault: "rotor over temperature", "switched off by itself".
+/// The text of a joint's drive_fault or drive_warning: "rotor over temperature", "switched off by
+/// itself".
 std::string drive_fault_words(const DriveConfig& config, std::uint64_t fault);
 
 }  // namespace sandrunner

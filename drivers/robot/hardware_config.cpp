@@ -42,9 +42,11 @@ constexpr Setting<H> kGuards[] = {
     {"timeout_unverified", &H::timeout_unverified,
      "Trust that drives which cannot report their time-out have this one."},
     {"temperature_limit_degc", &H::temperature_limit_degc, 0.0, 150.0,
-     "A hotter drive is a fault."},
-    {"voltage_low_v", &H::voltage_low_v, 0.0, 1e3, "A lower supply is a fault."},
-    {"voltage_high_v", &H::voltage_high_v, 0.0, 1e3, "A higher supply is a fault."},
+     "Warning: a drive is hotter. Fault: by 10 degrees."},
+    {"voltage_low_v", &H::voltage_low_v, 0.0, 1e3,
+     "Warning: a drive's supply is lower. Fault: by 5 %."},
+    {"voltage_high_v", &H::voltage_high_v, 0.0, 1e3,
+     "Warning: a drive's supply is higher. Fault: by 5 %."},
 };
 constexpr Setting<H> kFirstWalks[] = {
     {"torque_scale", &H::torque_scale, 0.0, 1.0, "Factor of every torque limit, for first walks."},

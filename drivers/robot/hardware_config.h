@@ -59,8 +59,8 @@ struct HardwareConfig {
   int rate_hz = 1000;               ///< of the exchange with every drive; divides the control rate
   double drive_timeout_s = 0.05;    ///< a drive without commands for this long gives no torque
   bool timeout_unverified = false;  ///< the user set it in drives that cannot report it
-  double temperature_limit_degc = 80.0;              ///< a hotter drive is a fault
-  double voltage_low_v = 0.0, voltage_high_v = 1e3;  ///< a supply outside is a fault
+  double temperature_limit_degc = 80.0;              ///< a hotter drive is a warning
+  double voltage_low_v = 0.0, voltage_high_v = 1e3;  ///< a supply outside is a warning
   double torque_scale = 1.0;                         ///< of every torque limit, for first walks
   bool hanging = false;  ///< the robot hangs in a frame: falls and tilts are not judged
   std::vector<BusConfig> buses;

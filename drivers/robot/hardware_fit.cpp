@@ -29,7 +29,10 @@ void fit_gate_to(const HardwareConfig& h, GateConfig& gate) noexcept {
   gate.joints_fault_ticks = std::max(gate.joints_fault_ticks, 3 * ticks);
   const auto imu_ticks = static_cast<std::uint64_t>(kControlHz / h.imu.rate_hz);
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, imu_ticks + 4);
-  gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 3 * imu_ticks);
+  gate.imu_late_ticks = std::max(gate.imu_late_ticks, 3 * imu_ticks);
+  gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, 4 * imu_ticks);
+  gate.imu_attitude_samples =
+      static_cast<std::uint64_t>(std::max(1, h.imu.rate_hz / h.imu.quaternion_rate_hz));
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= h.torque_scale;
   for (double& fault_radps : gate.speed_fault_radps) {
     fault_radps = std::min(fault_radps, reportable_speed_radps(h));

@@ -27,7 +27,8 @@ constexpr Setting<C> kUnitree[] = {
     {"domain", &C::domain, 0, 230, "DDS domain of the robot."},
     {"motor_mode", &C::motor_mode, 1, 255, "Mode of a motor that gives torque; a B2's is 10."},
     {"tick_hz", &C::tick_hz, 1, 1e6, "Rate of the clock in its states."},
-    {"low_battery_percent", &C::low_battery_percent, 0, 100, "Fault: the battery has less."},
+    {"low_battery_percent", &C::low_battery_percent, 0, 100,
+     "Warning: the battery has less. Fault: less than half of it."},
     {"need_remote", &C::need_remote,
      "A remote control that is off or lost is an emergency stop, as its L2 with B always is."},
     {"release_sport_mode", &C::release_sport_mode,
@@ -68,7 +69,6 @@ void fit_gate_to(const UnitreeConfig& unitree, GateConfig& gate) noexcept {
   gate.joints_limit_ticks = std::max(gate.joints_limit_ticks, kStateLate_ticks);
   gate.joints_fault_ticks = std::max(gate.joints_fault_ticks, kStateLost_ticks);
   gate.imu_limit_ticks = std::max(gate.imu_limit_ticks, kStateLate_ticks);
-  gate.imu_fault_ticks = std::max(gate.imu_fault_ticks, kStateLost_ticks);
   for (double& limit_nm : gate.torque_limit_nm) limit_nm *= unitree.torque_scale;
   gate.hanging = unitree.hanging;
 }

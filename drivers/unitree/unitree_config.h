@@ -13,7 +13,7 @@ namespace sandrunner {
 /// The table [hardware] of a robot of kind "unitree", and its table [hardware.unitree].
 struct UnitreeConfig {
   bool is_unitree = false;               ///< hardware.kind says so
-  double temperature_limit_degc = 80.0;  ///< a hotter motor is a fault
+  double temperature_limit_degc = 80.0;  ///< a hotter motor is a warning
   double torque_scale = 1.0;             ///< of every torque limit, for first walks
   bool hanging = false;  ///< the robot hangs in a frame: falls and tilts are not judged
 
@@ -21,7 +21,7 @@ struct UnitreeConfig {
   int domain = 0;
   int motor_mode = 0x01;           ///< of a motor that gives torque
   int tick_hz = 1000;              ///< of the clock in its states
-  int low_battery_percent = 10;    ///< less is a fault
+  int low_battery_percent = 10;    ///< less is a warning, less than half of it a fault
   bool need_remote = true;         ///< a remote that is off or lost is an emergency stop
   bool release_sport_mode = true;  ///< false: another program has switched it off
 };

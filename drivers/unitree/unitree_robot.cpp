@@ -34,16 +34,20 @@ UnitreeRobot::UnitreeRobot(const UnitreeConfig& config, std::unique_ptr<unitree:
     : config_(config), wire_(std::move(wire)), memory_(wire_->memory()) {}
 
 std::uint64_t UnitreeRobot::faults_of(int j) const noexcept {
+  const bool follows =
+      enabled_ticks_ <= kModeFollows_ticks || newest_.state.mode[j] == config_.motor_mode;
+  return beyond(j, kMotorTooHot_degc, 0.5) |
+         (follows ? 0 : static_cast<std::uint64_t>(UnitreeFault::kMode));
+}
+
+std::uint64_t UnitreeRobot::warnings_of(int j) const noexcept { return beyond(j, 0.0, 1.0); }
+
+std::uint64_t UnitreeRobot::beyond(int j, double margin_degc, double share) const noexcept {
   const unitree::RobotState& state = newest_.state;
-  std::uint64_t faults = 0;
-  const auto find = [&](bool found, UnitreeFault fault) {
-    if (found) faults |= static_cast<std::uint64_t>(fault);
-  };
-  find(enabled_ticks_ > kModeFollows_ticks && state.mode[j] != config_.motor_mode,
-       UnitreeFault::kMode);
-  find(state.temperature_degc[j] > config_.temperature_limit_degc, UnitreeFault::kTooHot);
-  find(state.battery_percent < config_.low_battery_percent, UnitreeFault::kBattery);
-  return faults;
+  const bool hot = state.temperature_degc[j] > config_.temperature_limit_degc + margin_degc;
+  const bool low = state.battery_percent < share * config_.low_battery_percent;
+  return (hot ? static_cast<std::uint64_t>(UnitreeFault::kTooHot) : 0) |
+         (low ? static_cast<std::uint64_t>(UnitreeFault::kBattery) : 0);
 }
 
 void UnitreeRobot::take_state(std::uint64_t tick, SensorFrame& frame) noexcept {
@@ -80,7 +84,8 @@ void UnitreeRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   take_state(tick, frame);
   for (int j = 0; j < kNumJoints; ++j) {
     frame.joints.drive_fault[j] = faults_of(j);
-    all_faults_[j] |= frame.joints.drive_fault[j];
+    frame.joints.drive_warning[j] = warnings_of(j);
+    all_faults_[j] |= frame.joints.drive_fault[j] | frame.joints.drive_warning[j];
   }
   const bool remote_lost =
       config_.need_remote && !newest_.state.remote.on && tick - remote_tick_ > kRemoteLost_ticks;

@@ -11,12 +11,16 @@
 
 namespace sandrunner {
 
-/// What SensorFrame says of a motor as drive_fault, as bits.
+/// What SensorFrame says of a motor as drive_fault or drive_warning, as bits. The limits of
+/// temperature and battery are those of the warning; kMotorTooHot_degc above, and at half the
+/// charge, a motor is a fault.
 enum class UnitreeFault : std::uint64_t {
   kMode = 1,     ///< it is not in the mode that it is commanded
   kTooHot = 2,   ///< of hardware.temperature_limit_degc
   kBattery = 4,  ///< the robot's battery has less than hardware.unitree.low_battery_percent
 };
+
+inline constexpr double kMotorTooHot_degc = 10.0;
 
 /// "too hot, battery low".
 std::string unitree_fault_words(std::uint64_t faults);
@@ -38,7 +42,7 @@ class UnitreeRobot final : public RobotIo {
 
   const unitree::WireProcess& wire() const noexcept { return *wire_; }
   const unitree::WireReport& newest() const noexcept { return newest_; }
-  /// All faults that each motor has had.
+  /// All faults and warnings that each motor has had.
   const JointArray<std::uint64_t>& faults() const noexcept { return all_faults_; }
   /// Messages of each motor that the robot's own bus lost during the run.
   std::uint64_t lost(int j) const noexcept { return newest_.state.lost[j] - lost_at_start_[j]; }
@@ -46,6 +50,9 @@ class UnitreeRobot final : public RobotIo {
  private:
   void take_state(std::uint64_t tick, SensorFrame& frame) noexcept;
   std::uint64_t faults_of(int j) const noexcept;
+  std::uint64_t warnings_of(int j) const noexcept;
+  /// kTooHot and kBattery, past the limits moved by a margin and by a share.
+  std::uint64_t beyond(int j, double margin_degc, double share) const noexcept;
 
   const UnitreeConfig config_;
   std::unique_ptr<unitree::WireProcess> wire_;

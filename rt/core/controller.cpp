@@ -20,6 +20,11 @@ double distance(const JointArray<double>& a, const JointArray<double>& b) noexce
   return largest_rad;
 }
 
+/// In Stand, a body that has leaned for this long by the angle of this sine since it came to stand
+/// will topple: soft ground gives way under the feet that carry more. Good runs stay below half of
+/// it, and a push by 0.8 m/s is over sooner.
+constexpr double kLeaning = 0.06, kLeaning_s = 0.5;
+
 /// Tilted by more than 20 degrees: stiff legs would topple a robot that is to lie down.
 bool leans(const ImuSample& imu) noexcept {
   constexpr double kCosine = 0.93969262078590838;
@@ -65,8 +70,10 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
   // A reset is judged as strictly as where the robot will stand up from: whoever lies on its back
   // is to be put right first.
   const bool resetting = state_.mode == Mode::kFault && next != Mode::kFault;
-  const std::uint64_t found = gate_.judge(judged, resetting ? Mode::kStand : next, state_.gate);
-  if (found != 0) {
+  const GateVerdict found = gate_.judge(judged, resetting ? Mode::kStand : next, state_.gate);
+  const bool carries = (kCarrying & mode_set(next)) != 0;
+  state_.warnings = carries ? state_.warnings | found.warnings : found.warnings;
+  if (found.faults != 0) {
     next = next_mode(next, Event::kFault);
   } else if (resetting) {
     gate_.clear(state_.gate);
@@ -117,6 +124,7 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
   output.faults = state_.gate.faults;
   output.first_fault = state_.gate.first_fault;
   output.fault_joints = state_.gate.fault_joints;
+  output.warnings = state_.warnings;
   output.command_share = state_.mode == Mode::kWalk ? state_.command_share : 1.0;
 }
 
@@ -147,6 +155,25 @@ void Controller::yield_to_heat(const JointState& joints) noexcept {
   }
 }
 
+void Controller::watch_lean(const ImuSample& imu, std::uint64_t tick) noexcept {
+  const auto& [w, x, y, z] = imu.orientation_wxyz;
+  const Vector3 up{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+  const bool stands = state_.mode == Mode::kStand && state_.folding == 0 && motion_done(tick);
+  if (!stands || state_.stands == 0) {
+    state_.stood_up = up;
+    state_.leans_since_tick = tick;
+  }
+  state_.stands = stands ? 1 : 0;
+  const Vector3& before = state_.stood_up;
+  const Vector3 leans{up[1] * before[2] - up[2] * before[1], up[2] * before[0] - up[0] * before[2],
+                      up[0] * before[1] - up[1] * before[0]};
+  const double sine2 = leans[0] * leans[0] + leans[1] * leans[1] + leans[2] * leans[2];
+  if (!(sine2 > kLeaning * kLeaning)) state_.leans_since_tick = tick;
+  if (tick - state_.leans_since_tick > ticks_from_s(kLeaning_s)) {
+    state_.warnings |= warning_bit(Warning::kLeaning);
+  }
+}
+
 bool Controller::drives_on(std::uint64_t tick) const noexcept {
   return tick < state_.disable_tick && state_.fault_steps < ticks_from_s(config_.damping.fault_s);
 }
@@ -159,20 +186,19 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   if (!row) return mode;
   const Event event = row->event;
   if (event == Event::kRequestWalk && config_.gate.hanging) return mode;
+  const bool rises = event == Event::kRequestWalk || event == Event::kRequestStand;
+  if (rises && state_.warnings != 0) return mode;
+  if (event == Event::kRequestLie) return lie(mode, tick);
   if (mode == Mode::kFault && drives_on(tick)) return mode;
   if (mode == Mode::kWalk) {
     // The latest wish counts: asking for Walk during the stop takes the stop back. Asking again
     // for the stop that is on its way does not begin it anew.
-    if (event == Event::kRequestStand || event == Event::kRequestStop ||
-        event == Event::kRequestLie) {
+    if (event == Event::kRequestStand || event == Event::kRequestStop) {
       if (state_.stopping == 0) begin_stop(tick);
-      state_.stopping = event == Event::kRequestLie ? kStopAndLie : kStop;
+      state_.stopping = kStop;
     } else if (event == Event::kRequestWalk) {
       state_.stopping = 0;
     }
-  } else if (event == Event::kRequestLie && (mode == Mode::kStandUp || mode == Mode::kStand)) {
-    if (mode == Mode::kStandUp && state_.folding != 0) return Mode::kDamping;
-    state_.stopping = kStopAndLie;
   } else if (mode == Mode::kStand && event == Event::kRequestStand) {
     if (state_.to_rad == fold_rad_) {  // it is on its way down
       start_motion(motion_command(tick).position_rad, config_.stand.nominal_rad,
@@ -183,6 +209,14 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
     return mode;
   }
   return next_mode(mode, event);
+}
+
+/// To the ground on the way that is the gentlest from where the robot is.
+Mode Controller::lie(Mode mode, std::uint64_t tick) noexcept {
+  if (mode == Mode::kStandUp && state_.folding != 0) return next_mode(mode, Event::kRequestDamp);
+  if (mode == Mode::kWalk && state_.stopping == 0) begin_stop(tick);
+  if ((kCarrying & mode_set(mode)) != 0) state_.stopping = kStopAndLie;
+  return next_mode(mode, Event::kRequestLie);
 }
 
 void Controller::begin_stop(std::uint64_t tick) noexcept {
@@ -201,6 +235,11 @@ void Controller::begin_lowering(std::uint64_t tick) noexcept {
 Mode Controller::after_time(Mode mode, const ControllerInput& input) noexcept {
   const std::uint64_t tick = input.sensors.tick;
   if (mode != state_.mode) return mode;
+  watch_lean(input.sensors.imu, tick);
+  if (state_.warnings != 0) {
+    const Mode next = lie(mode, tick);
+    if (next != mode) return next;
+  }
   const std::uint64_t lost = lost_ticks(input.command, tick);
   if (mode == Mode::kStandUp && state_.folding == 0 && motion_done(tick) &&
       standing(input.sensors)) {

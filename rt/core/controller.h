@@ -107,11 +107,18 @@ struct ControllerState {
   /// until it has risen again.
   std::uint64_t folding = 0;
 
+  // Stand.
+  Vector3 stood_up{};        ///< the vertical in the body's frame, when its motion had ended
+  std::uint64_t stands = 0;  ///< 1: it has
+  std::uint64_t leans_since_tick = 0;  ///< since when the body has leaned away from that
+
   // Walk.
   VelocityCommand command;     ///< inside the envelope, after the slew, before the yaw clip
   double command_share = 1.0;  ///< of what was asked that the envelope leaves
   /// 1 after a request of Stand or stop; 2 after one to lie down, also in Stand.
   std::uint64_t stopping = 0;
+  /// Bits of Warning that hold, or have held since the robot carries itself.
+  std::uint64_t warnings = 0;
   std::uint64_t zero_since_tick = 0;  ///< while stopping: since when the command has been zero
   std::uint64_t restless_tick = 0;    ///< while stopping: when something last moved
   std::uint64_t episode = 0;
@@ -125,7 +132,7 @@ struct ControllerState {
   GateState gate;
 };
 static_assert(std::is_trivially_copyable_v<ControllerState>);
-static_assert(sizeof(ControllerState) == 8 * (20 + 3 * kNumJoints) + sizeof(GateState),
+static_assert(sizeof(ControllerState) == 8 * (26 + 3 * kNumJoints) + sizeof(GateState),
               "no padding");
 
 struct ControllerInput {
@@ -144,6 +151,7 @@ struct ControllerOutput {
   std::uint64_t faults = 0;          ///< latched bits of Fault
   Fault first_fault = Fault::kNone;  ///< that began the latest latch
   std::uint64_t fault_joints = 0;    ///< that it is about, bit j for joint j
+  std::uint64_t warnings = 0;        ///< bits of Warning for which the robot lies down
   /// Walk: how much of the operator's command the policy's envelope leaves (EnvelopedCommand); else
   /// 1.
   double command_share = 1.0;
@@ -167,10 +175,12 @@ class Controller {
  private:
   Mode after_request(const OperatorCommand& command, std::uint64_t tick) noexcept;
   Mode after_time(Mode mode, const ControllerInput& input) noexcept;
+  Mode lie(Mode mode, std::uint64_t tick) noexcept;
   void begin_stop(std::uint64_t tick) noexcept;
   void begin_lowering(std::uint64_t tick) noexcept;
   void pause_motion(std::uint64_t tick) noexcept;
   void yield_to_heat(const JointState& joints) noexcept;
+  void watch_lean(const ImuSample& imu, std::uint64_t tick) noexcept;
   bool drives_on(std::uint64_t tick) const noexcept;
   bool standing(const SensorFrame& sensors) const noexcept;
   std::uint64_t lost_ticks(const OperatorCommand& command, std::uint64_t tick) const noexcept;

@@ -2,6 +2,7 @@
 #include "rt/core/faults.h"
 
 #include "rt/core/mode_machine.h"
+#include "rt/core/warnings.h"
 
 namespace sandrunner {
 namespace {
@@ -34,6 +35,14 @@ std::string fault_table_markdown() {
   for (const FaultRow& row : kFaultTable) {
     text += std::string("| `") + row.name + "` | " + row.meaning + " | " + row.sensor + " | " +
             modes_text(row.modes) + " | " + row.within + " |\n";
+  }
+  return text;
+}
+
+std::string warning_table_markdown() {
+  std::string text = "| warning | first limit | second limit |\n|---|---|---|\n";
+  for (const WarningRow& row : kWarningTable) {
+    text += std::string("| `") + row.name + "` | " + row.meaning + " | " + row.second + " |\n";
   }
   return text;
 }

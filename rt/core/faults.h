@@ -97,7 +97,7 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kNonFiniteOutput, "non_finite_output", "NaN or infinity in our own joint command",
      "controller", kMoving, "1 tick"},
     {Fault::kJointsStale, "joints_stale", "no new values of a joint", "drives", kAlways, "2.25 ms"},
-    {Fault::kImuStale, "imu_stale", "no new IMU sample", "IMU", kAlways, "10.25 ms"},
+    {Fault::kImuStale, "imu_stale", "no new IMU sample", "IMU", kAlways, "30.25 ms"},
     {Fault::kPolicyStale, "policy_stale", "no new answer of the policy", "policy", kWalkOnly,
      "30.25 ms"},
     {Fault::kJointPosition, "joint_position", "a joint far past its stop", "drives", kMoving,
@@ -124,10 +124,11 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kEncoderJump, "encoder_jump",
      "a joint's position changed by more than its speed explains", "drives", kMoving, "1 tick"},
     {Fault::kEncoderFrozen, "encoder_frozen",
-     "a joint's values stay the same while its speed or its target moves, or all do while the body "
-     "moves",
+     "a joint's values stay the same while its speed or its target moves, while in Stand the other "
+     "joints of its leg are pushed away, or all do while the body moves",
      "drives", kDriven,
-     "0.005 rad by its speed, 0.2 rad by its target and 50 ms, 0.1 rad by the gyroscope"},
+     "0.005 rad by its speed, 0.2 rad by its target and 50 ms, 0.08 rad by its leg and 50 ms, 0.1 "
+     "rad by the gyroscope"},
     {Fault::kPolicyFrozen, "policy_frozen", "the policy gives the same targets to the bit",
      "policy", kWalkOnly, "0.2 s"},
     {Fault::kOverload, "overload", "a drive gives more torque than it can for long (I2t)", "drives",
@@ -142,8 +143,9 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kImuRange, "imu_range", "a value that no IMU can measure: 40 rad/s, 10,000 m/s^2",
      "IMU", kAlways, "1 tick"},
     {Fault::kImuAttitude, "imu_attitude",
-     "the accelerometer's mean is 30 degrees away from the attitude's vertical", "IMU", kCarrying,
-     "0.5 s"},
+     "gyroscope and accelerometer say that the attitude's vertical has drifted by 14 degrees, or "
+     "the accelerometer's mean is 30 degrees away from it",
+     "IMU", kCarrying, "14 degrees of drift, 0.5 s"},
     {Fault::kImuGyro, "imu_gyro", "the attitude does not change as the angular velocity says",
      "IMU", kCarrying, "0.2 rad"},
     {Fault::kTorqueMissing, "torque_missing",
@@ -156,7 +158,7 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "a joint's position does not change as its speed says", "drives", kDriven, "0.3 rad"},
     {Fault::kJointMisplaced, "joint_misplaced",
      "a joint that was silent, or a robot that starts, is neither where it was nor in the lying "
-     "pose: verify its zero with `sandrunner check`",
+     "pose: fold its leg into that pose by hand, or verify its zero with `sandrunner check`",
      "drives", mode_set(Mode::kDamping), "the tick of `arm`"},
     {Fault::kForeignTraffic, "foreign_traffic",
      "another program commands a drive, or a drive answers more often than it is asked", "drives",

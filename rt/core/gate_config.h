@@ -73,7 +73,10 @@ struct GateConfig {
   std::uint64_t joints_limit_ticks = 2;  ///< counted: a bus cycle that came late
   std::uint64_t joints_fault_ticks = 8;  ///< fault: 2 ms without joint values
   std::uint64_t imu_limit_ticks = 8;     ///< counted
-  std::uint64_t imu_fault_ticks = 40;    ///< fault: a policy period without an IMU sample
+  std::uint64_t imu_late_ticks = 40;     ///< warning: a policy period without an IMU sample
+  std::uint64_t imu_fault_ticks = 120;   ///< fault: as long as a silent policy is tolerated
+  /// Samples of the IMU for each new attitude: 1, or more where it sends attitudes less often.
+  std::uint64_t imu_attitude_samples = 1;
   /// Fault: age of the input from which the policy output in use was computed; three policy
   /// periods.
   std::uint64_t policy_fault_ticks = 120;
@@ -140,6 +143,8 @@ inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
      "Fault: joint values are older."},
     {"imu_limit_ticks", &GateConfig::imu_limit_ticks, 0, 200,
      "Limit: an older IMU sample is counted."},
+    {"imu_late_ticks", &GateConfig::imu_late_ticks, 0, 200,
+     "Warning: the IMU's sample is older; the robot lies down."},
     {"imu_fault_ticks", &GateConfig::imu_fault_ticks, 0, 200, "Fault: the IMU's sample is older."},
     {"policy_fault_ticks", &GateConfig::policy_fault_ticks, kTicksPerPolicyStep, 400,
      "Fault: the policy output in use was computed from an older input."},

@@ -11,9 +11,6 @@
 namespace sandrunner {
 namespace {
 
-/// A longer gap is a stall of the loop, through which nothing is known of the motion.
-constexpr std::uint64_t kLongestImuStep_ticks = kTicksPerPolicyStep;
-
 bool within(const Vector3& v, double range) noexcept {
   return std::ranges::all_of(v, [&](double value) { return std::fabs(value) <= range; });
 }
@@ -28,9 +25,28 @@ Vector3 turn_between(const Rotation& from, const Rotation& to) noexcept {
   return {scale * step[1], scale * step[2], scale * step[3]};
 }
 
+/// Follows the error of the attitude, as two angles about the world's x and y: it grows by what the
+/// attitude turns and the gyroscope does not, and goes towards the angle at which the mean
+/// specific force stands away from the vertical. Drifts of any speed add up in the first, and an
+/// offset of the gyroscope is forgotten by the second.
+void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess_rad, double share,
+                       ImuMemory& memory) noexcept {
+  const Vector3& felt_mps2 = memory.felt_mps2;
+  const double felt = std::sqrt(squared(felt_mps2));
+  const Vector3 turned_rad = to_world(axes, excess_rad);
+  const bool falls = felt < 0.5 * kGravity_mps2;
+  const std::array<double, 2> leans_rad = {falls ? 0.0 : -felt_mps2[1] / felt,
+                                           falls ? 0.0 : felt_mps2[0] / felt};
+  for (int i = 0; i < 2; ++i) {
+    double& error_rad = memory.tilt_error_rad[i];
+    error_rad += turned_rad[i] + share * (leans_rad[i] - error_rad);
+  }
+}
+
 }  // namespace
 
-std::uint64_t judge_imu(const ImuSample& imu, bool comparing, ImuMemory& memory) noexcept {
+std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool comparing,
+                        ImuMemory& memory) noexcept {
   std::uint64_t found = 0;
   if (!within(imu.angular_velocity_radps, kGyroRange_radps) ||
       !within(imu.linear_acceleration_mps2, kAccelerometerRange_mps2)) {
@@ -45,6 +61,7 @@ std::uint64_t judge_imu(const ImuSample& imu, bool comparing, ImuMemory& memory)
     memory.same_samples.fill(0);
     memory.lean_ticks = 0;
     memory.turn_error_rad = {};
+    memory.tilt_error_rad = {};
     memory.felt_mps2 = {0.0, 0.0, kGravity_mps2};
     return found;
   }
@@ -53,24 +70,30 @@ std::uint64_t judge_imu(const ImuSample& imu, bool comparing, ImuMemory& memory)
                        same_bits(imu.angular_velocity_radps, before.angular_velocity_radps),
                        same_bits(imu.linear_acceleration_mps2, before.linear_acceleration_mps2)};
   for (int i = 0; i < 3; ++i) {
+    const std::uint64_t repeats = i == 0 ? 2 * (config.imu_attitude_samples - 1) : 0;
     std::uint64_t& count = memory.same_samples[i];
     count = same[i] ? count + 1 : 0;
-    if (count >= kImuFrozenSamples) found |= fault_bit(Fault::kImuFrozen);
+    if (count >= kImuFrozenSamples + repeats) found |= fault_bit(Fault::kImuFrozen);
   }
 
   const std::uint64_t ticks = imu.tick - before.tick;
-  if (ticks > kLongestImuStep_ticks) return found;
+  // A longer gap is a stall of the loop, through which nothing is known of the motion.
+  if (ticks > std::max(config.imu_fault_ticks, kShortestImuGap_ticks)) return found;
   const double step_s = kControlPeriod_s * static_cast<double>(ticks);
   const double share = std::min(step_s / kImuCompare_s, 1.0);
   const Vector3 turned_rad = turn_between(before.orientation_wxyz, imu.orientation_wxyz);
-  const Vector3 felt_mps2 = rotated(imu.orientation_wxyz, imu.linear_acceleration_mps2);
+  const std::array<Vector3, 3> axes = body_axes(imu.orientation_wxyz);
+  const Vector3 felt_mps2 = to_world(axes, imu.linear_acceleration_mps2);
+  Vector3 excess_rad;
   for (int i = 0; i < 3; ++i) {
     const double rate_radps =
         0.5 * (before.angular_velocity_radps[i] + imu.angular_velocity_radps[i]);
+    excess_rad[i] = turned_rad[i] - step_s * rate_radps;
     double& error_rad = memory.turn_error_rad[i];
-    error_rad += turned_rad[i] - step_s * rate_radps - share * error_rad;
+    error_rad += excess_rad[i] - share * error_rad;
     memory.felt_mps2[i] += share * (felt_mps2[i] - memory.felt_mps2[i]);
   }
+  follow_tilt_error(axes, excess_rad, std::min(step_s / kTiltCompare_s, 1.0), memory);
   if (squared(memory.turn_error_rad) > kGyroDisagrees_rad * kGyroDisagrees_rad) {
     found |= fault_bit(Fault::kImuGyro);
   }
@@ -78,7 +101,11 @@ std::uint64_t judge_imu(const ImuSample& imu, bool comparing, ImuMemory& memory)
   const double felt = std::sqrt(squared(memory.felt_mps2));
   const bool leans = felt > 0.5 * kGravity_mps2 && memory.felt_mps2[2] < kLeanCosine * felt;
   memory.lean_ticks = leans ? memory.lean_ticks + ticks : 0;
-  if (memory.lean_ticks > ticks_from_s(kLean_s)) found |= fault_bit(Fault::kImuAttitude);
+  const auto& [x_rad, y_rad] = memory.tilt_error_rad;
+  const bool drifts = x_rad * x_rad + y_rad * y_rad > kTiltDisagrees_rad * kTiltDisagrees_rad;
+  if (drifts || memory.lean_ticks > ticks_from_s(kLean_s)) {
+    found |= fault_bit(Fault::kImuAttitude);
+  }
   return found;
 }
 

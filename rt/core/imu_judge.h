@@ -5,12 +5,14 @@
 
 #include <cstdint>
 
+#include "rt/core/gate_config.h"
 #include "rt/core/messages.h"
 
 namespace sandrunner {
 
 /// Samples in a row with the same bits in the attitude, the angular velocity or the acceleration
-/// after which the IMU counts as frozen. A real one has noise in every sample.
+/// after which the IMU counts as frozen. A real one has noise in every sample. An attitude that is
+/// sent less often (imu_attitude_samples) may be missed once more.
 inline constexpr std::uint64_t kImuFrozenSamples = 10;
 
 // Beyond what an IMU of a legged robot can measure lies an error of unit or of transport.
@@ -26,6 +28,16 @@ inline constexpr double kGyroDisagrees_rad = 0.2;
 /// Fault: the direction of the mean specific force in the world is this far from vertical ...
 inline constexpr double kLeanCosine = 0.8660254037844386;  ///< cos 30 degrees
 inline constexpr double kLean_s = 0.5;                     ///< ... for this long
+/// Fault: gyroscope and accelerometer together say that the attitude's vertical is wrong by this
+/// much, rad (14 degrees). A policy still walks with that, and falls from about 20 degrees on. An
+/// offset of 0.05 rad/s of the gyroscope counts as 0.1 rad, a turn or a start at the limit of
+/// acceleration as 0.15 rad.
+inline constexpr double kTiltDisagrees_rad = 0.25;
+/// Time in which the accelerometer corrects what the gyroscope says of that.
+inline constexpr double kTiltCompare_s = 2.0;
+/// A gap between two samples that is longer than this, and longer than imu_fault_ticks, is a stall
+/// of the loop.
+inline constexpr std::uint64_t kShortestImuGap_ticks = kTicksPerPolicyStep;
 
 /// What is remembered of the IMU. All members 64 bits wide.
 struct ImuMemory {
@@ -35,13 +47,15 @@ struct ImuMemory {
   std::uint64_t lean_ticks = 0;
   Vector3 turn_error_rad{};  ///< of the attitude's change, less the angular velocity's integral
   Vector3 felt_mps2{0.0, 0.0, kGravity_mps2};  ///< specific force in the world, low-passed
+  std::array<double, 2> tilt_error_rad{};      ///< of the attitude, about the world's x and y
 };
-static_assert(sizeof(ImuMemory) == 8 * (1 + 11 + 3 + 1 + 3 + 3), "no padding");
+static_assert(sizeof(ImuMemory) == 8 * (1 + 11 + 3 + 1 + 3 + 3 + 2), "no padding");
 
 /// Judges a usable sample (finite, unit quaternion) and remembers it; the bits of the faults
 /// kImuFrozen, kImuRange, kImuAttitude and kImuGyro that it shows, whatever the mode. The same
 /// sample may be given any number of times. Not `comparing`: the robot does not carry itself, and
 /// only what needs no past is judged.
-std::uint64_t judge_imu(const ImuSample& imu, bool comparing, ImuMemory& memory) noexcept;
+std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool comparing,
+                        ImuMemory& memory) noexcept;
 
 }  // namespace sandrunner

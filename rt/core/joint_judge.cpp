@@ -11,10 +11,6 @@
 namespace sandrunner {
 namespace {
 
-/// A longer gap between two samples is a stall of the loop, through which nothing is known of the
-/// motion.
-constexpr std::uint64_t kLongestJointStep_ticks = 8;
-
 double seconds(std::uint64_t ticks) noexcept {
   return kControlPeriod_s * static_cast<double>(ticks);
 }
@@ -84,10 +80,37 @@ bool ignores_target(const GateConfig& config, const JointState& joints, int j,
   return m.frozen_ticks[j] >= config.frozen_ticks || m.still_ticks[j] >= ticks_from_s(kStill_s);
 }
 
+/// Whether joint j has long stayed the same to the bit while something pushes the other joints of
+/// its leg away from where they are commanded to be: of a leg that stands, no joint is spared.
+bool rests_alone(const GateConfig& config, const JointState& joints, int j,
+                 const JointContext& context, JointMemory& m) noexcept {
+  const int first = j - j % kJointsPerLeg;
+  const bool rests =
+      context.mode == Mode::kStand && context.stiff && m.changed_tick[j] != joints.tick[j];
+  bool pushed = false;
+  for (int k = 0; k < kJointsPerLeg; ++k) {
+    const double position_rad = joints.position_rad[first + k];
+    const double away_rad = position_rad - context.sent_rad[first + k];
+    double &position_before_rad = m.leg_position_rad[j][k], &away_before_rad = m.leg_away_rad[j][k];
+    if (!rests) {
+      position_before_rad = position_rad;
+      away_before_rad = away_rad;
+    }
+    // It has moved, and not because its target has.
+    pushed = pushed || (std::fabs(position_rad - position_before_rad) > kPushed_rad &&
+                        std::fabs(away_rad - away_before_rad) > kPushed_rad);
+  }
+  std::uint64_t& ticks = m.pushed_ticks[j];
+  ticks = rests && pushed ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
+  return ticks >= config.frozen_ticks;
+}
+
 /// Whether the position of joint j has changed by something else than its speed.
-bool speed_disagrees(const JointState& joints, int j, JointMemory& m) noexcept {
+bool speed_disagrees(const GateConfig& config, const JointState& joints, int j,
+                     JointMemory& m) noexcept {
   const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
-  if (ticks > kLongestJointStep_ticks) return false;
+  // A longer gap is a stall of the loop, through which nothing is known of the motion.
+  if (ticks > std::max(config.joints_fault_ticks, kShortestGap_ticks)) return false;
   double& drift_rad = m.drift_rad[j];
   drift_rad += joints.position_rad[j] - m.position_rad[j] -
                0.5 * seconds(ticks) * (joints.velocity_radps[j] + m.velocity_radps[j]) -
@@ -119,9 +142,21 @@ bool not_following(const JointState& joints, int j, const JointContext& context,
   return ticks > ticks_from_s(kNotFollowing_s);
 }
 
-/// With the drives off: a joint that comes, or comes back after a silence, may have lost its zero
-/// until it is where it was or where a lying robot has it.
-void doubt(const GateConfig& config, const JointState& joints, int j, JointMemory& m) noexcept {
+bool near(double a_rad, double b_rad) noexcept {
+  return std::fabs(a_rad - b_rad) <= kMisplaced_rad;
+}
+
+bool lies(const GateConfig& config, const JointState& joints) noexcept {
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (!near(joints.position_rad[j], config.lying_rad[j])) return false;
+  }
+  return true;
+}
+
+/// A joint that comes back after a silence may have lost its zero. So may all joints of a robot
+/// that starts, unless it lies. What a doubtful joint reads until `arm` clears nothing: a leg that
+/// somebody moves passes the lying pose with any offset.
+void doubt(const JointState& joints, int j, bool starts_unsure, JointMemory& m) noexcept {
   const std::uint64_t joint = std::uint64_t{1} << j;
   const bool first = m.seen == 0;
   const bool returns = !first && joints.tick[j] - m.sample_tick[j] > kSilent_ticks;
@@ -129,15 +164,21 @@ void doubt(const GateConfig& config, const JointState& joints, int j, JointMemor
     m.known_joints |= joint;
     m.known_rad[j] = m.position_rad[j];
   }
-  if (first || returns) m.unsure_joints |= joint;
-  const auto near = [&](double rad) {
-    return std::fabs(joints.position_rad[j] - rad) <= kMisplaced_rad;
-  };
-  const bool known = (m.known_joints & joint) != 0 && near(m.known_rad[j]);
-  if (known || near(config.lying_rad[j])) {
-    m.unsure_joints &= ~joint;
-    m.known_joints &= ~joint;
+  if (returns || (first && starts_unsure)) m.unsure_joints |= joint;
+}
+
+/// The joints whose zero nothing vouches for: neither where they were nor where a lying robot has
+/// them.
+std::uint64_t misplaced(const GateConfig& config, const JointState& joints,
+                        const JointMemory& m) noexcept {
+  std::uint64_t found = 0;
+  for (int j = 0; j < kNumJoints; ++j) {
+    const std::uint64_t joint = std::uint64_t{1} << j;
+    const double rad = joints.position_rad[j];
+    const bool known = (m.known_joints & joint) != 0 && near(rad, m.known_rad[j]);
+    if (!known && !near(rad, config.lying_rad[j])) found |= m.unsure_joints & joint;
   }
+  return found;
 }
 
 }  // namespace
@@ -149,6 +190,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
   const Mode mode = context.mode;
   const bool driven = (kDriven & mode_set(mode)) != 0;
   const bool all_frozen = body_moves_alone(joints, context, m);
+  const bool starts_unsure = !driven && !lies(config, joints);  // a simulated one may start in Walk
   for (int j = 0; j < kNumJoints; ++j) {
     if (m.seen != 0 && joints.tick[j] <= m.sample_tick[j]) continue;  // no new sample
     const std::uint64_t joint = std::uint64_t{1} << j;
@@ -157,7 +199,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       if (found && judged_in(mode, fault)) faults |= fault_bit(fault);
       return found;
     };
-    if (!driven) doubt(config, joints, j, m);
+    doubt(joints, j, starts_unsure, m);
     if (m.seen != 0) {
       const double way_rad = std::fabs(joints.position_rad[j] - m.position_rad[j]);
       const double reach_rad =
@@ -166,15 +208,16 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       find(way_rad > reach_rad, Fault::kEncoderJump);
       const bool frozen = all_frozen || frozen_in_motion(config, joints, j, context, m);
       const bool ignores = ignores_target(config, joints, j, context, m);
-      find(frozen || ignores, Fault::kEncoderFrozen);
+      find(frozen || ignores || rests_alone(config, joints, j, context, m), Fault::kEncoderFrozen);
       if (!driven && mode != Mode::kFault) m.drift_rad[j] = 0.0;
-      const bool disagrees = find(speed_disagrees(joints, j, m), Fault::kSpeedMismatch);
+      const bool disagrees = find(speed_disagrees(config, joints, j, m), Fault::kSpeedMismatch);
       if (mode == Mode::kFault && (frozen || disagrees)) verdict.blind |= joint;
       find(torque_missing(config, joints, j, m), Fault::kTorqueMissing);
       find(not_following(joints, j, context, m), Fault::kNotFollowing);
     } else {
       m.changed_tick[j] = joints.tick[j];
       m.still_rad[j] = joints.position_rad[j];
+      rests_alone(config, joints, j, context, m);
     }
     if (faults != 0) verdict.joints |= joint;
     verdict.faults |= faults;
@@ -184,9 +227,10 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
   }
   m.seen = 1;
   const bool arming = mode == Mode::kDamping && context.mode_before == Mode::kPassive;
-  if (arming && m.unsure_joints != 0 && !config.hanging) {
-    verdict.faults |= fault_bit(Fault::kJointMisplaced);
-    verdict.joints |= m.unsure_joints;
+  if (arming && !config.hanging) {
+    const std::uint64_t joints_off = misplaced(config, joints, m);
+    if (joints_off != 0) verdict.faults |= fault_bit(Fault::kJointMisplaced);
+    verdict.joints |= joints_off;
   } else if (driven && (kDriven & mode_set(context.mode_before)) != 0) {
     m.unsure_joints = m.known_joints = 0;  // it was armed, or it starts on its feet
   }

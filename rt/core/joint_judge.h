@@ -25,16 +25,22 @@ inline constexpr double kStill_rad = 0.0005;
 inline constexpr double kStillTarget_rad = 0.4;  ///< ... while its target is this far away from
                                                  ///< where it was when the joint came to rest, ...
 inline constexpr double kStill_s = 0.1;          ///< ... for this long.
+/// Fault: the other joints of a leg are pushed away by this much while one stays the same to the
+/// bit.
+inline constexpr double kPushed_rad = 0.08;
 /// Motion of the body while all joints stay the same to the bit, each beyond what a robot at
 /// rest shows: a turn of 0.1 rad or 0.3 m/s of vertical speed are a fault.
 inline constexpr double kBodyRest_radps = 0.1, kBodyTurn_rad = 0.1;
 inline constexpr double kBodyRest_mps2 = 0.5, kBodySinks_mps = 0.3;
 /// Speed that a braked joint at rest may report: some steps of the coarsest drive's speed.
 inline constexpr double kRest_radps = 0.05;
+/// A gap between two samples that is longer than this, and longer than joints_fault_ticks, is a
+/// stall of the loop.
+inline constexpr std::uint64_t kShortestGap_ticks = 8;
 /// A joint that was silent for longer than this may have lost its zero.
 inline constexpr std::uint64_t kSilent_ticks = 200;
-/// Fault on arming: since then such a joint has not been this near to where it was or to the lying
-/// pose, rad. One turn of a motor moves the zero of a 6.75:1 drive by 0.93 rad.
+/// Fault on arming: such a joint is farther than this from where it was and from the lying pose,
+/// rad. One turn of a motor moves the zero of a 6.75:1 drive by 0.93 rad.
 inline constexpr double kMisplaced_rad = 0.3;
 
 /// What is remembered of the joints. All members 64 bits wide.
@@ -52,6 +58,10 @@ struct JointMemory {
   JointArray<double> still_rad{};            ///< position near which the joint rests
   JointArray<double> still_target_rad{};     ///< commanded position when it came there
   JointArray<std::uint64_t> still_ticks{};   ///< for which that has been far away
+  /// Of each joint's leg, when the joint last changed: positions, and these less the commanded
+  /// ones.
+  JointArray<LegJoints<double>> leg_position_rad{}, leg_away_rad{};
+  JointArray<std::uint64_t> pushed_ticks{};  ///< for which the leg's others have been elsewhere
   JointArray<double> drift_rad{};            ///< change of position, less the integral of the speed
 
   JointArray<double> commanded_nm{};  ///< torque of the last command, at the values then measured
@@ -62,7 +72,7 @@ struct JointMemory {
   std::uint64_t known_joints = 0;   ///< of these, those that were somewhere before
   JointArray<double> known_rad{};   ///< where
 };
-static_assert(sizeof(JointMemory) == 8 * (6 + 14 * kNumJoints), "no padding");
+static_assert(sizeof(JointMemory) == 8 * (6 + 21 * kNumJoints), "no padding");
 
 /// What a judgement of joints rests on besides their values.
 struct JointContext {

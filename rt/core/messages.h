@@ -67,6 +67,8 @@ struct JointState {
   JointArray<double> torque_nm{};
   /// What each drive reports of its own condition, in its maker's code; 0: no fault.
   JointArray<std::uint64_t> drive_fault{};
+  /// The same for what leaves time to lie down: a first limit of temperature or supply is passed.
+  JointArray<std::uint64_t> drive_warning{};
   /// Control tick at which each joint's values were sampled; its distance to the present tick is
   /// the age that the safety gate judges.
   JointArray<std::uint64_t> tick{};

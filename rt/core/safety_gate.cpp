@@ -96,6 +96,9 @@ constexpr double kStandUpTorqueShare = 0.65;
 /// A measured torque heats by no more than that of this many times its limit.
 constexpr double kMostHeating = 10.0;
 
+/// Of the squared torque that is an overload: a warning.
+constexpr double kWarmShare = 0.9;
+
 }  // namespace
 
 SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
@@ -115,13 +118,12 @@ SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
   }
 }
 
-std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
-                                GateState& state) const noexcept {
+GateVerdict SafetyGate::judge(const GateInput& input, Mode mode, GateState& state) const noexcept {
   const SensorFrame& sensors = input.sensors;
   const VelocityCommand& command = input.command;
   const std::uint64_t elapsed =
       state.judged != 0 && sensors.tick > state.tick ? sensors.tick - state.tick : 1;
-  std::uint64_t found = judge_time(sensors.tick, mode, state);
+  std::uint64_t found = judge_time(sensors.tick, mode, state), warnings = 0;
 
   std::uint64_t at_fault = non_finite(sensors.joints);
   const bool joints_usable = at_fault == 0;
@@ -138,7 +140,7 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
   if (sensors.emergency_stop != 0) found |= bit(Fault::kEmergencyStop);
   if (sensors.drives_cut != 0) found |= bit(Fault::kDrivesCut);
   if (input.not_standing) found |= bit(Fault::kNotStanding);
-  found |= judge_ages(input, mode, state, at_fault);
+  found |= judge_ages(input, mode, state, at_fault, warnings);
   if (input.policy != nullptr) found |= judge_policy(*input.policy, state);
 
   if (sensors.foreign_traffic != 0) {
@@ -147,7 +149,7 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
   }
   if (joints_usable) {
     // Drives that are off may lie as they like, but they cool and they move.
-    found |= judge_heat(sensors.joints, elapsed, mode, state, at_fault);
+    found |= judge_heat(sensors.joints, elapsed, mode, state, at_fault, warnings);
     if (mode != Mode::kPassive) found |= judge_joints(sensors.joints, mode, state, at_fault);
     const JointVerdict verdict =
         judge_samples(config_, sensors.joints,
@@ -163,7 +165,7 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
   }
   if (imu_usable) {
     const bool carries = (kCarrying & mode_set(mode)) != 0;
-    found |= judge_imu(sensors.imu, carries, state.imu);
+    found |= judge_imu(config_, sensors.imu, carries, state.imu);
   }
   if (mode == Mode::kPassive) state.torque_over_ticks.fill(0);
   if (judged_in(mode, Fault::kTilt) && imu_usable && !config_.hanging) {
@@ -179,7 +181,7 @@ std::uint64_t SafetyGate::judge(const GateInput& input, Mode mode,
     state.walk_tick = state.tick;
   }
   latch(found, at_fault, state);
-  return found;
+  return {found, warnings};
 }
 
 std::uint64_t SafetyGate::judge_time(std::uint64_t tick, Mode mode,
@@ -205,7 +207,8 @@ std::uint64_t SafetyGate::judge_time(std::uint64_t tick, Mode mode,
 }
 
 std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateState& state,
-                                     std::uint64_t& at_fault) const noexcept {
+                                     std::uint64_t& at_fault,
+                                     std::uint64_t& warnings) const noexcept {
   std::uint64_t found = 0;
   const SensorFrame& sensors = input.sensors;
   bool late = false;
@@ -221,10 +224,12 @@ std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateStat
       found |= bit(Fault::kDriveFault);
       at_fault |= joint;
     }
+    if (sensors.joints.drive_warning[j] != 0) warnings |= warning_bit(Warning::kDriveWarning);
   }
   if (late) ++state.counters.joints_late;
   const std::uint64_t imu_age = age(sensors.imu.tick, state);
   if (imu_age > config_.imu_limit_ticks) ++state.counters.imu_late;
+  if (imu_age > config_.imu_late_ticks) warnings |= warning_bit(Warning::kImuLate);
   if (imu_age > config_.imu_fault_ticks) found |= bit(Fault::kImuStale);
   if (judged_in(mode, Fault::kPolicyStale) &&
       age(input.policy_input_tick, state) > config_.policy_fault_ticks) {
@@ -265,7 +270,8 @@ std::uint64_t SafetyGate::judge_joints(const JointState& joints, Mode mode, Gate
 }
 
 std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t elapsed, Mode mode,
-                                     GateState& state, std::uint64_t& at_fault) const noexcept {
+                                     GateState& state, std::uint64_t& at_fault,
+                                     std::uint64_t& warnings) const noexcept {
   std::uint64_t found = 0;
   bool hot = false;
   const double share = std::min(heat_per_tick_ * static_cast<double>(elapsed), 1.0);
@@ -276,6 +282,7 @@ std::uint64_t SafetyGate::judge_heat(const JointState& joints, std::uint64_t ela
     double& heat = state.heat_n2m2[j];
     heat += share * (torque_nm * torque_nm - heat);
     hot = hot || heat > 0.64 * heat_fault_n2m2_[j];
+    if (heat > kWarmShare * heat_fault_n2m2_[j]) warnings |= warning_bit(Warning::kHeating);
     if (heat > heat_fault_n2m2_[j] && judged_in(mode, Fault::kOverload)) {
       found |= bit(Fault::kOverload);
       at_fault |= std::uint64_t{1} << j;

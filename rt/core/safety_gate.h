@@ -13,6 +13,7 @@
 #include "rt/core/messages.h"
 #include "rt/core/output_bounds.h"
 #include "rt/core/robot_io.h"
+#include "rt/core/warnings.h"
 
 namespace sandrunner {
 
@@ -28,14 +29,19 @@ struct GateInput {
   bool not_standing = false;
 };
 
+/// What holds in a tick: bits of Fault, which are latched, and bits of Warning, which are not.
+struct GateVerdict {
+  std::uint64_t faults = 0, warnings = 0;
+};
+
 class SafetyGate {
  public:
   /// `damping_kd_nmsprad`: gain of the command that passes while a fault is latched.
   SafetyGate(const GateConfig& config, double damping_kd_nmsprad);
 
-  /// Counts excesses over limits, latches faults, returns the bits of the faults that hold in this
+  /// Counts excesses over limits, latches faults, returns the faults and warnings that hold in this
   /// tick. kFaultTable says which fault is judged in which mode.
-  std::uint64_t judge(const GateInput& input, Mode mode, GateState& state) const noexcept;
+  GateVerdict judge(const GateInput& input, Mode mode, GateState& state) const noexcept;
 
   /// Makes the command that may reach the motors, bounded (output_bounds.h); damping while a fault
   /// is latched (a `wanted` that is not finite latches one); off if not `enabled`. `joints` are
@@ -49,11 +55,12 @@ class SafetyGate {
  private:
   std::uint64_t judge_time(std::uint64_t tick, Mode mode, GateState& state) const noexcept;
   std::uint64_t judge_ages(const GateInput& input, Mode mode, GateState& state,
-                           std::uint64_t& at_fault) const noexcept;
+                           std::uint64_t& at_fault, std::uint64_t& warnings) const noexcept;
   std::uint64_t judge_joints(const JointState& joints, Mode mode, GateState& state,
                              std::uint64_t& at_fault) const noexcept;
   std::uint64_t judge_heat(const JointState& joints, std::uint64_t elapsed, Mode mode,
-                           GateState& state, std::uint64_t& at_fault) const noexcept;
+                           GateState& state, std::uint64_t& at_fault,
+                           std::uint64_t& warnings) const noexcept;
   std::uint64_t judge_body(const ImuSample& imu, std::uint64_t elapsed,
                            GateState& state) const noexcept;
   std::uint64_t judge_policy(const PolicyOutput& policy, GateState& state) const noexcept;

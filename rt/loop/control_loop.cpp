@@ -45,6 +45,7 @@ AfterTick ControlLoop::tick(const SlotGrid::Slot& slot, OperatorInput& op, int i
                                               .mode = record.output.mode,
                                               .faults = record.output.faults,
                                               .first_fault = record.output.first_fault,
+                                              .warnings = record.output.warnings,
                                               .base_contact = record.truth.base_contact != 0,
                                               .thigh_contact = record.truth.thigh_contact != 0,
                                               .interrupts = interrupts});

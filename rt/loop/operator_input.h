@@ -17,6 +17,7 @@ struct TickFacts {
   Mode mode = Mode::kPassive;
   std::uint64_t faults = 0;          ///< latched bits of Fault
   Fault first_fault = Fault::kNone;  ///< that began the latch
+  std::uint64_t warnings = 0;        ///< bits of Warning for which the robot lies down
   bool base_contact = false;         ///< simulated robot: its base touches the ground
   bool thigh_contact = false;        ///< likewise
   int interrupts = 0;                ///< how often somebody has wanted the process to end

@@ -126,6 +126,7 @@ RunRow RowMaker::make_row(const TickRecord& tick) {
   row.joint_past_stop = static_cast<std::uint32_t>(tick.counters.joint_past_stop);
   row.joint_too_fast = static_cast<std::uint32_t>(tick.counters.joint_too_fast);
   row.faults = static_cast<std::uint32_t>(tick.output.faults);
+  row.warnings = static_cast<std::uint32_t>(tick.output.warnings);
   row.flags = (truth ? kRowHasTruth : 0) | (sums.counted == sums.ticks ? kRowCounts : 0);
   row.skipped = skipped_;
   const Vector3& position_m = truth ? tick.truth.position_m : odometry_.position_m();

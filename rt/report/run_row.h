@@ -45,7 +45,7 @@ struct RunRow {
   float cost_of_transport = 0;                ///< over the last second; NaN: not defined
   float late_us = 0, control_us = 0, tick_us = 0;  ///< worst since the row before; 0 in lockstep
   std::uint32_t joint_past_stop = 0, joint_too_fast = 0;  ///< ticks so far (GateCounters)
-  std::uint32_t faults = 0, flags = 0;
+  std::uint32_t faults = 0, warnings = 0, flags = 0;
   std::uint32_t skipped = 0;  ///< ticks missed so far
 };
 
@@ -85,6 +85,7 @@ inline constexpr std::array kRowFields = {
     ROW(joint_past_stop, "joint_past_stop_ticks", kNotOnPage),
     ROW(joint_too_fast, "joint_too_fast_ticks", kNotOnPage),
     ROW(faults, "faults"),
+    ROW(warnings, "warnings"),
     ROW(flags, "flags"),
     ROW(skipped, "skipped_ticks"),
 };

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <vector>
+
 #include "rt/base/standard_error.h"
 
 namespace sandrunner {
@@ -17,9 +20,13 @@ RunRobot::RunRobot(const Options& options, const ProcessConfig& config) {
   }
   driver_ = config.driver;
   io_ = driver_->connect();
-  for (const std::string& line : driver_->warnings()) {
-    to_standard_error(fmt::format("sandrunner: {}\n", line));
+  std::vector<std::string> lines = driver_->warnings();
+  if (config.controller.gate.hanging) {
+    lines.emplace_back(
+        "tilt, free_fall, joint_misplaced and a body that moves while its encoders stand still are "
+        "not judged, and Walk is refused: hardware.hanging is true");
   }
+  for (const std::string& line : lines) to_standard_error(fmt::format("sandrunner: {}\n", line));
 }
 
 std::string RunRobot::report() const { return driver_ ? driver_->report(*io_) : std::string(); }

@@ -31,12 +31,13 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   if (!fall_reason_ && facts.mode != Mode::kFault) fall_mode_ = facts.mode;
   has_walked_ = has_walked_ || facts.mode == Mode::kWalk;
   verdict.counts = phase_ == Phase::kWalk && facts.mode == Mode::kWalk;
-  if (facts.faults != 0) fail(fault_name(facts.first_fault));
+  if (facts.faults != 0) fail(fault_name(facts.first_fault), kAtOnce);
+  if (facts.warnings != 0) fail(warning_name(facts.warnings), kGently);
   // Lying and standing up, base and thighs only carry; once the robot has walked, touching the
   // ground is a fall, but not while it lies down.
   const bool carries = has_walked_ && phase_ != Phase::kEnd;
-  if (carries && facts.base_contact) fail("base_contact");
-  if (carries && facts.thigh_contact) fail("thigh_contact");
+  if (carries && facts.base_contact) fail("base_contact", kAtOnce);
+  if (carries && facts.thigh_contact) fail("thigh_contact", kAtOnce);
   if (facts.interrupts > 0) {
     interrupted_ = true;
     end(end_.lie());
@@ -46,7 +47,7 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   // What was skipped lies before the end that this tick begins: a stall does not shorten it.
   verdict.next = next_phase(facts.mode, phase_ == at_start ? facts.ticks : 1);
   const bool stood_up = before == Phase::kStandUp && phase_ != Phase::kStandUp;
-  if (stood_up && facts.base_contact) fail("did_not_stand");
+  if (stood_up && facts.base_contact) fail("did_not_stand", kAtOnce);
   return verdict;
 }
 
@@ -113,12 +114,12 @@ void RunScript::end(ModeRequest r) noexcept {
   enter(Phase::kEnd);
 }
 
-void RunScript::fail(const char* reason) noexcept {
+void RunScript::fail(const char* reason, WayDown way) noexcept {
   // Who interrupts a run lets the robot down: a fault on the way is no fall.
   if (fall_reason_ || interrupted_) return;
   fall_reason_ = reason;
   fall_time_s_ = walked_s();
-  end(end_.damp());
+  end(way == kAtOnce ? end_.damp() : end_.lie());
 }
 
 }  // namespace sandrunner

@@ -31,7 +31,8 @@ class RunScript final : public OperatorInput {
   void report(RunResult& result) const;
 
   bool survived() const noexcept { return fall_reason_ == nullptr; }
-  /// "base_contact", "thigh_contact", "did_not_stand" or the name of a fault; null: none.
+  /// "base_contact", "thigh_contact", "did_not_stand", or the name of a fault or a warning; null:
+  /// none.
   const char* fall_reason() const noexcept { return fall_reason_; }
   double fall_time_s() const noexcept { return fall_time_s_; }  ///< since the start of Walk
   Mode fall_mode() const noexcept { return fall_mode_; }        ///< in which it fell or faulted
@@ -40,11 +41,12 @@ class RunScript final : public OperatorInput {
   double walked_s() const noexcept { return static_cast<double>(walked_) * kControlPeriod_s; }
 
  private:
+  enum WayDown { kAtOnce, kGently };
   enum class Phase { kArm, kStandUp, kWalk, kStop, kEnd };
   void request(ModeRequest r) noexcept;
   void enter(Phase phase) noexcept;
   void end(ModeRequest r) noexcept;
-  void fail(const char* reason) noexcept;
+  void fail(const char* reason, WayDown way) noexcept;
   AfterTick next_phase(Mode mode, std::uint64_t ticks) noexcept;
 
   const CommandSource& source_;

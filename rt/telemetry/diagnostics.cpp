@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "rt/core/mode_machine.h"
+#include "rt/core/warnings.h"
 
 namespace sandrunner {
 namespace {
@@ -35,6 +36,10 @@ std::string fault_names(std::uint64_t faults) {
   });
 }
 
+std::string warning_names(std::uint64_t warnings) {
+  return names_of_bits(warnings, kNumWarnings, [](int bit) { return kWarningTable[bit].name; });
+}
+
 std::string hardware_id(const RobotDescription& robot) {
   char host[65]{};
   if (gethostname(host, sizeof host - 1) != 0) return robot.name;
@@ -47,6 +52,7 @@ Diagnostics::Diagnostics(const RobotDescription& robot)
 void Diagnostics::add(const TickRecord& tick) noexcept {
   mode_ = tick.output.mode;
   faults_ = tick.output.faults;
+  warnings_ = tick.output.warnings;
   fault_joints_ = faults_ != 0 ? tick.output.fault_joints : 0;  // which outlives a reset
   tick_ = tick.input.sensors.tick;
   ++ticks_;
@@ -68,6 +74,7 @@ DiagnosticsMessage Diagnostics::message(std::int64_t stamp_ns) {
                  {"faults", fault_names(faults_)},
                  {"fault_joints",
                   names_of_bits(fault_joints_, kNumJoints, [&](int j) { return joint_names_[j]; })},
+                 {"warnings", warning_names(warnings_)},
                  {"tick", std::to_string(tick_)},
                  {"ticks_done", std::to_string(ticks_)},
                  {"slots_missed", std::to_string(skipped_)},
@@ -81,6 +88,7 @@ DiagnosticsMessage Diagnostics::message(std::int64_t stamp_ns) {
   }
   if (skipped_ != skipped_before_) m.warn("slots missed");
   skipped_before_ = skipped_;
+  if (warnings_ != 0) m.warn(warning_names(warnings_) + ": lies down");
   if (faults_ != 0) {
     m.level = DiagnosticsMessage::kError;
     m.message += ", " + fault_names(faults_);

@@ -27,7 +27,7 @@ class Diagnostics {
   const std::string hardware_id_;
   const JointArray<std::string> joint_names_;
   Mode mode_ = Mode::kPassive;
-  std::uint64_t faults_ = 0, fault_joints_ = 0, tick_ = 0, ticks_ = 0, skipped_ = 0,
+  std::uint64_t faults_ = 0, warnings_ = 0, fault_joints_ = 0, tick_ = 0, ticks_ = 0, skipped_ = 0,
                 skipped_before_ = 0;
   GateCounters counters_;
   LogHistogram late_, read_, control_, write_;

@@ -9,11 +9,12 @@ namespace sandrunner::hil {
 namespace {
 
 constexpr const char* kDamping = "damping, then off";
+constexpr const char* kLiesDown = "stops, stands, lies down, then off";
 constexpr const char* kNotStarted = "nothing is enabled";
 
 // A drive that receives nothing switches off by its own time-out, 50 ms in the examples. The robot
 // stands up when the fault comes, but where another time is given: 6 s after, it walks.
-constexpr std::array<FaultRun, 27> kRuns = {{
+constexpr std::array<FaultRun, 28> kRuns = {{
     {"drive-silent", "a drive is silent, in Walk", "moteus", "6 silent LF_KFE", "joints_stale",
      "LF_KFE", "", kDamping, 1, 0.005, 0.052},
     {"drive-reboots", "a drive reboots in 0.3 s", "moteus", "1 reboot LF_KFE 0.3", "joints_stale",
@@ -49,14 +50,16 @@ constexpr std::array<FaultRun, 27> kRuns = {{
      "RH_HFE", "", kDamping, 1, 0.004, 0.004},
     {"drive-fault", "a drive reports a fault of its own", "moteus", "1 code LH_KFE 33",
      "drive_fault", "LH_KFE", "", kDamping, 1, 0.004, 0.004},
-    {"drive-hot", "a drive is at 90 degrees C", "mit", "1 hot LH_KFE 90", "drive_fault", "LH_KFE",
+    {"drive-warm", "a drive is at 85 degrees C, in Walk", "mit", "6 hot LH_KFE 85", "", "",
+     "drive_warning", kLiesDown, 1, 0.0, 0.0},
+    {"drive-hot", "a drive is at 95 degrees C", "mit", "1 hot LH_KFE 95", "drive_fault", "LH_KFE",
      "too hot", kDamping, 1, 0.004, 0.004},
     {"imu-silent", "the IMU is silent", "moteus", "1 imu-silent", "imu_stale", "", "", kDamping, 1,
-     0.014, 0.014},
+     0.034, 0.034},
     {"imu-repeats", "the IMU repeats its last packet", "moteus", "1 imu-repeats", "imu_stale", "",
-     "REPEATED", kDamping, 1, 0.014, 0.014},
+     "REPEATED", kDamping, 1, 0.034, 0.034},
     {"imu-garbage", "the IMU sends garbage", "moteus", "1 imu-garbage", "imu_stale", "",
-     "bytes skipped", kDamping, 1, 0.014, 0.014},
+     "bytes skipped", kDamping, 1, 0.034, 0.034},
     {"foreign-mit", "another program sends a drive set-points, in Walk: MIT layout", "mit",
      "6 foreign RF_HFE 1000", "foreign_traffic", "RF_HFE", "COMMANDS OF ANOTHER PROGRAM", kDamping,
      1, 0.004, 0.004},

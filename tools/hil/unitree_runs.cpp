@@ -25,6 +25,7 @@ namespace sandrunner::hil {
 namespace {
 
 constexpr const char* kDamping = "damping, then off";
+constexpr const char* kLiesDown = "stops, stands, lies down, then off";
 constexpr const char* kWalksOn = "walks on; counted";
 constexpr const char* kWire = "the wire damps, then off";
 constexpr const char* kGuard = "the wire's guard damps, then off";
@@ -69,11 +70,15 @@ constexpr auto kRuns = std::to_array<UnitreeRun>({
      "WENT BACK", kDamping, 1, kStale_s},
     {"lost", "the robot's own bus hears no more of a motor", "1 lost {}", kStale, kOne,
      "lost by the robot's own bus", kDamping, 1, kStale_s},
-    {"hot", "a motor is at 90 degrees C", "1 hot {} 90", "drive_fault", kOne, "too hot", kDamping,
+    {"warm", "a motor is at 85 degrees C, in Walk", "6 hot {} 85", "", kNone, "drive_warning",
+     kLiesDown, 1, 0.0},
+    {"hot", "a motor is at 95 degrees C", "1 hot {} 95", "drive_fault", kOne, "too hot", kDamping,
      1, kAtOnce_s},
     {"mode", "a motor is off by itself", "1 mode {} 0", "drive_fault", kOne,
      "another mode than commanded", kDamping, 1, kAtOnce_s},
-    {"battery", "the battery has 5 %", "1 battery 5", "drive_fault", kAll, "battery low", kDamping,
+    {"battery-low", "the battery has 8 %, in Walk", "6 battery 8", "", kNone, "drive_warning",
+     kLiesDown, 1, 0.0},
+    {"battery", "the battery has 4 %", "1 battery 4", "drive_fault", kAll, "battery low", kDamping,
      1, kAtOnce_s},
     {"foreign", "another program sends one command", "1 foreign 1", "foreign_traffic", kAll,
      kForeign, "damping for 10 ms, then silence", 1, kAtOnce_s},

@@ -177,10 +177,14 @@ void RecordingWriter::write_events(const TickRecord& tick) {
       event("fault", fault_name(static_cast<Fault>(mask)));
     }
   }
+  if (tick.output.warnings != 0 && last_warnings_ == 0) {
+    event("warning", warning_name(tick.output.warnings));
+  }
   if (tick.skipped > 0) event("skipped", fmt::format("{} ticks", tick.skipped));
   has_last_ = true;
   last_mode_ = mode;
   last_faults_ = tick.output.faults;
+  last_warnings_ = tick.output.warnings;
   last_request_ = request;
 }
 

@@ -81,7 +81,7 @@ class RecordingWriter {
   std::uint64_t bytes_at_state_ = 0;  // of the file, when the last state was written
   std::uint64_t batches_ = 0, states_ = 0, events_ = 0, last_flush_tick_ = 0;
   bool in_the_middle_, has_last_ = false;
-  std::uint64_t last_mode_ = 0, last_faults_ = 0, last_request_ = 0;
+  std::uint64_t last_mode_ = 0, last_faults_ = 0, last_warnings_ = 0, last_request_ = 0;
 };
 
 inline constexpr const char* kTicksTopic = "/sandrunner/ticks";

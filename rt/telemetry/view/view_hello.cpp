@@ -10,6 +10,7 @@
 #include "estimator/kinematics.h"
 #include "rt/base/build.h"
 #include "rt/core/faults.h"
+#include "rt/core/warnings.h"
 #include "rt/core/mode_machine.h"
 #include "rt/report/run_row.h"
 #include "rt/telemetry/view/view_tiles.h"
@@ -66,6 +67,7 @@ std::string view_hello(const RunScene& scene, const std::string& note) {
       {"tile_step_m", kViewTileStep_m},
       {"modes", nlohmann::ordered_json::array()},
       {"faults", nlohmann::ordered_json::array()},
+      {"warnings", nlohmann::ordered_json::array()},
       {"requests", nlohmann::ordered_json::array()},
       {"row_flags", {{"has_truth", kRowHasTruth}, {"has_estimate", kRowHasEstimate}}},
       {"row_kinds", kViewRowKinds},
@@ -77,6 +79,7 @@ std::string view_hello(const RunScene& scene, const std::string& note) {
   for (const FaultRow& row : kFaultTable) {
     json["faults"].push_back({{"name", row.name}, {"meaning", row.meaning}});
   }
+  for (const WarningRow& row : kWarningTable) json["warnings"].push_back(row.name);
   for (const RequestRow& row : kRequestTable) {
     json["requests"].push_back(
         {{"name", row.name}, {"key", row.key == 0 ? std::string() : std::string(1, row.key)}});

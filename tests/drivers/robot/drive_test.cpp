@@ -255,18 +255,23 @@ TEST(DriveTest, AJointAtRestHasNoSpeed) {
   EXPECT_NEAR(pair.drive.velocity_radps(), 0.05, 0.013);
 }
 
-TEST(DriveTest, HeatIsAFaultAsLongAsItLasts) {
+TEST(DriveTest, HeatIsAWarningThenAFaultAsLongAsItLasts) {
   MitPair pair;
   pair.state.temperature_degc = 79.0;
   pair.exchange(nullptr);
-  EXPECT_EQ(pair.drive.fault(), 0u);
+  EXPECT_EQ(pair.drive.warning(), 0u);
   pair.state.temperature_degc = 81.0;
+  pair.exchange(nullptr);
+  EXPECT_EQ(pair.drive.warning(), static_cast<std::uint64_t>(DriveTrouble::kOverTemperature));
+  EXPECT_EQ(pair.drive.fault(), 0u);
+  pair.state.temperature_degc = 91.0;
   pair.exchange(nullptr);
   EXPECT_TRUE(pair.said(DriveTrouble::kOverTemperature));
   EXPECT_EQ(drive_fault_words(pair.config(), pair.drive.fault()), "too hot");
   pair.state.temperature_degc = 60.0;
   pair.exchange(nullptr);
   EXPECT_EQ(pair.drive.fault(), 0u);
+  EXPECT_EQ(pair.drive.warning(), 0u);
 }
 
 TEST(DriveTest, FramesOfOthersAreNotTakenAndWrongLengthsCounted) {

@@ -178,10 +178,20 @@ TEST(HardwareConfigTest, TheSlowestRatesStayBelowTheGatesCeilings) {
               gate);
   EXPECT_EQ(gate.joints_fault_ticks, 30u);
   EXPECT_EQ(gate.imu_limit_ticks, 44u);
-  EXPECT_EQ(gate.imu_fault_ticks, 120u);
+  EXPECT_EQ(gate.imu_late_ticks, 120u);
+  EXPECT_EQ(gate.imu_attitude_samples, 1u);
+  EXPECT_EQ(gate.imu_fault_ticks, 160u);
   const GateConfig bounded = below_ceilings(gate);
   EXPECT_EQ(bounded.joints_fault_ticks, gate.joints_fault_ticks);
   EXPECT_EQ(bounded.imu_fault_ticks, gate.imu_fault_ticks);
+}
+
+TEST(HardwareConfigTest, AnAttitudeThatIsSentLessOftenMayRepeat) {
+  GateConfig gate = example_gate();
+  fit_gate_to(example_hardware(
+                  "moteus", {"hardware.imu.rate_hz=1000", "hardware.imu.quaternion_rate_hz=100"}),
+              gate);
+  EXPECT_EQ(gate.imu_attitude_samples, 10u);
 }
 
 TEST(HardwareConfigTest, EveryTorqueCommandOfAScaledRobotFitsASmallerDrive) {

@@ -87,16 +87,25 @@ TEST_F(UnitreeRobotTest, AJointWhoseMessageTheRobotLostKeepsItsValuesAndTick) {
   EXPECT_EQ(robot_->lost(2), 1);
 }
 
-TEST_F(UnitreeRobotTest, AHotMotorAndALowBatteryAreDriveFaults) {
-  report_.state.temperature_degc[7] = 81;
-  deliver();
-  EXPECT_EQ(read(8).joints.drive_fault[7], static_cast<std::uint64_t>(UnitreeFault::kTooHot));
-  EXPECT_EQ(frame_.joints.drive_fault[6], 0);
-  report_.state.temperature_degc[7] = 80;
-  report_.state.battery_percent = 9;
-  deliver();
-  EXPECT_EQ(read(16).joints.drive_fault[7], static_cast<std::uint64_t>(UnitreeFault::kBattery));
-  EXPECT_EQ(frame_.joints.drive_fault[0], static_cast<std::uint64_t>(UnitreeFault::kBattery));
+TEST_F(UnitreeRobotTest, AHotMotorAndALowBatteryAreWarningsAndLaterDriveFaults) {
+  constexpr auto kHot = static_cast<std::uint64_t>(UnitreeFault::kTooHot),
+                 kLow = static_cast<std::uint64_t>(UnitreeFault::kBattery);
+  std::uint64_t tick = 0;
+  const auto expect = [&](int temperature_degc, int battery_percent, std::uint64_t warning,
+                          std::uint64_t fault) {
+    report_.state.temperature_degc[7] = static_cast<std::int8_t>(temperature_degc);
+    report_.state.battery_percent = static_cast<std::uint8_t>(battery_percent);
+    deliver();
+    const JointState& joints = read(tick += 8).joints;
+    EXPECT_EQ(joints.drive_warning[7], warning) << temperature_degc << ", " << battery_percent;
+    EXPECT_EQ(joints.drive_fault[7], fault) << temperature_degc << ", " << battery_percent;
+    EXPECT_EQ(joints.drive_fault[6], fault & kLow);
+  };
+  expect(80, 10, 0, 0);
+  expect(81, 10, kHot, 0);
+  expect(90, 5, kHot | kLow, 0);
+  expect(91, 10, kHot, kHot);
+  expect(80, 4, kLow, kLow);
   EXPECT_EQ(unitree_fault_words(robot_->faults()[7]), "too hot, battery low");
 }
 

@@ -421,6 +421,9 @@ TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
     seen.sensors.joints.position_rad[3] = held_rad;
     seen.sensors.joints.velocity_radps[3] = slips ? -0.001 * kControlHz : 0.0;
     seen.sensors.joints.torque_nm[3] = torque_nm;
+    for (const int j : {4, 5}) {  // as those of a real leg
+      seen.sensors.joints.position_rad[j] += seen.sensors.tick % 2 == 0 ? 1e-6 : -1e-6;
+    }
   };
   loop.run_s(9.0);
   EXPECT_NEAR(torque_nm, 35.0, 1e-9);  // the whole stiffness, until the joint is warm
@@ -430,7 +433,7 @@ TEST(ControllerTest, AJointThatIsHeldAwayFromStandGivesWayBeforeItOverheats) {
   EXPECT_EQ(loop.output.command.joints().position_rad[4], loop.config.stand.nominal_rad[4]);
 }
 
-TEST(ControllerTest, AJointThatBearsTooMuchForEverIsAnOverloadAndDoesNotSinkWithoutEnd) {
+TEST(ControllerTest, AJointThatBearsTooMuchForEverMakesTheRobotLieDownAndIsThenAnOverload) {
   FakeLoop loop;
   loop.reach(Mode::kStand);
   const double continuous_nm = loop.config.gate.continuous_torque_nm[0];
@@ -438,10 +441,14 @@ TEST(ControllerTest, AJointThatBearsTooMuchForEverIsAnOverloadAndDoesNotSinkWith
   loop.spoil = [&](ControllerInput& seen) {  // a load, which giving way does not relieve
     // With breaks, as a torque that was not commanded is a fault as well.
     if (seen.sensors.tick % 160 < 150) seen.sensors.joints.torque_nm[5] = 1.2 * continuous_nm;
-    if (loop.output.mode != Mode::kStand) return;
+    if (loop.output.mode != Mode::kStand || loop.output.warnings != 0) return;
     farthest_rad = std::max(farthest_rad, std::fabs(loop.output.command.joints().position_rad[5] -
                                                     loop.config.stand.nominal_rad[5]));
   };
+  while (loop.output.warnings == 0 && loop.output.faults == 0) loop.tick();
+  EXPECT_EQ(loop.output.warnings, warning_bit(Warning::kHeating));
+  while (loop.output.mode == Mode::kStand) loop.tick();
+  EXPECT_EQ(loop.output.mode, Mode::kDamping);
   loop.run_s(200.0);
   EXPECT_EQ(loop.output.first_fault, Fault::kOverload);
   EXPECT_LE(farthest_rad, loop.config.stand.reached_rad + 1e-9);

@@ -42,10 +42,10 @@ const FaultCase kFaultCases[] = {
      [](auto& seen, auto&) { seen.sensors.imu.angular_velocity_radps[2] = kNan; }},
     {Fault::kNonFiniteCommand, Mode::kDamping, 0,
      [](auto& seen, auto&) { seen.command.velocity.wz_radps = kNan; }},
-    // The first disturbed tick sees values of age 1; ages 8 and 40 are the last that pass.
+    // The first disturbed tick sees values of age 1; ages 8 and 120 are the last that pass.
     {Fault::kJointsStale, Mode::kWalk, 8,
      [](auto& seen, auto& last) { seen.sensors.joints = last.sensors.joints; }},
-    {Fault::kImuStale, Mode::kStandUp, 40,
+    {Fault::kImuStale, Mode::kDamping, 120,
      [](auto& seen, auto& last) { seen.sensors.imu = last.sensors.imu; }},
     {Fault::kJointPosition, Mode::kStand, 0,
      [](auto& seen, auto&) { seen.sensors.joints.position_rad[2] = 0.351; }, kJumped},
@@ -57,10 +57,10 @@ const FaultCase kFaultCases[] = {
      [](auto& seen, auto&) { seen.sensors.joints.torque_nm[5] = -72.1; }},
     {Fault::kTilt, Mode::kWalk, 0,
      [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(60.1); },
-     fault_bit(Fault::kImuGyro)},
+     fault_bit(Fault::kImuGyro) | fault_bit(Fault::kImuAttitude)},
     {Fault::kTilt, Mode::kStandUp, 0,
      [](auto& seen, auto&) { seen.sensors.imu.orientation_wxyz = tilted(-170.0); },
-     fault_bit(Fault::kImuGyro)},
+     fault_bit(Fault::kImuGyro) | fault_bit(Fault::kImuAttitude)},
 };
 
 std::uint64_t bits(const FaultCase& c) { return fault_bit(c.fault) | c.also; }

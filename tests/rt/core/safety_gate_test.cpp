@@ -44,7 +44,9 @@ class SafetyGateTest : public testing::Test {
     if (trembles) tremble(sensors.imu);
     const GateInput input{
         .sensors = sensors, .command = command, .policy_input_tick = sensors.tick};
-    return by.judge(input, mode, state);
+    const GateVerdict verdict = by.judge(input, mode, state);
+    warnings = verdict.warnings;
+    return verdict.faults;
   }
   SafeCommand pass(const JointCommand& to_pass, bool enabled = true) {
     return gate.pass(to_pass, enabled, sensors.joints, state);
@@ -67,6 +69,7 @@ class SafetyGateTest : public testing::Test {
   SafetyGate gate{config, 2.0};
   GateState state;
   SensorFrame sensors;
+  std::uint64_t warnings = 0;
   bool trembles = true;  ///< the IMU, as a real one
   VelocityCommand command;
   JointCommand wanted;
@@ -154,6 +157,21 @@ TEST_F(SafetyGateTest, OneJointMayRestWhileTheOthersAndTheBodyMove) {
   std::uint64_t found = 0;
   for (int n = 0; n < 1000 && found == 0; ++n) found = stand(kNumJoints);
   EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kEncoderFrozen));
+}
+
+TEST_F(SafetyGateTest, AnAttitudeThatIsSentWithEveryTenthSampleMayBeLostOnce) {
+  trembles = false;
+  config.imu_attitude_samples = 10;
+  const SafetyGate rare(config, 2.0);
+  const auto stand = [&] {
+    sensors.imu.angular_velocity_radps[2] = sensors.tick % 2 == 0 ? 1e-6 : -1e-6;
+    sensors.imu.linear_acceleration_mps2[2] = kGravity_mps2 + sensors.imu.angular_velocity_radps[2];
+    pass(wanted);
+    sensors.joints.torque_nm = state.joints.commanded_nm;
+    return judge(rare, Mode::kStand);
+  };
+  for (int n = 0; n < 28; ++n) ASSERT_EQ(stand(), 0u) << n;
+  EXPECT_EQ(stand(), fault_bit(Fault::kImuFrozen));
 }
 
 TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {

@@ -46,7 +46,7 @@ std::vector<FaultCase> every_case() {
        }},
       {Fault::kNonFiniteCommand, 1, [](DisturbedLoop& p) { p.command.velocity.vy_mps = kNan; }},
       sensor(Fault::kJointsStale, 9, [](F f, G g, N) { f.joints = g.joints; }),
-      sensor(Fault::kImuStale, 41, [](F f, G g, N) { f.imu = g.imu; }),
+      sensor(Fault::kImuStale, 121, [](F f, G g, N) { f.imu = g.imu; }),
       {Fault::kPolicyStale, 122, [](DisturbedLoop& p) { p.policy.hangs = true; }},
       // It jumps there, which is a fault as well, but not the first.
       sensor(Fault::kJointPosition, 1, [](F f, G, N) { f.joints.position_rad[2] = 0.4; }),

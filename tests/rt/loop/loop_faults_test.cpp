@@ -86,7 +86,7 @@ std::vector<Case> cases() {
       frame(Fault::kNonFiniteImu, 0, [](auto& f, auto&) { f.imu.orientation_wxyz.fill(0.0); }),
       // Ages 8 and 40 are the last that pass; the first stale frame has age 1.
       frame(Fault::kJointsStale, 8, [](auto& f, auto& last) { f.joints = last.joints; }),
-      frame(Fault::kImuStale, 40, [](auto& f, auto& last) { f.imu = last.imu; }),
+      frame(Fault::kImuStale, 120, [](auto& f, auto& last) { f.imu = last.imu; }),
       // 5 ms are 20 samples in a row.
       frame(Fault::kJointTorque, 19, [](auto& f, auto&) { f.joints.torque_nm[7] = 76.2; }),
       push(Fault::kJointPosition, [](auto& s) { s.robot.rigid.q[5] = -0.0262 + 0.351; }),

@@ -34,6 +34,8 @@ class Nearest {
       raise(Fault::kImuAttitude,
             std::acos(std::min(gate.imu.felt_mps2[2] / felt, 1.0)) / std::acos(kLeanCosine));
     }
+    raise(Fault::kImuAttitude,
+          std::hypot(gate.imu.tilt_error_rad[0], gate.imu.tilt_error_rad[1]) / kTiltDisagrees_rad);
     for (int i = 0; i < 3; ++i) {
       raise(Fault::kImuFrozen, share(gate.imu.same_samples[i], kImuFrozenSamples));
       raise(Fault::kImuRange, imu.angular_velocity_radps[i] / kGyroRange_radps);
@@ -44,6 +46,7 @@ class Nearest {
       raise(Fault::kSpeedMismatch, joints.drift_rad[j] / kSpeedDisagrees_rad);
       raise(Fault::kTorqueMissing,
             share(joints.torque_missing_ticks[j], ticks_from_s(kTorqueMissing_s)));
+      raise(Fault::kEncoderFrozen, share(joints.pushed_ticks[j], limits.frozen_ticks));
       if (gate.sent != 0) {
         raise(Fault::kEncoderFrozen, share(joints.still_ticks[j], ticks_from_s(kStill_s)));
         raise(Fault::kEncoderFrozen, share(joints.frozen_ticks[j], limits.frozen_ticks));
@@ -116,6 +119,7 @@ class MarginTest : public testing::Test {
     run_s(1.5);
     EXPECT_EQ(loop.record.output.faults, 0u)
         << name << ": " << fault_name(loop.record.output.first_fault);
+    EXPECT_EQ(loop.record.output.warnings, 0u) << name;
     EXPECT_LT(nearest.largest(), kNearest) << name << ": " << nearest.text();
     all.raise(nearest);
   }
@@ -130,9 +134,11 @@ TEST_F(MarginTest, GoodRunsStayFarFromEveryComparison) {
   const Policy policy = load_shipped_policy();
   const std::vector<VelocityCommand> commands = {
       {2.5, 0.0, 0.0}, {0.0, 0.5, 1.0}, {-1.0, 0.0, 0.0}};
+  std::vector<VelocityCommand> faster = commands;
+  faster.push_back({3.0, 0.0, 1.0});
   for (const std::string& terrain : presets) {
     const ProcessConfig config = config_of(terrain, {"sim.torque_speed_line=true"}, &policy.spec());
-    run(terrain, config, policy, Drives::kGains, commands);
+    run(terrain, config, policy, Drives::kGains, faster);
   }
   const ProcessConfig dry = config_of("dry-sand", {}, &policy.spec());
   run("torque drives", dry, policy, Drives::kTorque, commands);

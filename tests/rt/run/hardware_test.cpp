@@ -117,7 +117,7 @@ TEST_F(HardwareTest, TheGateWaitsForStatesThatCome500TimesASecond) {
   const ProcessConfig config = read_process_config(tree, nullptr);
   EXPECT_FALSE(config.hardware);
   EXPECT_EQ(config.controller.gate.joints_fault_ticks, 40);
-  EXPECT_EQ(config.controller.gate.imu_fault_ticks, 40);
+  EXPECT_EQ(config.controller.gate.imu_fault_ticks, 120);
   EXPECT_TRUE(config.controller.gate.hanging);
   EXPECT_DOUBLE_EQ(config.controller.gate.torque_limit_nm[0], 0.5 * 23.7);
 }

@@ -46,6 +46,16 @@ class RunScriptTest : public testing::Test {
   const CommandSource source_{"1,0.5,-0.25"};
 };
 
+TEST_F(RunScriptTest, AWarningLaysTheRobotDownAndFailsTheRun) {
+  RunScript script = walk_from_lying();
+  stand_up(script);
+  EXPECT_TRUE(script.advance({.mode = Mode::kWalk, .warnings = 1}).goes_on());
+  EXPECT_EQ(asked(script), ModeRequest::kLie);
+  EXPECT_STREQ(script.fall_reason(), "drive_warning");
+  EXPECT_TRUE(in(script, Mode::kStand).goes_on());
+  EXPECT_EQ(ticks_in(script, Mode::kDamping), kDamping_ticks);
+}
+
 TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndLiesDown) {
   RunScript script = walk_from_lying();
   EXPECT_EQ(asked(script), ModeRequest::kStand);

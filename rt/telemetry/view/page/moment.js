@@ -32,6 +32,7 @@ export function momentAt(frames, t) {
     truth: mix('truth'),
     mode: frames.at(row, 'mode'),
     faults: frames.at(row, 'faults'),
+    warnings: frames.at(row, 'warnings'),
     skipped: frames.at(row, 'skipped'),
     hasTruth: frames.has(row, frames.flags.has_truth),
     hasEstimate: frames.has(row, frames.flags.has_estimate),

@@ -25,7 +25,7 @@ export class State {
     });
   }
 
-  show({ t, mode, motion, estimate, hasTruth, hasEstimate, requested, given, penetration, faults, skipped }) {
+  show({ t, mode, motion, estimate, hasTruth, hasEstimate, requested, given, penetration, faults, warnings, skipped }) {
     const name = this.hello.modes[mode] ?? `mode ${mode}`, { parts } = this;
     parts.mode.textContent = name.replace('_', ' ');
     parts.mode.className = name;
@@ -35,8 +35,10 @@ export class State {
     const text = (command) => `${fixed(command[0], 1)}, ${fixed(command[1], 1)} m/s, ${fixed(command[2], 1)} rad/s`;
     const differs = name === 'walk' && requested.some((v, k) => Math.abs(v - given[k]) > 0.05);
     parts.requested.textContent = `requested ${text(requested)}${differs ? `; given ${text(given)}` : ''}`;
-    const found = this.hello.faults.filter((_, bit) => (faults >>> bit) & 1);
-    parts.faults.textContent = found.map((f) => `${f.name}: ${f.meaning}`).join('; ');
+    const set = (names, bits) => names.filter((_, bit) => (bits >>> bit) & 1);
+    const found = set(this.hello.faults, faults).map((f) => `${f.name}: ${f.meaning}`);
+    const warned = set(this.hello.warnings, warnings).map((warning) => `${warning}: it lies down`);
+    parts.faults.textContent = [...found, ...warned].join('; ');
     this.depths?.forEach((b, l) => { b.textContent = fixed(Math.max(0, 1000 * penetration[l]), 0); });
   }
 }
