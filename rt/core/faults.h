@@ -143,9 +143,9 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kImuRange, "imu_range", "a value that no IMU can measure: 40 rad/s, 10,000 m/s^2",
      "IMU", kAlways, "1 tick"},
     {Fault::kImuAttitude, "imu_attitude",
-     "gyroscope and accelerometer say that the attitude's vertical has drifted by 14 degrees, or "
+     "gyroscope and accelerometer say that the attitude's vertical has drifted by 11 degrees, or "
      "the accelerometer's mean is 30 degrees away from it",
-     "IMU", kCarrying, "14 degrees of drift, 0.5 s"},
+     "IMU", kCarrying, "11 degrees of drift, 0.5 s"},
     {Fault::kImuGyro, "imu_gyro", "the attitude does not change as the angular velocity says",
      "IMU", kCarrying, "0.2 rad"},
     {Fault::kTorqueMissing, "torque_missing",

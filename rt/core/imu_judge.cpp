@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rt/core/faults.h"
+#include "rt/core/joint_pd.h"
 #include "rt/core/rotation.h"
 #include "rt/core/same_bits.h"
 
@@ -26,20 +27,32 @@ Vector3 turn_between(const Rotation& from, const Rotation& to) noexcept {
 }
 
 /// Follows the error of the attitude, as two angles about the world's x and y: it grows by what the
-/// attitude turns and the gyroscope does not, and goes towards the angle at which the mean
-/// specific force stands away from the vertical. Drifts of any speed add up in the first, and an
-/// offset of the gyroscope is forgotten by the second.
-void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess_rad, double share,
+/// attitude turns and the gyroscope does not, and goes towards the angle at which the mean specific
+/// force stands away from the vertical. So drifts of any speed add up. What lasts without such an
+/// angle is an offset of the gyroscope. (A Luenberger observer of both, critically damped.)
+void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess_rad, double step_s,
                        ImuMemory& memory) noexcept {
+  constexpr double kRate = 1.0 / kTiltCompare_s;
   const Vector3& felt_mps2 = memory.felt_mps2;
   const double felt = std::sqrt(squared(felt_mps2));
-  const Vector3 turned_rad = to_world(axes, excess_rad);
-  const bool falls = felt < 0.5 * kGravity_mps2;
-  const std::array<double, 2> leans_rad = {falls ? 0.0 : -felt_mps2[1] / felt,
-                                           falls ? 0.0 : felt_mps2[0] / felt};
+  if (felt < 0.5 * kGravity_mps2) return;  // it falls
+  const std::array<double, 2> leans_rad = {-felt_mps2[1] / felt, felt_mps2[0] / felt};
+  Vector3& offset_radps = memory.gyro_offset_radps;
+  Vector3 turned_rad;
+  for (int i = 0; i < 3; ++i) turned_rad[i] = excess_rad[i] + step_s * offset_radps[i];
+  turned_rad = to_world(axes, turned_rad);
+  std::array<double, 2> miss_rad;
   for (int i = 0; i < 2; ++i) {
     double& error_rad = memory.tilt_error_rad[i];
-    error_rad += turned_rad[i] + share * (leans_rad[i] - error_rad);
+    miss_rad[i] = leans_rad[i] - error_rad;
+    error_rad += turned_rad[i] + step_s * 2.0 * kRate * miss_rad[i];
+    double& mean_rad = memory.mean_error_rad[i];
+    mean_rad += std::min(step_s / kTiltMean_s, 1.0) * (error_rad - mean_rad);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double body_rad = axes[i][0] * miss_rad[0] + axes[i][1] * miss_rad[1];
+    offset_radps[i] = clamp_to(offset_radps[i] + step_s * kRate * kRate * body_rad,
+                               -kGyroOffset_radps, kGyroOffset_radps);
   }
 }
 
@@ -61,7 +74,7 @@ std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool com
     memory.same_samples.fill(0);
     memory.lean_ticks = 0;
     memory.turn_error_rad = {};
-    memory.tilt_error_rad = {};
+    memory.tilt_error_rad = memory.mean_error_rad = {};
     memory.felt_mps2 = {0.0, 0.0, kGravity_mps2};
     return found;
   }
@@ -93,7 +106,7 @@ std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool com
     error_rad += excess_rad[i] - share * error_rad;
     memory.felt_mps2[i] += share * (felt_mps2[i] - memory.felt_mps2[i]);
   }
-  follow_tilt_error(axes, excess_rad, std::min(step_s / kTiltCompare_s, 1.0), memory);
+  follow_tilt_error(axes, excess_rad, step_s, memory);
   if (squared(memory.turn_error_rad) > kGyroDisagrees_rad * kGyroDisagrees_rad) {
     found |= fault_bit(Fault::kImuGyro);
   }
@@ -101,7 +114,7 @@ std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool com
   const double felt = std::sqrt(squared(memory.felt_mps2));
   const bool leans = felt > 0.5 * kGravity_mps2 && memory.felt_mps2[2] < kLeanCosine * felt;
   memory.lean_ticks = leans ? memory.lean_ticks + ticks : 0;
-  const auto& [x_rad, y_rad] = memory.tilt_error_rad;
+  const auto& [x_rad, y_rad] = memory.mean_error_rad;
   const bool drifts = x_rad * x_rad + y_rad * y_rad > kTiltDisagrees_rad * kTiltDisagrees_rad;
   if (drifts || memory.lean_ticks > ticks_from_s(kLean_s)) {
     found |= fault_bit(Fault::kImuAttitude);

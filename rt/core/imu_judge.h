@@ -29,12 +29,14 @@ inline constexpr double kGyroDisagrees_rad = 0.2;
 inline constexpr double kLeanCosine = 0.8660254037844386;  ///< cos 30 degrees
 inline constexpr double kLean_s = 0.5;                     ///< ... for this long
 /// Fault: gyroscope and accelerometer together say that the attitude's vertical is wrong by this
-/// much, rad (14 degrees). A policy still walks with that, and falls from about 20 degrees on. An
-/// offset of 0.05 rad/s of the gyroscope counts as 0.1 rad, a turn or a start at the limit of
-/// acceleration as 0.15 rad.
-inline constexpr double kTiltDisagrees_rad = 0.25;
+/// much, rad (11 degrees). A policy still walks with 13, and on sand falls over from 14 on. A turn
+/// or a start at the limit of acceleration counts as 0.1 rad.
+inline constexpr double kTiltDisagrees_rad = 0.19;
 /// Time in which the accelerometer corrects what the gyroscope says of that.
-inline constexpr double kTiltCompare_s = 2.0;
+inline constexpr double kTiltCompare_s = 8.0;
+inline constexpr double kTiltMean_s = 0.05;
+/// No gyroscope has a larger offset.
+inline constexpr double kGyroOffset_radps = 0.1;
 /// A gap between two samples that is longer than this, and longer than imu_fault_ticks, is a stall
 /// of the loop.
 inline constexpr std::uint64_t kShortestImuGap_ticks = kTicksPerPolicyStep;
@@ -48,8 +50,10 @@ struct ImuMemory {
   Vector3 turn_error_rad{};  ///< of the attitude's change, less the angular velocity's integral
   Vector3 felt_mps2{0.0, 0.0, kGravity_mps2};  ///< specific force in the world, low-passed
   std::array<double, 2> tilt_error_rad{};      ///< of the attitude, about the world's x and y
+  std::array<double, 2> mean_error_rad{};      ///< the same, low-passed: attitudes have noise
+  Vector3 gyro_offset_radps{};                 ///< learnt with it
 };
-static_assert(sizeof(ImuMemory) == 8 * (1 + 11 + 3 + 1 + 3 + 3 + 2), "no padding");
+static_assert(sizeof(ImuMemory) == 8 * (1 + 11 + 3 + 1 + 3 + 3 + 4 + 3), "no padding");
 
 /// Judges a usable sample (finite, unit quaternion) and remembers it; the bits of the faults
 /// kImuFrozen, kImuRange, kImuAttitude and kImuGyro that it shows, whatever the mode. The same

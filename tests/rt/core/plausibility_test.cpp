@@ -50,17 +50,17 @@ class DriftTest : public testing::Test {
 
 TEST_F(DriftTest, AnAttitudeThatDriftsAtAnySpeedIsAFaultBeforeTheRobotFalls) {
   for (const double rate_radps : {0.005, 0.02, 0.05, 0.1, 0.2, 0.39, 0.5, 1.0, 3.0}) {
-    EXPECT_LT(found_at_deg(rate_radps, 45.0), 16.5) << rate_radps << " rad/s";
+    EXPECT_LT(found_at_deg(rate_radps, 45.0), 14.5) << rate_radps << " rad/s";
   }
 }
 
-TEST_F(DriftTest, EveryDriftThatEndsBeyondSeventeenDegreesIsFoundAndNoneThatEndsBelowTen) {
+TEST_F(DriftTest, EveryDriftThatEndsBeyondThirteenDegreesIsFoundAndNoneThatEndsBelowTen) {
   for (int end_deg = 5; end_deg <= 45; ++end_deg) {
     const double found_deg = found_at_deg(0.1, end_deg);
-    if (end_deg <= 10) {
+    if (end_deg <= 9) {
       EXPECT_EQ(found_deg, 180.0) << end_deg;
-    } else if (end_deg >= 17) {
-      EXPECT_LT(found_deg, 17.0) << end_deg;
+    } else if (end_deg >= 13) {
+      EXPECT_LT(found_deg, 13.5) << end_deg;
     }
   }
 }

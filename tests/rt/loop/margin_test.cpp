@@ -35,7 +35,7 @@ class Nearest {
             std::acos(std::min(gate.imu.felt_mps2[2] / felt, 1.0)) / std::acos(kLeanCosine));
     }
     raise(Fault::kImuAttitude,
-          std::hypot(gate.imu.tilt_error_rad[0], gate.imu.tilt_error_rad[1]) / kTiltDisagrees_rad);
+          std::hypot(gate.imu.mean_error_rad[0], gate.imu.mean_error_rad[1]) / kTiltDisagrees_rad);
     for (int i = 0; i < 3; ++i) {
       raise(Fault::kImuFrozen, share(gate.imu.same_samples[i], kImuFrozenSamples));
       raise(Fault::kImuRange, imu.angular_velocity_radps[i] / kGyroRange_radps);
