@@ -71,7 +71,9 @@ struct GateState {
   ImuMemory imu;
   JointMemory joints;
 
-  Mode mode = Mode::kPassive;   ///< of the latest judgement
+  /// In which the latest judgement left the robot: the judged one, Fault after a fault, Passive
+  /// after a reset.
+  Mode mode = Mode::kPassive;
   std::uint64_t walk_tick = 0;  ///< of the latest judgement in Walk
   std::uint64_t walked = 0;     ///< 1: there was one
 

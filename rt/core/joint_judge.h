@@ -77,7 +77,7 @@ static_assert(sizeof(JointMemory) == 8 * (6 + 21 * kNumJoints), "no padding");
 /// What a judgement of joints rests on besides their values.
 struct JointContext {
   Mode mode = Mode::kPassive;
-  Mode mode_before = Mode::kPassive;   ///< of the last judgement
+  Mode mode_before = Mode::kPassive;   ///< in which the last judgement left the robot
   const ImuSample* imu = nullptr;      ///< null: not usable, or the robot hangs
   bool stiff = false;                  ///< the last command had stiffness
   const JointArray<double>& sent_rad;  ///< its positions

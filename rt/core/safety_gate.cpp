@@ -81,6 +81,7 @@ void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept
     state.first_fault_tick = state.tick;
   }
   state.faults |= found;
+  state.mode = Mode::kFault;
   state.fault_joints |= joints;
   if ((found & kBlindingFaults) != 0) state.blind_joints |= joints;
 }
@@ -369,6 +370,7 @@ JointCommand SafetyGate::damping(const JointState& joints) const noexcept {
 
 void SafetyGate::clear(GateState& state) const noexcept {
   state.faults = 0;
+  state.mode = Mode::kPassive;
   state.torque_over_ticks.fill(0);
 }
 

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A joint that was silent may have lost its zero. It is not armed, however closely the requests
+// follow each other.
+#include <gtest/gtest.h>
+
+#include "fake_robot.h"
+
+namespace sandrunner {
+namespace {
+
+constexpr int kJoint = 4;
+
+/// Lies in Fault, its drives off, as a joint was silent for 60 ms; `returns` ends that, the joint
+/// one turn of its motor away.
+class LostZeroTest : public testing::Test {
+ protected:
+  LostZeroTest() {
+    loop.run_s(0.01);
+    loop.spoil = [this](ControllerInput& seen) {
+      JointState& joints = seen.sensors.joints;
+      if (!returned) joints.tick[kJoint] = 40;
+      if (returned) joints.position_rad[kJoint] += 0.93;
+      seen.sensors.emergency_stop = pressed ? 1 : 0;
+    };
+    loop.run_s(0.06);
+  }
+  void returns() {
+    returned = true;
+    loop.run_s(0.01);
+  }
+  void expect_not_armed() {
+    EXPECT_EQ(loop.output.mode, Mode::kFault);
+    EXPECT_EQ(loop.output.first_fault, Fault::kJointMisplaced)
+        << fault_name(loop.output.first_fault);
+    EXPECT_FALSE(loop.output.command.enabled());
+  }
+  /// Each request comes in the tick after the one before.
+  void request(ModeRequest wish, Mode expected) {
+    loop.request(wish);
+    EXPECT_EQ(loop.output.mode, expected);
+  }
+
+  FakeLoop loop;
+  bool returned = false, pressed = false;
+};
+
+TEST_F(LostZeroTest, IsFoundIfArmFollowsTheResetAfterAWhile) {
+  returns();
+  request(ModeRequest::kResetFault, Mode::kPassive);
+  loop.run_s(0.01);
+  request(ModeRequest::kArm, Mode::kFault);
+  expect_not_armed();
+}
+
+TEST_F(LostZeroTest, IsFoundIfArmFollowsTheResetInTheNextTick) {
+  returns();
+  request(ModeRequest::kResetFault, Mode::kPassive);
+  request(ModeRequest::kArm, Mode::kFault);
+  expect_not_armed();
+}
+
+TEST_F(LostZeroTest, IsFoundAfterARefusedResetAndAnotherInTheNextTick) {
+  returns();
+  pressed = true;
+  request(ModeRequest::kResetFault, Mode::kFault);
+  pressed = false;
+  request(ModeRequest::kResetFault, Mode::kPassive);
+  loop.run_s(0.01);
+  request(ModeRequest::kArm, Mode::kFault);
+  expect_not_armed();
+}
+
+TEST_F(LostZeroTest, IsFoundIfTheJointReturnsInTheTickOfTheReset) {
+  returned = true;
+  request(ModeRequest::kResetFault, Mode::kPassive);
+  loop.run_s(0.01);
+  request(ModeRequest::kArm, Mode::kFault);
+  expect_not_armed();
+}
+
+TEST_F(LostZeroTest, IsFoundAgainIfTheResetFollowsTheRefusedArmInTheNextTick) {
+  returns();
+  request(ModeRequest::kResetFault, Mode::kPassive);
+  loop.run_s(0.01);
+  request(ModeRequest::kArm, Mode::kFault);
+  request(ModeRequest::kResetFault, Mode::kPassive);
+  loop.run_s(0.01);
+  request(ModeRequest::kArm, Mode::kFault);
+  expect_not_armed();
+}
+
+TEST_F(LostZeroTest, IsForgivenOnceTheJointWasWhereItShouldBe) {
+  returns();
+  request(ModeRequest::kResetFault, Mode::kPassive);
+  loop.spoil = nullptr;
+  loop.run_s(0.01);
+  request(ModeRequest::kArm, Mode::kDamping);
+  EXPECT_TRUE(loop.output.command.enabled());
+}
+
+}  // namespace
+}  // namespace sandrunner
