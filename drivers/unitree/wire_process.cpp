@@ -147,8 +147,10 @@ class Wire {
         encode_off(message_);
         break;
     }
+    const bool powers = message_.motor_cmd[0].mode != kMotorOff;
+    if (powers) memory_.powered = true;  // before it is sent: this process may be killed in between
     link.send(message_);
-    memory_.powered = message_.motor_cmd[0].mode != kMotorOff;
+    memory_.powered = powers;
     memory_.sent = link.sent();
     memory_.not_sent = link.not_sent();
   }
