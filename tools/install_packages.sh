@@ -27,7 +27,7 @@ packages=(
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
   pybind11-dev python3-dev python3-onnx
 )
-[[ ${1:-all} != @(test|checks) ]] || packages+=(chromium-headless-shell python3-venv)
+[[ ${1:-all} != @(test|checks) ]] || packages+=(chromium-headless-shell python3-venv spin)
 [[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev)
 
 fail() {
