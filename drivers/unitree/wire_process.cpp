@@ -2,12 +2,9 @@
 #include "drivers/unitree/wire_process.h"
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +16,8 @@
 #include "drivers/unitree/command_watch.h"
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
+#include "rt/base/guard_process.h"
+#include "rt/base/process_name.h"
 
 namespace sandrunner::unitree {
 namespace {
@@ -33,15 +32,6 @@ void pause_ms(long milliseconds) {
   const timespec pause{.tv_sec = 0, .tv_nsec = milliseconds * 1'000'000};
   nanosleep(&pause, nullptr);
 }
-
-/// Whether the process of a pidfd has not ended.
-bool runs(int process) noexcept {
-  pollfd file{.fd = process, .events = POLLIN, .revents = 0};
-  return poll(&file, 1, 0) == 0;
-}
-
-// glibc 2.36 declares pidfd_open for C only.
-int open_process(pid_t pid) noexcept { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
 bool become_real_time() {
   mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
@@ -73,7 +63,7 @@ class Wire {
   }
 
  private:
-  bool controller_is_there() const { return runs(controller_) && getppid() == guard_; }
+  bool controller_is_there() const { return process_runs(controller_) && getppid() == guard_; }
   bool may_go_on() const { return controller_is_there() && !memory_.ended; }
 
   void report(RobotLink& link) {
@@ -174,7 +164,7 @@ void note_error(WireMemory& memory, const std::string& error) {
 /// The wire's whole life; never returns.
 [[noreturn]] void live(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory,
                        int controller) {
-  prctl(PR_SET_NAME, "sandrunner-wire");
+  rename_process("legs-wire");
   try {
     Wire(config, robot, memory, controller).run();
     if (memory.phase != WirePhase::kFailed) memory.phase = WirePhase::kEnded;
@@ -208,12 +198,7 @@ void take_over(const UnitreeConfig& config, const RobotFigures& robot) {
 /// The guard's whole life; never returns.
 [[noreturn]] void guard(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory,
                         pid_t controller) {
-  prctl(PR_SET_NAME, "sandrunner-guard");
-  // A terminal's signals are for the controller: it lets the robot down, for which it needs us.
-  setpgid(0, 0);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGPIPE}) {
-    signal(number, SIG_IGN);
-  }
+  become_guard("legs-guard");  // and so the wire: only its name is another
   const int process = open_process(controller);
   if (process < 0 || getppid() != controller) _exit(0);
   const pid_t sender = fork();
@@ -273,7 +258,7 @@ WireProcess::~WireProcess() {
   munmap(memory_, sizeof(WireMemory));
 }
 
-bool WireProcess::runs() const noexcept { return unitree::runs(process_); }
+bool WireProcess::runs() const noexcept { return process_runs(process_); }
 
 void WireProcess::connect() {
   memory_->start = true;

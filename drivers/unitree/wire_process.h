@@ -15,7 +15,8 @@ namespace sandrunner::unitree {
 /// newest command 500 times a second, and what CommandWatch says where the controller falls silent,
 /// ends or is killed. So a controller that does not run any more leaves a damped robot, whatever
 /// the robot itself does when commands stop. It is the child of a second process, the guard, which
-/// does nothing but wait, and damps the robot where the first one is killed or crashes. Example:
+/// does nothing but wait, and damps the robot where the first one is killed or crashes. The two
+/// have names and a session of their own: `pkill -9 sandrunner` ends neither. Example:
 /// wire_process_test.cpp.
 class WireProcess {
  public:

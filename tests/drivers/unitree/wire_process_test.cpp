@@ -22,6 +22,7 @@
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
 #include "tests/support/joint_names.h"
+#include "tests/support/temporary_folder.h"
 #include "tools/hil/emulated/unitree_peer.h"
 
 namespace sandrunner::unitree {
@@ -245,6 +246,22 @@ TEST_F(WireProcessTest, AStoppedControllerEndsInDampingThenOff) {
 TEST_F(WireProcessTest, AControllerThatCrashesEndsInDampingThenOff) {
   start();
   expect_damping_after([&] { kill(controller_, SIGSEGV); });
+}
+
+TEST_F(WireProcessTest, NeitherNameNorSessionOfTheControllerIsThatOfItsGuards) {
+  start();
+  ASSERT_TRUE(ready());
+  const std::string controller = read_file("/proc/self/comm").substr(0, 5);
+  const pid_t wire = shared_->wire, guard = getpgid(wire);
+  for (const pid_t process : {wire, guard}) {
+    const std::string folder = "/proc/" + std::to_string(process);
+    EXPECT_TRUE(read_file(folder + "/comm").starts_with("legs-"));
+    const std::string line = read_file(folder + "/cmdline");
+    EXPECT_TRUE(line.starts_with("legs-"));
+    EXPECT_EQ(line.find(controller), std::string::npos) << line;
+    EXPECT_EQ(getsid(process), guard);
+  }
+  EXPECT_NE(getsid(controller_), guard);
 }
 
 TEST_F(WireProcessTest, CutDrivesEndInDampingThenOff) {
