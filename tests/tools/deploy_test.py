@@ -73,6 +73,10 @@ class Installed(unittest.TestCase):
         unit = (self.prefix / "lib/systemd/system/sandrunner.service").read_text()
         self.assertGreaterEqual(int(re.search("(?m)^TimeoutStopSec=([0-9]+)$", unit)[1]), 15)
 
+    def test_a_crash_leaves_the_guards_the_time_to_damp_the_robot(self):
+        unit = (self.prefix / "lib/systemd/system/sandrunner.service").read_text()
+        self.assertRegex(unit, "(?m)^KillMode=control-group$")
+        self.assertNotRegex(unit, "(?m)^(SendSIGKILL|FinalKillSignal|RestartKillSignal)=")
 
     def test_every_program_has_a_man_page_with_its_options_and_subcommands(self):
         for program in (self.prefix / "bin").iterdir():
