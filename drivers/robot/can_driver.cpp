@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/robot/can_driver.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "drivers/robot/can_robot.h"
@@ -12,8 +13,16 @@ namespace sandrunner {
 CanDriver::CanDriver(HardwareConfig config, RobotDescription robot, const GateConfig& gate)
     : config_(std::move(config)), robot_(std::move(robot)), gate_(gate) {}
 
+void CanDriver::fork_processes() {
+  OffFrames off = off_frames(config_, true);
+  if (std::ranges::all_of(off, &std::vector<CanFrame>::empty)) return;
+  guard_ =
+      std::make_unique<CanGuard>(std::move(off), config_.drive_timeout_s, open_buses_of(config_));
+}
+
 std::unique_ptr<RobotIo> CanDriver::connect() {
-  return std::make_unique<CanRobot>(config_, robot_, gate_);
+  if (!guard_) fork_processes();
+  return std::make_unique<CanRobot>(config_, robot_, gate_, std::move(guard_));
 }
 
 std::vector<std::string> CanDriver::warnings() const { return unguarded(config_); }

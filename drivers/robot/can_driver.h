@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/robot/can_guard.h"
 #include "drivers/robot/hardware_config.h"
 #include "rt/core/gate_config.h"
 #include "rt/core/robot_description.h"
@@ -17,6 +18,8 @@ class CanDriver final : public RobotDriver {
  public:
   CanDriver(HardwareConfig config, RobotDescription robot, const GateConfig& gate);
 
+  /// The guard of drives whose time-out is not verified.
+  void fork_processes() override;
   std::unique_ptr<RobotIo> connect() override;
   std::vector<std::string> warnings() const override;
   std::string dry_run(const StandConfig& stand) const override;
@@ -26,6 +29,7 @@ class CanDriver final : public RobotDriver {
   const HardwareConfig config_;
   const RobotDescription robot_;
   const GateConfig gate_;
+  std::unique_ptr<CanGuard> guard_;  // until connect(); null: none is needed
 };
 
 }  // namespace sandrunner

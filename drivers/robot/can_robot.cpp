@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "drivers/robot/bring_up.h"
 #include "drivers/robot/bus_listen.h"
@@ -52,20 +53,17 @@ JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, D
 }
 
 CanRobot::CanRobot(const HardwareConfig& config, const RobotDescription& robot,
-                   const GateConfig& gate)
+                   const GateConfig& gate, std::unique_ptr<CanGuard> guard)
     : config_(within_capacity(config)),
+      guard_(std::move(guard)),
       emergency_stop_(open_emergency_stop(config.emergency_stop)),
       sockets_(open_silent_buses(config, robot)),
       imu_(config.imu),
       counters_(config.buses.size()),
-      off_frames_(config.buses.size()) {
-  for (int j = 0; j < kNumJoints; ++j) {
-    drives_[j] = Drive(config.drives[j], config);
-    CanFrame frame;
-    drives_[j].off_frame(frame);
-    off_frames_[config.drives[j].bus].push_back(frame);
-  }
+      off_frames_(off_frames(config, false)) {
+  for (int j = 0; j < kNumJoints; ++j) drives_[j] = Drive(config.drives[j], config);
   require_drives(config, robot, gate, sockets_);
+  if (guard_) guard_->start();
   switch_off();  // the first tick is to know where the joints are
 }
 
@@ -73,6 +71,7 @@ CanRobot::~CanRobot() = default;
 
 void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
   tick_ = tick;
+  if (guard_ && guard_->has_cut()) cut_.store(true, std::memory_order_relaxed);
   receive(tick);
   std::uint64_t foreign = 0;
   for (int j = 0; j < kNumJoints; ++j) {
@@ -158,6 +157,7 @@ void CanRobot::write(const SafeCommand& command) noexcept {
 }
 
 void CanRobot::exchange(const SafeCommand* command) noexcept {
+  if (guard_ && command) guard_->note_command(clock_ns(CLOCK_MONOTONIC));
   std::array<CanFrame, kNumJoints> frames;
   for (std::size_t b = 0; b < sockets_.size(); ++b) {
     std::size_t count = 0;
@@ -182,6 +182,7 @@ void CanRobot::exchange(const SafeCommand* command) noexcept {
       send_unless_cut(cut_, sent, off_frames_[b], send_to_bus);
     }
   }
+  if (guard_ && !command) guard_->note_off();
 }
 
 void CanRobot::send(int bus, std::span<const CanFrame> frames) noexcept {

@@ -11,6 +11,7 @@
 #include "drivers/can/can_error.h"
 #include "drivers/can/can_socket.h"
 #include "drivers/imu/imu_thread.h"
+#include "drivers/robot/can_guard.h"
 #include "drivers/robot/drive.h"
 #include "drivers/robot/drive_look.h"
 #include "drivers/robot/emergency_stop.h"
@@ -58,8 +59,10 @@ class CanRobot final : public RobotIo {
   /// Opens buses and IMU, listens for other programs, finds every drive, and compares the settings
   /// that drives can report with the configuration; nothing is enabled.
   /// Some seconds at most. Throws InputError, one line: a drive that does not answer, other limits
-  /// than configured, a missing time-out, an impossible posture, an overloaded bus.
-  CanRobot(const HardwareConfig& config, const RobotDescription& robot, const GateConfig& gate);
+  /// than configured, a missing time-out, an impossible posture, an overloaded bus. `guard`: null
+  /// where every drive's own time-out is verified.
+  CanRobot(const HardwareConfig& config, const RobotDescription& robot, const GateConfig& gate,
+           std::unique_ptr<CanGuard> guard = nullptr);
   ~CanRobot() override;
 
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
@@ -82,12 +85,13 @@ class CanRobot final : public RobotIo {
   void send(int bus, std::span<const CanFrame> frames) noexcept;
 
   HardwareConfig config_;
+  std::unique_ptr<CanGuard> guard_;
   std::unique_ptr<EmergencyStop> emergency_stop_;  // null: there is none
   CanSockets sockets_;  // before the IMU: another program that runs the drives is reported first
   ImuThread imu_;
   std::vector<BusCounters> counters_;
   JointArray<Drive> drives_;
-  std::vector<std::vector<CanFrame>> off_frames_;  ///< of each bus, for cut_drives()
+  OffFrames off_frames_;  ///< for cut_drives()
   std::uint64_t tick_ = 0, next_exchange_ = 0;
   std::int64_t emptied_ns_ = 0;  ///< when nothing more was to be received, CLOCK_MONOTONIC
   bool enabled_ = false;

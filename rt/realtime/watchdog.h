@@ -14,7 +14,7 @@ namespace sandrunner {
 /// set, at most 100).
 inline constexpr std::int64_t kWatchdog_ns = 100'000'000;
 
-/// The last line of defence but the drives' own timeout: when the control thread hangs, cuts the
+/// The last line of defence within this process: when the control thread hangs, cuts the
 /// drives for good, and again in each look until it ticks, because a frame may be lost. It has a
 /// thread of its own, above the control thread's priority. A stall of the whole machine stops the
 /// watchdog too; the control thread judges that one.
