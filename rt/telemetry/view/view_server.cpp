@@ -46,16 +46,25 @@ constexpr std::chrono::seconds kHandshakeTime{5}, kIdleTime{60};
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
 class Page;
-class Visitor;
 
-// What all connections share; used by the server's thread alone.
+// A connection that somebody else may need the place of: a request that is not answered, or a page
+// that has not said hello.
+class Guest {
+ public:
+  virtual ~Guest() = default;
+  // Gives its place to somebody else.
+  virtual void leave() = 0;
+};
+
+// What all connections share; used by the server's thread alone. Lists are in the order in which
+// they came.
 struct Hub {
   ViewServer::Parts parts;
   std::string key, run;
   int sockets = 0;
   std::uint64_t pages_so_far = 0;
-  std::vector<Page*> pages;
-  std::vector<Visitor*> visitors;  // in the order in which they came
+  std::vector<Page*> pages;  // that have said hello
+  std::vector<Guest*> guests;
 };
 
 // One of the sockets that a server may have.
@@ -73,15 +82,24 @@ class Place {
 
 // A page that is open somewhere. One message is being written; what comes next is asked of the
 // feed when that is done.
-class Page : public std::enable_shared_from_this<Page> {
+class Page : public Guest, public std::enable_shared_from_this<Page> {
  public:
   Page(Hub& hub, beast::tcp_stream stream, Place place)
       : hub_(hub), place_(std::move(place)), socket_(std::move(stream)) {
-    hub_.pages.push_back(this);
+    hub_.guests.push_back(this);
   }
-  ~Page() { std::erase(hub_.pages, this); }
+  ~Page() override { forget(); }
   Page(const Page&) = delete;
   Page& operator=(const Page&) = delete;
+
+  bool has_key() const noexcept { return has_key_; }
+  // At once: one that does not read its end would keep the place.
+  void leave() override {
+    closing_ = true;
+    forget();
+    place_.reset();
+    beast::get_lowest_layer(socket_).close();
+  }
 
   void begin(const http::request<http::empty_body>& request) {
     socket_.set_option(websocket::stream_base::timeout{kHandshakeTime, kIdleTime, true});
@@ -135,6 +153,8 @@ class Page : public std::enable_shared_from_this<Page> {
         {static_cast<const char*>(buffer_.data().data()), buffer_.data().size()});
     buffer_.consume(buffer_.size());
     if (const auto* hello = std::get_if<PageHello>(&message); hello && !greeted_) {
+      has_key_ = same_key(hello->key, hub_.key);
+      if (!take_place()) return close(websocket::close_code::try_again_later, "too many pages");
       greet(*hello);
     } else if (!greeted_) {
       return close(websocket::close_code::policy_error, "expected hello first");
@@ -151,9 +171,21 @@ class Page : public std::enable_shared_from_this<Page> {
     if (outcome.changed) state_ = view_state(hub_.parts);
   }
 
+  // One of the places of pages. Who has the key gets that of the oldest page without.
+  bool take_place() {
+    if (hub_.pages.size() >= kViewPages) {
+      const auto stranger =
+          std::ranges::find_if(hub_.pages, [](const Page* page) { return !page->has_key(); });
+      if (!has_key_ || stranger == hub_.pages.end()) return false;
+      (*stranger)->leave();
+    }
+    std::erase(hub_.guests, static_cast<Guest*>(this));
+    hub_.pages.push_back(this);
+    return true;
+  }
+
   void greet(const PageHello& hello) {
     greeted_ = true;
-    has_key_ = same_key(hello.key, hub_.key);
     in_feed_ = hub_.parts.feed.join();
     answers_.push_back(fmt::format(
         R"({{"say":"hello","run":"{}","key":{},"pace":{},"drive":{},"recorded":{},"hello":{}}})",
@@ -165,13 +197,18 @@ class Page : public std::enable_shared_from_this<Page> {
     send(view_state(hub_.parts));
   }
 
+  void forget() {
+    std::erase(hub_.pages, this);
+    std::erase(hub_.guests, static_cast<Guest*>(this));
+  }
+
   void close(websocket::close_code code, const char* why) {
     closing_ = true;
     socket_.async_close({code, why}, [self = shared_from_this()](Error) {});
   }
 
   Hub& hub_;
-  Place place_;
+  std::optional<Place> place_;
   ViewOrders orders_{hub_.parts, ++hub_.pages_so_far};
   websocket::stream<beast::tcp_stream, false> socket_;  // without compression, which is never asked
   beast::flat_buffer buffer_{2 * kViewMessageBytes};
@@ -183,19 +220,18 @@ class Page : public std::enable_shared_from_this<Page> {
 };
 
 // A request, until it is answered or a page.
-class Visitor : public std::enable_shared_from_this<Visitor> {
+class Visitor : public Guest, public std::enable_shared_from_this<Visitor> {
  public:
   Visitor(Hub& hub, Tcp::socket socket)
       : hub_(hub), place_(hub), stream_(std::move(socket)), parser_(std::in_place) {
-    hub_.visitors.push_back(this);
+    hub_.guests.push_back(this);
   }
-  ~Visitor() { std::erase(hub_.visitors, this); }
+  ~Visitor() override { std::erase(hub_.guests, static_cast<Guest*>(this)); }
   Visitor(const Visitor&) = delete;
   Visitor& operator=(const Visitor&) = delete;
 
-  // Gives its place to somebody else.
-  void leave() {
-    std::erase(hub_.visitors, this);
+  void leave() override {
+    std::erase(hub_.guests, static_cast<Guest*>(this));
     place_.reset();
     stream_.close();
   }
@@ -218,13 +254,13 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
                                        .host = view_of(request[http::field::host]),
                                        .origin = view_of(request[http::field::origin]),
                                        .websocket = websocket::is_upgrade(request)});
-    if (verdict.status == 101 && hub_.pages.size() < kViewPages) {
+    if (verdict.status == 101) {
       stream_.expires_never();
       std::make_shared<Page>(hub_, std::move(stream_), std::move(*place_))->begin(request);
       return;
     }
     response_.version(11);
-    response_.result(verdict.status == 101 ? 503u : static_cast<unsigned>(verdict.status));
+    response_.result(static_cast<unsigned>(verdict.status));
     for (const auto& [name, value] : kViewHeaders) {
       response_.set(beast::string_view(name.data(), name.size()),
                     beast::string_view(value.data(), value.size()));
@@ -233,9 +269,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     response_.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     if (verdict.file.ends_with(".gz")) response_.set(http::field::content_encoding, "gzip");
     if (verdict.status == 405) response_.set(http::field::allow, "GET");
-    response_.body() = verdict.status == 200   ? embedded_page_file(verdict.file)
-                       : verdict.status == 101 ? std::string_view("too many pages\n")
-                                               : verdict.reason;
+    response_.body() = verdict.status == 200 ? embedded_page_file(verdict.file) : verdict.reason;
     response_.keep_alive(false);
     response_.prepare_payload();
     http::async_write(stream_, response_, [self = shared_from_this()](Error, auto) {
@@ -261,7 +295,7 @@ class ViewServer::Implementation {
              .key = make_view_key(),
              .run = make_view_key(),
              .pages = {},
-             .visitors = {}},
+             .guests = {}},
         io_(1),
         timer_(io_) {
     listen(asio::ip::address_v4::loopback(), port);
@@ -308,7 +342,7 @@ class ViewServer::Implementation {
         return;
       }
       // A browser's request is there at once: whoever has kept the server waiting longest goes.
-      if (hub_.sockets >= kViewSockets && !hub_.visitors.empty()) hub_.visitors.front()->leave();
+      if (hub_.sockets >= kViewSockets && !hub_.guests.empty()) hub_.guests.front()->leave();
       if (hub_.sockets < kViewSockets) {
         Error ignored;
         socket.set_option(Tcp::no_delay(true), ignored);

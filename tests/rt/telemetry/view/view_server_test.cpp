@@ -83,6 +83,8 @@ TEST_F(ViewServerTest, AHeaderInDripsEndsAfterItsTime) {
 
 TEST_F(ViewServerTest, SocketsThatAskForNothingLockNoPageOut) {
   WebPage open(port);
+  open.say(hello(""));
+  EXPECT_EQ(open.hear("hello").at("key"), false);
   std::vector<std::unique_ptr<Client>> silent;
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 2 * kViewSockets; ++i) {
@@ -93,17 +95,42 @@ TEST_F(ViewServerTest, SocketsThatAskForNothingLockNoPageOut) {
   EXPECT_TRUE(WebPage(port).answer.starts_with("HTTP/1.1 101 "));
   EXPECT_EQ(silent.front()->rest(), "");  // the oldest of them went
   EXPECT_LT(std::chrono::steady_clock::now() - begin, kViewHeaderTime);
-  open.say(hello(""));
-  EXPECT_EQ(open.hear().kind, 1);  // and no page that was there
+  open.say(R"({"say":"pause","on":true})");  // and no page that was there
+  EXPECT_EQ(open.hear("refused").at("why"), "without the key this page only looks");
 }
 
 TEST_F(ViewServerTest, TheNinthPageIsRefused) {
   std::vector<std::unique_ptr<WebPage>> pages;
-  for (int i = 0; i < kViewPages; ++i) {
-    pages.push_back(std::make_unique<WebPage>(port));
-    EXPECT_TRUE(pages.back()->answer.starts_with("HTTP/1.1 101 "));
+  for (const std::string& with : {std::string(), key}) {
+    for (int i = 0; i < kViewPages; ++i) {
+      pages.push_back(std::make_unique<WebPage>(port));
+      pages.back()->say(hello(with));
+      EXPECT_EQ(pages.back()->hear("hello").at("key"), !with.empty());
+    }
+    WebPage ninth(port);
+    ninth.say(hello(with));
+    EXPECT_EQ(ninth.close_code(), 1013);
   }
-  EXPECT_TRUE(WebPage(port).answer.starts_with("HTTP/1.1 503 "));
+}
+
+TEST_F(ViewServerTest, StrangersKeepNobodyOutWhoHasTheKey) {
+  std::vector<std::unique_ptr<WebPage>> strangers;
+  for (int i = 0; i < kViewPages; ++i) {
+    strangers.push_back(std::make_unique<WebPage>(port));
+    strangers.back()->say(hello(""));
+    EXPECT_EQ(strangers.back()->hear("hello").at("key"), false);
+  }
+  std::vector<std::unique_ptr<WebPage>> silent;  // pages that say no hello
+  for (int i = 0; i < 2 * kViewSockets; ++i) silent.push_back(std::make_unique<WebPage>(port));
+  WebPage page(port);
+  page.say(hello(key));
+  EXPECT_EQ(page.hear("hello").at("key"), true);
+  EXPECT_EQ(strangers.front()->close_code(), -1);  // the oldest went, at once
+  strangers[1]->say(R"({"say":"pause","on":true})");
+  EXPECT_EQ(strangers[1]->hear("refused").at("why"), "without the key this page only looks");
+  for (int i = 0; i < 2 * kViewSockets; ++i) WebPage(port).say(hello(""));
+  page.say(R"({"say":"pause","on":true})");
+  for (Json state = page.hear("state"); state.at("paused") == false;) state = page.hear("state");
 }
 
 TEST_F(ViewServerTest, APageGetsHelloThenThePastThenTheState) {
