@@ -8,6 +8,7 @@
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
 #include "rt/core/mode_machine.h"
+#include "rt/loop/fault_remedy.h"
 
 namespace sandrunner {
 namespace {
@@ -132,7 +133,11 @@ std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
   }
   if (!decision.calms && asked_.request_number != number) return "a stop or damp came after it";
   const char* const failed = failure(decision.request, operator_.mode());
-  return failed ? failed : "";
+  const Fault fault = operator_.first_fault();
+  if (!failed || fault == Fault::kNone) return failed ? failed : "";
+  const char* const remedy = fault_remedy(fault);
+  return fmt::format("{}: {}{}{}", failed, fault_name(fault), remedy ? ": " : "",
+                     remedy ? remedy : "");
 }
 
 bool OperatorDesk::wait_for(std::uint64_t number, Time deadline, Lock& lock) const {

@@ -28,6 +28,8 @@ OperatorCommand RemoteOperator::command(std::uint64_t tick) noexcept {
 
 OperatorVerdict RemoteOperator::advance(const TickFacts& facts) noexcept {
   mode_.store(facts.mode, std::memory_order_relaxed);
+  first_fault_.store(facts.faults != 0 ? facts.first_fault : Fault::kNone,
+                     std::memory_order_relaxed);
   considered_.store(request_number_, std::memory_order_release);
   // What was skipped lies before the end that this tick begins.
   const std::uint64_t ticks = end_.begun() ? facts.ticks : 0;

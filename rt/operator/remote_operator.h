@@ -37,6 +37,8 @@ class RemoteOperator final : public OperatorInput {
   std::uint64_t considered() const noexcept { return considered_.load(std::memory_order_acquire); }
   /// Mode of the controller, at least as new as considered().
   Mode mode() const noexcept { return mode_.load(std::memory_order_relaxed); }
+  /// The fault that began the latch, likewise; kNone: none is latched.
+  Fault first_fault() const noexcept { return first_fault_.load(std::memory_order_relaxed); }
 
  private:
   const std::uint64_t stale_ticks_;
@@ -51,8 +53,10 @@ class RemoteOperator final : public OperatorInput {
   OperatorCommand command_;
   // For the other thread:
   std::atomic<Mode> mode_{Mode::kPassive};
+  std::atomic<Fault> first_fault_{Fault::kNone};
   std::atomic<std::uint64_t> considered_{0};
   static_assert(std::atomic<Mode>::is_always_lock_free);
+  static_assert(std::atomic<Fault>::is_always_lock_free);
 };
 
 }  // namespace sandrunner

@@ -9,6 +9,7 @@
 #include "rt/base/build.h"
 #include "rt/base/fixed_text.h"
 #include "rt/core/mode_machine.h"
+#include "rt/loop/fault_remedy.h"
 #include "rt/realtime/watchdog.h"
 
 namespace sandrunner {
@@ -118,6 +119,9 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
     }
   }
   t += end + "\n";
+  if (const char* const remedy = fault_remedy(r.end.gate.first_fault); remedy && !r.survived) {
+    t += fmt::format("  {}\n", remedy);
+  }
   if (r.walked_s > 0.0) {
     t += fmt::format("over the second half of {:.1f} s in Walk, command {}:\n", r.walked_s,
                      info.command);

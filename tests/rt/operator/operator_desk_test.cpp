@@ -98,6 +98,31 @@ TEST_F(OperatorDeskTest, DisarmTakesTheDrivesOffOnlyWhereNothingIsCarried) {
   EXPECT_NE(failure(ModeRequest::kPassive, Mode::kDamping), nullptr);
 }
 
+TEST(OperatorDeskFaultTest, AFaultThatArmingBringsUpIsNamedWithWhatToDo) {
+  for (const Fault fault : {Fault::kJointMisplaced, Fault::kTilt}) {
+    RemoteOperator op{1200};
+    OperatorDesk desk{op, 60.0, nullptr, std::chrono::seconds(5)};
+    std::atomic<bool> end{false};
+    std::thread controller([&] {
+      TickFacts facts;
+      for (std::uint64_t tick = 0; !end; ++tick) {
+        if (op.command(tick).request == ModeRequest::kArm) {
+          facts = {.mode = Mode::kFault, .faults = fault_bit(fault), .first_fault = fault};
+        }
+        op.advance(facts);
+        std::this_thread::yield();
+      }
+    });
+    const std::string text = desk.request("arm", kPage).text;
+    end = true;
+    controller.join();
+    EXPECT_TRUE(text.starts_with(std::string("a fault came up: ") + fault_name(fault))) << text;
+    EXPECT_EQ(text.find("fold all legs by hand") != std::string::npos,
+              fault == Fault::kJointMisplaced);
+    EXPECT_LE(text.size(), 127u);  // of an answer over DDS
+  }
+}
+
 TEST_F(OperatorDeskTest, AnObjectionHoldsForWhatDoesNotEndTheMotion) {
   const auto objection = [] { return std::string("two robots"); };
   EXPECT_EQ(desk.request("walk", kPeer, objection).text, "two robots");
