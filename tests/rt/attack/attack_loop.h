@@ -77,7 +77,8 @@ class AttackedRobot final : public RobotIo {
   std::uint64_t drive_is_misled = 0;
   std::uint64_t limp = 0;      ///< these drives give no torque, bit j for joint j
   std::uint64_t inverted = 0;  ///< these give it in the wrong direction
-  double torque_scale = 1.0;   ///< of what all drives give
+  /// Of the torque that each drive gives.
+  JointArray<double> torque_scale = all_joints(1.0);
 
  private:
   bool is_due(std::uint64_t tick, std::uint64_t period, std::uint64_t& next) noexcept {
@@ -104,7 +105,7 @@ class AttackedRobot final : public RobotIo {
 
   SafeCommand as_driven() const noexcept {
     const bool changed = drives_ == Drives::kTorque || drive_is_misled != 0 || limp != 0 ||
-                         inverted != 0 || torque_scale != 1.0;
+                         inverted != 0 || torque_scale != all_joints(1.0);
     if (!sent_.enabled() || !changed) return sent_;
     const sim::RigidState<double>& x = simulator_.state().robot.rigid;
     JointCommand c = sent_.joints();
@@ -119,7 +120,7 @@ class AttackedRobot final : public RobotIo {
                              c.kp_nmprad[j], c.kd_nmsprad[j], c.feedforward_nm[j]);
       const double sign = (inverted >> j & 1) != 0 ? -1.0 : 1.0;
       c.kp_nmprad[j] = c.kd_nmsprad[j] = 0.0;
-      c.feedforward_nm[j] = (limp >> j & 1) != 0 ? 0.0 : sign * torque_scale * wanted_nm;
+      c.feedforward_nm[j] = (limp >> j & 1) != 0 ? 0.0 : sign * torque_scale[j] * wanted_nm;
     }
     return sim::pass_gate(c);
   }
@@ -222,42 +223,6 @@ class AttackLoop {
  public:
   Lockstep loop;
 };
-
-/// What became of a robot.
-struct Outcome {
-  Fault fault = Fault::kNone;                 ///< the first one
-  double after_s = 0.0;                       ///< until then
-  double tilt_rad = 0.0;                      ///< of the body at that moment, or at the end
-  double largest_tilt_rad = 0.0;              ///< until the end, which is 2 s after a fault
-  double torque_nm = 0.0, speed_radps = 0.0;  ///< largest of a joint until the end
-  double fault_torque_nm = 0.0;               ///< largest of a joint until the fault
-
-  bool fell() const { return degrees(largest_tilt_rad) > 60.0; }
-  bool on_its_back() const { return degrees(largest_tilt_rad) > 90.0; }
-};
-
-/// Runs for `duration_s`, or until 2 s after a fault.
-inline Outcome watch(AttackLoop& loop, double duration_s) {
-  Outcome seen;
-  std::uint64_t left = ticks_from_s(duration_s);
-  for (std::uint64_t n = 1; left > 0; ++n, --left) {
-    loop.step();
-    const RobotTruth& truth = loop.truth();
-    seen.largest_tilt_rad = std::max(seen.largest_tilt_rad, tilt_rad(truth));
-    for (int j = 0; j < kNumJoints; ++j) {
-      seen.torque_nm = std::max(seen.torque_nm, std::fabs(truth.joint_torque_nm[j]));
-      seen.speed_radps = std::max(seen.speed_radps, std::fabs(truth.joint_velocity_radps[j]));
-    }
-    if (seen.fault != Fault::kNone) continue;
-    seen.tilt_rad = tilt_rad(truth);
-    seen.after_s = static_cast<double>(n) * kControlPeriod_s;
-    seen.fault_torque_nm = seen.torque_nm;
-    if (loop.fault() == Fault::kNone) continue;
-    seen.fault = loop.fault();
-    left = ticks_from_s(2.0) + 1;
-  }
-  return seen;
-}
 
 /// The robot in Stand, or walking at `velocity` for 4 s.
 inline Snapshot standing(const World& world, Drives drives) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "attack_loop.h"
+#include "outcome.h"
 
 namespace sandrunner::attack {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "attack_loop.h"
+#include "outcome.h"
 
 namespace sandrunner::attack {
 namespace {
