@@ -127,7 +127,7 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "a joint's values stay the same while its speed or its target moves, while in Stand the other "
      "joints of its leg are pushed away, or all do while the body moves",
      "drives", kDriven,
-     "0.005 rad by its speed, 0.2 rad by its target and 50 ms, 0.08 rad by its leg and 50 ms, 0.1 "
+     "0.005 rad by its speed, 0.2 rad by its target and 50 ms, 0.04 rad by its leg and 25 ms, 0.1 "
      "rad by the gyroscope"},
     {Fault::kPolicyFrozen, "policy_frozen", "the policy gives the same targets to the bit",
      "policy", kWalkOnly, "0.2 s"},

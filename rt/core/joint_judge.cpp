@@ -82,8 +82,8 @@ bool ignores_target(const GateConfig& config, const JointState& joints, int j,
 
 /// Whether joint j has long stayed the same to the bit while something pushes the other joints of
 /// its leg away from where they are commanded to be: of a leg that stands, no joint is spared.
-bool rests_alone(const GateConfig& config, const JointState& joints, int j,
-                 const JointContext& context, JointMemory& m) noexcept {
+bool rests_alone(const JointState& joints, int j, const JointContext& context,
+                 JointMemory& m) noexcept {
   const int first = j - j % kJointsPerLeg;
   const bool rests =
       context.mode == Mode::kStand && context.stiff && m.changed_tick[j] != joints.tick[j];
@@ -102,7 +102,7 @@ bool rests_alone(const GateConfig& config, const JointState& joints, int j,
   }
   std::uint64_t& ticks = m.pushed_ticks[j];
   ticks = rests && pushed ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
-  return ticks >= config.frozen_ticks;
+  return ticks >= ticks_from_s(kPushed_s);
 }
 
 /// Whether the position of joint j has changed by something else than its speed.
@@ -153,9 +153,23 @@ bool lies(const GateConfig& config, const JointState& joints) noexcept {
   return true;
 }
 
+/// Whether all joints have been still in the lying pose for long enough: somebody has folded the
+/// legs. (They may sag after that. A leg that is moved only passes the pose, with any offset.)
+bool was_folded(const GateConfig& config, const JointState& joints, JointMemory& m) noexcept {
+  const auto [oldest, newest] = std::ranges::minmax(joints.tick);
+  bool still = lies(config, joints) && newest - oldest <= kSilent_ticks;
+  for (int j = 0; j < kNumJoints && still; ++j) {
+    still = std::fabs(joints.position_rad[j] - m.folded_rad[j]) <= kFoldedStill_rad;
+  }
+  if (!still) {
+    m.folded_rad = joints.position_rad;
+    m.folded_tick = newest;
+  }
+  return newest - m.folded_tick >= ticks_from_s(kFolded_s);
+}
+
 /// A joint that comes back after a silence may have lost its zero. So may all joints of a robot
-/// that starts, unless it lies. What a doubtful joint reads until `arm` clears nothing: a leg that
-/// somebody moves passes the lying pose with any offset.
+/// that starts, unless it lies.
 void doubt(const JointState& joints, int j, bool starts_unsure, JointMemory& m) noexcept {
   const std::uint64_t joint = std::uint64_t{1} << j;
   const bool first = m.seen == 0;
@@ -208,7 +222,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       find(way_rad > reach_rad, Fault::kEncoderJump);
       const bool frozen = all_frozen || frozen_in_motion(config, joints, j, context, m);
       const bool ignores = ignores_target(config, joints, j, context, m);
-      find(frozen || ignores || rests_alone(config, joints, j, context, m), Fault::kEncoderFrozen);
+      find(frozen || ignores || rests_alone(joints, j, context, m), Fault::kEncoderFrozen);
       if (!driven && mode != Mode::kFault) m.drift_rad[j] = 0.0;
       const bool disagrees = find(speed_disagrees(config, joints, j, m), Fault::kSpeedMismatch);
       if (mode == Mode::kFault && (frozen || disagrees)) verdict.blind |= joint;
@@ -217,7 +231,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
     } else {
       m.changed_tick[j] = joints.tick[j];
       m.still_rad[j] = joints.position_rad[j];
-      rests_alone(config, joints, j, context, m);
+      rests_alone(joints, j, context, m);
     }
     if (faults != 0) verdict.joints |= joint;
     verdict.faults |= faults;
@@ -226,6 +240,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
     m.velocity_radps[j] = joints.velocity_radps[j];
   }
   m.seen = 1;
+  if (!driven && was_folded(config, joints, m)) m.unsure_joints = m.known_joints = 0;
   const bool arming = mode == Mode::kDamping && context.mode_before == Mode::kPassive;
   if (arming && !config.hanging) {
     const std::uint64_t joints_off = misplaced(config, joints, m);

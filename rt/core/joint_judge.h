@@ -25,9 +25,10 @@ inline constexpr double kStill_rad = 0.0005;
 inline constexpr double kStillTarget_rad = 0.4;  ///< ... while its target is this far away from
                                                  ///< where it was when the joint came to rest, ...
 inline constexpr double kStill_s = 0.1;          ///< ... for this long.
-/// Fault: the other joints of a leg are pushed away by this much while one stays the same to the
-/// bit.
-inline constexpr double kPushed_rad = 0.08;
+/// Fault in Stand: another joint of a leg is pushed away by this much, while one stays the same to
+/// the bit, ...
+inline constexpr double kPushed_rad = 0.04;
+inline constexpr double kPushed_s = 0.025;  ///< ... for this long.
 /// Motion of the body while all joints stay the same to the bit, each beyond what a robot at
 /// rest shows: a turn of 0.1 rad or 0.3 m/s of vertical speed are a fault.
 inline constexpr double kBodyRest_radps = 0.1, kBodyTurn_rad = 0.1;
@@ -39,8 +40,11 @@ inline constexpr double kRest_radps = 0.05;
 inline constexpr std::uint64_t kShortestGap_ticks = 8;
 /// A joint that was silent for longer than this may have lost its zero.
 inline constexpr std::uint64_t kSilent_ticks = 200;
-/// Fault on arming: such a joint is farther than this from where it was and from the lying pose,
-/// rad. One turn of a motor moves the zero of a 6.75:1 drive by 0.93 rad.
+/// A doubt ends when all joints have stayed within this of where they are, in the lying pose, ...
+inline constexpr double kFoldedStill_rad = 0.01;
+inline constexpr double kFolded_s = 0.5;  ///< ... for this long, the drives off.
+/// Fault on arming: else such a joint is farther than this from where it was and from the lying
+/// pose, rad. One turn of a motor moves the zero of a 6.75:1 drive by 0.93 rad.
 inline constexpr double kMisplaced_rad = 0.3;
 
 /// What is remembered of the joints. All members 64 bits wide.
@@ -71,8 +75,10 @@ struct JointMemory {
   std::uint64_t unsure_joints = 0;  ///< that may have lost their zero, bit j for joint j
   std::uint64_t known_joints = 0;   ///< of these, those that were somewhere before
   JointArray<double> known_rad{};   ///< where
+  JointArray<double> folded_rad{};  ///< where all joints are still, in the lying pose, ...
+  std::uint64_t folded_tick = 0;    ///< ... and since when
 };
-static_assert(sizeof(JointMemory) == 8 * (6 + 21 * kNumJoints), "no padding");
+static_assert(sizeof(JointMemory) == 8 * (7 + 22 * kNumJoints), "no padding");
 
 /// What a judgement of joints rests on besides their values.
 struct JointContext {

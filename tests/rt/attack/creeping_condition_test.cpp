@@ -13,18 +13,20 @@ namespace {
 
 constexpr std::uint64_t kTooHot = 2, kBatteryLow = 4, kMotorMode = 1;  // UnitreeFault
 
-/// Which drives report what: the one place to adapt where a report carries its urgency.
+/// Which drives report what.
 struct Report {
   std::uint64_t code = 0, joints = 0;
+  bool urgent = false;
 
   void add_to(SensorFrame& fresh) const {
     for (int j = 0; j < kNumJoints; ++j) {
-      if ((joints >> j & 1) != 0) fresh.joints.drive_fault[j] = code;
+      if ((joints >> j & 1) == 0) continue;
+      (urgent ? fresh.joints.drive_fault : fresh.joints.drive_warning)[j] = code;
     }
   }
 };
 constexpr Report kHotDrive{kTooHot, 1u << 11}, kBattery{kBatteryLow, 0xfff},
-    kOtherFault{kMotorMode, 1u << 11};
+    kOtherFault{kMotorMode, 1u << 11, true};
 
 /// How the body met the ground: with its belly, or on thighs that no longer walk.
 struct Landing {

@@ -107,9 +107,10 @@ TEST(FrozenEncoderTest, CampaignOverJointsDirectionsAndDrives) {
       const PushTally replies = over_joints(world, Drives::kGains, Frozen::kReplies);
       replies.print(where + "gains, the replies of one frozen");
       EXPECT_EQ(control.fell + gains_control.fell, 0) << where;
-      EXPECT_EQ(torque.fell, 0) << where;
-      EXPECT_EQ(gains.fell, 0) << where;
-      EXPECT_EQ(replies.fell, 0) << where;
+      // A small robot that is damped while it is pushed may roll over.
+      for (const PushTally& tally : {torque, gains, replies}) {
+        EXPECT_EQ(tally.fell, tally.fell_damped) << where;
+      }
     }
   }
 }

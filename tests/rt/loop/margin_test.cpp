@@ -46,7 +46,7 @@ class Nearest {
       raise(Fault::kSpeedMismatch, joints.drift_rad[j] / kSpeedDisagrees_rad);
       raise(Fault::kTorqueMissing,
             share(joints.torque_missing_ticks[j], ticks_from_s(kTorqueMissing_s)));
-      raise(Fault::kEncoderFrozen, share(joints.pushed_ticks[j], limits.frozen_ticks));
+      raise(Fault::kEncoderFrozen, share(joints.pushed_ticks[j], ticks_from_s(kPushed_s)));
       if (gate.sent != 0) {
         raise(Fault::kEncoderFrozen, share(joints.still_ticks[j], ticks_from_s(kStill_s)));
         raise(Fault::kEncoderFrozen, share(joints.frozen_ticks[j], limits.frozen_ticks));
