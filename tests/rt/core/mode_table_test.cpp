@@ -102,7 +102,7 @@ TEST(ModeTableTest, TheModelOfTheModeMachineHasTheTablesOfTheCode) {
       << "tests/models/mode_table.pml is not made from these tables. Renew it with\n"
          "  SANDRUNNER_RENEW=1 build/release/bin/core_test --gtest_filter='ModeTableTest.*'\n"
          "and check the models again with\n"
-         "  ctest --preset release -R Model";
+         "  ctest --preset release -R '^Model'";
 }
 
 TEST(ModeTableTest, EveryEventHasANameInTheModel) {
