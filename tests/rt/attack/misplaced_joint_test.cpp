@@ -179,6 +179,7 @@ TEST(MisplacedJointTest, CampaignOverJointsGearsAndDirections) {
       "| runs | of | armed | stand | topple | largest tilt | torque | refused by | "
       "fault in Stand |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string robot : {"raibo", "go2"}) {
+    if (!is_selected(robot)) continue;
     const World world(robot, "rigid");
     SupplyCut cut(world);
     const ArmTally control = over_pairs(cut, true, Release::kFolded);

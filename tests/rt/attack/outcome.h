@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "attack_loop.h"
@@ -43,6 +44,12 @@ inline Outcome watch(AttackLoop& loop, double duration_s) {
     left = ticks_from_s(2.0) + 1;
   }
   return seen;
+}
+
+/// Whether a campaign is to run the row `name`: all, or those that contain SANDRUNNER_ATTACK_ONLY.
+inline bool is_selected(const std::string& name) {
+  const char* const only = std::getenv("SANDRUNNER_ATTACK_ONLY");
+  return only == nullptr || name.find(only) != std::string::npos;
 }
 
 inline void print_outcomes_header() {
