@@ -24,9 +24,13 @@ constexpr std::size_t kLengthBytes = 8;
 // A policy's header has some kilobytes; each value is held by an object of the parser.
 constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 20;
 constexpr int kMaxHeaderDepth = 3;  // of the sizes in "shape": header, tensor, array
+// The parser looks through all siblings of an object when that ends: its time is the square of
+// their number.
+constexpr std::size_t kMaxKeys = 1000;  // of an object
+constexpr int kMaxObjects = 2;          // in each other: the header, a tensor
 
 /// Parses the header; a key that occurs twice in one object is an error, and so is deeper nesting
-/// than the format has.
+/// than the format has, or more than a policy has.
 Json parse_header(const std::string& path, std::string_view text) {
   std::vector<std::set<std::string>> open_objects;
   const auto watch_keys = [&](int depth, Json::parse_event_t event, Json& parsed) {
@@ -34,6 +38,9 @@ Json parse_header(const std::string& path, std::string_view text) {
       fail_file(path, "header is nested more than {} deep", kMaxHeaderDepth);
     }
     if (event == Json::parse_event_t::object_start) {
+      if (depth >= kMaxObjects) {
+        fail_file(path, "header has objects nested more than {} deep", kMaxObjects);
+      }
       open_objects.emplace_back();
     } else if (event == Json::parse_event_t::object_end) {
       open_objects.pop_back();
@@ -41,6 +48,9 @@ Json parse_header(const std::string& path, std::string_view text) {
       const auto key = parsed.get<std::string>();
       if (!open_objects.back().insert(key).second) {
         fail_file(path, "header has the key '{}' twice", printable(key));
+      }
+      if (open_objects.back().size() > kMaxKeys) {
+        fail_file(path, "header has an object with more than {} keys", kMaxKeys);
       }
     }
     return true;

@@ -106,6 +106,10 @@ ConfigTree::ConfigTree(ConfigTree&&) noexcept = default;
 ConfigTree& ConfigTree::operator=(ConfigTree&&) noexcept = default;
 
 void ConfigTree::add_layer(std::string_view toml, const std::string& origin, bool has_lines) {
+  if (toml.size() > kMostTomlBytes) {
+    throw InputError(one_line(fmt::format("{}: found {} bytes, expected at most {} of TOML", origin,
+                                          toml.size(), kMostTomlBytes)));
+  }
   if (const TomlDepth found = find_too_deep(toml); found.line != 0) {
     throw InputError(one_line(fmt::format(
         "{}{}: {}", origin, has_lines ? fmt::format(":{}", found.line) : "", found.problem)));

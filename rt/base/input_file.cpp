@@ -28,7 +28,8 @@ void require_regular_file(const std::string& path, const std::string& expected) 
   if (!std::filesystem::is_regular_file(status)) fail(path, "not a regular file", expected);
 }
 
-std::string read_input_file(const std::string& path, const std::string& expected) {
+std::string read_input_file(const std::string& path, const std::string& expected,
+                            std::size_t most_bytes) {
   require_regular_file(path, expected);
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(path, std::generic_category().message(errno), expected);
@@ -37,8 +38,8 @@ std::string read_input_file(const std::string& path, const std::string& expected
   std::array<char, 65536> block{};
   while (file.read(block.data(), block.size()) || file.gcount() > 0) {
     content.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (content.size() > kLargestInputFile_bytes) {
-      fail(path, fmt::format("more than {} bytes", kLargestInputFile_bytes), expected);
+    if (content.size() > most_bytes) {
+      fail(path, fmt::format("more than {} bytes", most_bytes), expected);
     }
   }
   if (file.bad()) fail(path, std::generic_category().message(errno), expected);

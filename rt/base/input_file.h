@@ -14,7 +14,8 @@ inline constexpr std::size_t kLargestInputFile_bytes = std::size_t{64} << 20;
 /// be endless or never answer. `expected` says in the message what it should be ("a TOML file").
 void require_regular_file(const std::string& path, const std::string& expected);
 
-/// The bytes of a regular file of at most kLargestInputFile_bytes; throws InputError otherwise.
-std::string read_input_file(const std::string& path, const std::string& expected);
+/// The bytes of a regular file of at most `most_bytes`; throws InputError otherwise.
+std::string read_input_file(const std::string& path, const std::string& expected,
+                            std::size_t most_bytes = kLargestInputFile_bytes);
 
 }  // namespace sandrunner

@@ -8,6 +8,8 @@ namespace sandrunner {
 
 /// More than any key or value of ours has.
 inline constexpr std::size_t kMostKeyParts = 32, kMostNestedValues = 32;
+/// toml++ reads some MB a second; a file of settings has some kB.
+inline constexpr std::size_t kMostTomlBytes = std::size_t{1} << 20;
 
 /// Where TOML text is nested too deep for the stack.
 struct TomlDepth {

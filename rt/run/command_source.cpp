@@ -15,6 +15,7 @@
 namespace sandrunner {
 namespace {
 
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // an hour of 100 rows a second
 constexpr double kMaxSpeed = 20.0;  // m/s, rad/s: beyond any robot, so surely a mistake
 
 // Comma-separated finite numbers; false if the text is anything else.
@@ -69,7 +70,7 @@ CommandSource::CommandSource(const std::string& text) : text_(text) {
     throw InputError(
         fmt::format("--command: '{}' is neither vx,vy,wz (finite numbers) nor a file", text));
   }
-  std::istringstream in(read_input_file(text, "a CSV file of commands"));
+  std::istringstream in(read_input_file(text, "a CSV file of commands", kMostBytes));
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();

@@ -33,12 +33,19 @@ std::size_t end_of_tag(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// A tag without the blanks at both ends of its attributes' values.
-std::string with_trimmed_values(std::string_view tag) {
+/// A tag without the blanks at both ends of its attributes' values. `name`: of the URDF.
+std::string with_trimmed_values(std::string_view tag, const std::string& name) {
   std::string trimmed;
+  std::size_t attributes = 0;
   for (std::size_t at = 0; at < tag.size();) {
     const std::size_t quote = std::min(tag.find_first_of("\"'", at), tag.size());
-    trimmed += tag.substr(at, quote - at);
+    const std::string_view names = tag.substr(at, quote - at);  // and values without quotes
+    trimmed += names;
+    attributes += static_cast<std::size_t>(std::ranges::count(names, '='));
+    if (attributes > kMaxUrdfAttributes) {
+      throw InputError(
+          fmt::format("{}: an element has more than {} attributes", name, kMaxUrdfAttributes));
+    }
     if (quote == tag.size()) break;
     const std::size_t end = std::min(tag.find(tag[quote], quote + 1), tag.size());
     std::string_view value = tag.substr(quote + 1, end - quote - 1);
@@ -55,6 +62,10 @@ std::string with_trimmed_values(std::string_view tag) {
 }  // namespace
 
 std::string tolerable_urdf(std::string_view text, const std::string& name) {
+  if (text.size() > kMaxUrdfBytes) {
+    throw InputError(fmt::format("{}: found {} bytes, expected at most {} of a URDF", name,
+                                 text.size(), kMaxUrdfBytes));
+  }
   std::string result;
   int depth = 0;
   std::size_t elements = 0;
@@ -80,7 +91,7 @@ std::string tolerable_urdf(std::string_view text, const std::string& name) {
       if (!closes && !empty && ++depth > kMaxUrdfDepth) {
         throw InputError(fmt::format("{}: elements nested more than {} deep", name, kMaxUrdfDepth));
       }
-      if (!(empty && tag.starts_with("<dynamics"))) result += with_trimmed_values(tag);
+      if (!(empty && tag.starts_with("<dynamics"))) result += with_trimmed_values(tag, name);
       continue;
     }
     result += text.substr(begin, at - begin);

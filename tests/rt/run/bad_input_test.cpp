@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bad input: one clear line, exit code 2, before any work.
+#include <sys/resource.h>
+
+#include <cstring>
+
 #include "policy/policy_file.h"
 #include "policy/safetensors.h"
 #include "sim/robot/embedded.h"
@@ -175,6 +179,69 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
                  "of robot 'small'; train one with sandrunner-train --robot FILE, or let it only "
                  "stand with --policy none");
   expect_refused("--robot raibo.urdf", "raibo.urdf: found XML, expected a robot file (TOML)");
+}
+
+/// `piece(i)` until there are this many bytes.
+template <typename Piece>
+std::string repeated(std::size_t bytes, const Piece& piece) {
+  std::string text;
+  for (int i = 0; text.size() < bytes; ++i) text += piece(i);
+  return text;
+}
+
+/// So that other programs of the computer do not count.
+double processor_time_of_children_s() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+// Each is what a parser takes long for, up to minutes: its length, or the square of its parts.
+TEST_F(BadInputTest, WhatTakesAParserLongIsRefusedBeforeItBegins) {
+  constexpr std::size_t kMega = std::size_t{1} << 20;
+  const auto expect_soon = [&](const std::string& arguments, const std::string& cause) {
+    const double before_s = processor_time_of_children_s();
+    expect_refused(arguments, cause);
+    EXPECT_LT(processor_time_of_children_s() - before_s, 2.0) << arguments;
+  };
+  const auto number = [](int i) { return std::to_string(i); };
+  write("keys.toml", repeated(4 * kMega, [&](int i) { return "k" + number(i) + "=1\n"; }));
+  expect_soon("--config keys.toml", "keys.toml: found 4194");
+  expect_soon("--robot keys.toml", "keys.toml: found 4194");
+  expect_soon("--terrain keys.toml", "keys.toml: found 4194");
+  expect_soon("--hardware keys.toml --dry-run", "keys.toml: found 4194");
+  write("most.toml", repeated(kMega - 20, [&](int i) { return "k" + number(i) + "=1\n"; }));
+  expect_soon("--config most.toml", "most.toml:1: unknown key 'k0'");
+
+  write("robot.toml", std::string(embedded_robot_file("raibo.toml")));
+  const auto expect_urdf = [&](const std::string& element, const std::string& cause) {
+    std::string text(embedded_robot_file("raibo.urdf"));
+    write("raibo.urdf", text.insert(text.rfind("</robot>"), element));
+    expect_soon("--policy none --robot robot.toml", cause);
+  };
+  for (const char* value : {"=\"\" ", "=1 "}) {
+    const auto attribute = [&](int i) { return "a" + number(i) + value; };
+    expect_urdf("<x " + repeated(kMega / 2, attribute) + "/>", "more than 64 attributes");
+  }
+  expect_urdf(repeated(kMega / 2, [](int) { return "<x/>"; }), "more than 4000 elements");
+  expect_urdf(std::string(kMega, ' '), "at most 1048576 of a URDF");
+
+  const auto expect_policy = [&](const std::string& header, const std::string& cause) {
+    std::string text(8, '\0');
+    const std::uint64_t size = header.size();
+    std::memcpy(text.data(), &size, sizeof size);
+    write("large", text + header);
+    expect_soon("--policy large", cause);
+  };
+  const auto tensor = [&](int i) { return "\"" + number(i) + "\":{},"; };
+  expect_policy("{" + repeated(kMega - 100, tensor) + "\"z\":{}}", "more than 1000 keys");
+  expect_policy("{\"z\":{\"shape\":[" + repeated(kMega - 100, [](int) { return "{},"; }) + "{}]}}",
+                "objects nested more than 2 deep");
+  expect_policy("{" + std::string(kMega, ' ') + "}", "expected at most 1048576");
+
+  write("long.csv", "t_s,vx,vy,wz\n" + repeated(17 * kMega, [](int) { return "0,0,0,0\n"; }));
+  expect_soon("--command long.csv", "more than 16777216 bytes");
 }
 
 TEST_F(BadInputTest, UnwritableOutputFoldersAreRefused) {

@@ -305,7 +305,7 @@ TEST(RobotModelTest, RefusesElementsNestedTooDeepOrTooMany) {
   expect_refused(edited(shipped_urdf(), "</robot>", "</robot>", deep), "nested more than 32 deep");
   expect_refused("<robot name=\"x\">" + deep, "nested more than 32 deep");
   expect_refused(edited(shipped_urdf(), "</robot>", "</robot>", repeated("<a/>", 20'000)),
-                 "more than 10000 elements");
+                 "more than 4000 elements");
   // What stands in a comment is no element.
   EXPECT_EQ(refusal(edited(shipped_urdf(), "</robot>", "</robot>", "<!--" + deep + "--></robot>")),
             "(accepted)");
