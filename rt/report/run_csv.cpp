@@ -75,12 +75,18 @@ std::vector<std::string> csv_columns(const RobotDescription& robot) {
 }
 
 void write_csv(const RunRecord& record, const std::string& path) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20;  // all of a long run are 130 MB
+  WholeFile file(path);
   std::string text = fmt::format("{}\n", fmt::join(csv_columns(record.scene.robot), ","));
   for (const RunRow& row : record.rows) {
     for (const RowField& field : kRowFields) append(text, row, field);
     text.back() = '\n';
+    if (text.size() < kPiece) continue;
+    file.write(text);
+    text.clear();
   }
-  write_file(path, text);
+  file.write(text);
+  file.keep();
 }
 
 }  // namespace sandrunner

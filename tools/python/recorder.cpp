@@ -102,7 +102,7 @@ void Recorder::write(const std::string& path, const std::string& title) {
   }
   RunRecord record = record_;
   record.scene.policy = title;
-  write_file(path, run_page(std::move(record)));
+  write_file(path, run_page(record));
 }
 
 }  // namespace sandrunner::python

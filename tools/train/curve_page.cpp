@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
 #include "rt/run/run_script.h"
@@ -39,7 +37,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, double 
                                   {.scene = scene_of(config, file.spec.name)});
   const auto& provenance = file.spec.provenance;
   return run_page(
-      std::move(run.record), kMostBytes,
+      run.record, kMostBytes,
       progress.page_json(fmt::format("Training of {}: {:.2f} million transitions, {} core-hours; "
                                      "below: its policy, asked for {} "
                                      "m/s on {}",

@@ -68,12 +68,13 @@ std::string page_of(const RunRecord& record, std::string_view curve) {
 
 }  // namespace
 
-std::string run_page(RunRecord record, std::size_t most_bytes, std::string_view curve) {
-  while (true) {
-    std::string page = page_of(record, curve);
-    if (page.size() <= most_bytes || record.rows.size() < 8) return page;
-    record.thin();
-  }
+std::string run_page(const RunRecord& record, std::size_t most_bytes, std::string_view curve) {
+  std::string page = page_of(record, curve);
+  if (page.size() <= most_bytes || record.rows.size() < 8) return page;
+  page = {};
+  RunRecord thinned = record;
+  thinned.thin();
+  return run_page(thinned, most_bytes, curve);
 }
 
 }  // namespace sandrunner

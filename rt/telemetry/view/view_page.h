@@ -13,7 +13,7 @@ namespace sandrunner {
 /// out until the page has at most `most_bytes`; it says so. `curve`: a learning curve that is drawn
 /// above the run, as JSON: {title, x_label, x: [...], every: rows that each value is the mean of,
 /// charts: [{title, unit, lines: [{name, values: [...]}]}]}; empty: none.
-std::string run_page(RunRecord record, std::size_t most_bytes = 16'000'000,
+std::string run_page(const RunRecord& record, std::size_t most_bytes = 16'000'000,
                      std::string_view curve = {});
 
 }  // namespace sandrunner

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <variant>
 
 #include "rt/core/floating_point.h"
@@ -148,7 +147,7 @@ std::string recovery_page(RecoveryRun run) {
   run.record.scene.note = fmt::format(
       "The left front foot meets loose sand at {:.2f} s: half of the stiffness from {} to {} m.",
       run.met_s, kStripFrom_m, kStripTo_m);
-  return run_page(std::move(run.record), kMostBytes);
+  return run_page(run.record, kMostBytes);
 }
 
 }  // namespace sandrunner::study
