@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -57,6 +58,7 @@ int check_unitree(const Options& options, const ProcessConfig& config) {
 }
 
 int check(const Options& options) {
+  std::signal(SIGINT, SIG_DFL);  // which a script's & has it ignore
   const ProcessConfig config = read_config(options, nullptr);
   if (config.unitree) return check_unitree(options, config);
   if (options.check.plan) {
@@ -164,6 +166,7 @@ int run(const Options& options) {
   if (dds) rig.sinks.push_back(&*dds);
   if (view) rig.sinks.push_back(&view->feed());
   SystemClock clock;
+  signals.run_begins();
   RunResult result = options.clock == RunClock::kRealtime
                          ? run_in_realtime(rig, rows, config.realtime, clock)
                          : run_in_lockstep(rig, rows);

@@ -23,6 +23,7 @@ constexpr double kBetweenReleases_s = 1.0;
 constexpr int kMostReleases = 10;
 constexpr int kProofs = 2;  // looks in a row at which no program of the robot's controls it
 constexpr double kRead_s = 2.0;
+constexpr double kLook_s = 0.05;  // whether to go on
 
 std::int64_t after_s(double time_s) {
   return clock_ns(CLOCK_MONOTONIC) + static_cast<std::int64_t>(1e9 * time_s);
@@ -32,7 +33,7 @@ std::int64_t after_s(double time_s) {
 bool pass(RobotLink& link, double time_s, const std::function<bool()>& may_go_on) {
   const std::int64_t end_ns = after_s(time_s);
   while (clock_ns(CLOCK_MONOTONIC) < end_ns) {
-    link.wait(std::min(end_ns, after_s(0.05)));
+    link.wait(std::min(end_ns, after_s(kLook_s)));
     if (!may_go_on()) return false;
   }
   return true;
@@ -95,17 +96,14 @@ RobotFigures figures_of(const RobotDescription& robot, const GateConfig& gate,
           .damping_kd_nmsprad = damping_kd_nmsprad};
 }
 
-StateFigures listen_to_states(RobotLink& link) {
+StateFigures listen_to_states(RobotLink& link, const std::function<bool()>& may_go_on) {
   StateWatch& states = link.states();
   const std::int64_t first_ns = after_s(kFirstState_s);
-  while (states.counters().received() == 0 && clock_ns(CLOCK_MONOTONIC) < first_ns) {
-    link.wait(first_ns);
+  while (states.counters().received() == 0 && clock_ns(CLOCK_MONOTONIC) < first_ns && may_go_on()) {
+    link.wait(std::min(first_ns, after_s(kLook_s)));
   }
   states.begin_figures();
-  const std::int64_t end_ns = after_s(kListen_s);
-  while (states.counters().received() > 0 && clock_ns(CLOCK_MONOTONIC) < end_ns) {
-    link.wait(end_ns);
-  }
+  if (states.counters().received() > 0) pass(link, kListen_s, may_go_on);
   return {.state = states.state(),
           .counters = states.counters(),
           .rate_hz = states.rate_hz(),
@@ -183,10 +181,10 @@ bool lies(const RobotFigures& robot, const RobotState& state) noexcept {
 
 void bring_up(RobotLink& link, const UnitreeConfig& config, const RobotFigures& robot,
               const std::function<bool()>& may_go_on) {
-  const StateFigures figures = listen_to_states(link);
+  const StateFigures figures = listen_to_states(link, may_go_on);
+  if (!may_go_on()) return;
   const auto problems = state_problems(config, robot, figures, link.wrong_state_type());
   if (!problems.empty()) fail(problems.front());
-  if (!may_go_on()) return;
   if (config.release_sport_mode) release_sport_mode(link, robot, may_go_on);
   const std::uint64_t foreign = link.foreign_commands();
   if (!pass(link, kListen_s, may_go_on)) return;

@@ -34,8 +34,10 @@ struct StateFigures {
 /// How long to listen to states after the first, and to wait for the first, s.
 inline constexpr double kListen_s = 0.5, kFirstState_s = 3.0;
 
-/// Listens to states, for kListen_s since the first one. No state: `counters.taken` is 0.
-StateFigures listen_to_states(RobotLink& link);
+/// Listens to states, for kListen_s since the first one. No state: `counters.taken` is 0. Ends
+/// early where `may_go_on` is false.
+StateFigures listen_to_states(
+    RobotLink& link, const std::function<bool()>& may_go_on = [] { return true; });
 
 /// A line for each thing that is wrong with the states; none: all is well.
 std::vector<std::string> state_problems(const UnitreeConfig& config, const RobotFigures& robot,

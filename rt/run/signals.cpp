@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/run/signals.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <csignal>
 
 #include "rt/base/clock_ns.h"
+#include "rt/base/standard_error.h"
 
 namespace sandrunner {
 namespace {
@@ -34,6 +37,20 @@ void crash(int) {
   if (RobotIo* const robot = robot_of_a_crash.load()) robot->cut_drives();
 }
 
+/// Ends the process as the signal would have: who waits for it learns of which one. Whatever the
+/// start had begun, drives are off: only a run enables them.
+[[noreturn]] void end_by(int number) {
+  to_standard_error("sandrunner: a signal ended the start; no drive was switched on\n");
+  if (number == SIGTSTP) number = SIGINT;  // it would stop the process
+  std::signal(number, SIG_DFL);
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, number);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  raise(number);
+  _exit(128 + number);
+}
+
 }  // namespace
 
 SignalWatch::SignalWatch() {
@@ -59,12 +76,15 @@ SignalWatch::SignalWatch() {
     int number;
     std::int64_t last_ns = 0;
     while (sigwait(&watched_, &number) == 0 && !end_) {
+      Phase phase = Phase::kStart;
+      if (phase_.compare_exchange_strong(phase, Phase::kEnd)) end_by(number);
       const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
       const bool another = now_ns - last_ns > kTogether_ns && number != SIGHUP;
       if (interrupts_ == 0 || another) ++interrupts_;
       last_ns = now_ns;
     }
   });
+  pthread_setname_np(thread_.native_handle(), "signals-start");
 }
 
 SignalWatch::~SignalWatch() {
@@ -72,6 +92,15 @@ SignalWatch::~SignalWatch() {
   pthread_kill(thread_.native_handle(), kEndSignal);
   thread_.join();
   pthread_sigmask(SIG_UNBLOCK, &watched_, nullptr);
+}
+
+void SignalWatch::run_begins() noexcept {
+  Phase phase = Phase::kStart;
+  if (phase_.compare_exchange_strong(phase, Phase::kRun)) {
+    pthread_setname_np(thread_.native_handle(), kSignalsThread);
+    return;
+  }
+  while (phase == Phase::kEnd) pause();  // until the process has ended
 }
 
 CutInACrash::CutInACrash(RobotIo& robot) {

@@ -122,7 +122,9 @@ def judge(child, one, folder):
     code = child.code
     if code is None:
         return 'hang', f'not done after {LIMIT_S:g} s'
-    if code < 0 and -code not in child.sent:
+    # A start does not stop: it ends.
+    stopped_start = code == -signal.SIGINT and signal.SIGTSTP in child.sent
+    if code < 0 and -code not in child.sent and not stopped_start:
         return 'crash', signal.Signals(-code).name
     stderr = child.err.read_text(errors='replace')
     said = stderr + child.out.read_text(errors='replace')

@@ -8,6 +8,7 @@
 
 #include "policy/policy_file.h"
 #include "rt/base/build.h"
+#include "rt/run/signals.h"
 #include "sim/robot/robot_model.h"
 #include "tests/policy/random_policy.h"
 #include "tests/support/program_test.h"
@@ -222,7 +223,7 @@ TEST_F(CommandLineTest, FallIsExitCodeOne) {
 
 class InterruptTest : public CommandLineTest {
  protected:
-  /// Starts a long run, sends the signal once the program watches for it, and returns what was
+  /// Starts a long run, sends the signal once the robot runs, and returns what was
   /// left. `before`: lines of the shell that come first.
   Ended interrupt(const std::string& arguments, int signal_number, const std::string& before = "",
                   bool close_output = false) {
@@ -234,20 +235,20 @@ class InterruptTest : public CommandLineTest {
                        {.folder = folder_.path("")});
     if (close_output) child.close_out();
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (!watches_for_signals(child.pid()) && std::chrono::steady_clock::now() < deadline) {
+    while (!runs(child.pid()) && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     child.signal(signal_number);
     return child.wait();
   }
-  /// The program blocks them in all threads and waits for them in one: until then a signal just
-  /// kills.
-  static bool watches_for_signals(pid_t process) {
-    const std::string status = read_file("/proc/" + std::to_string(process) + "/status");
-    const std::string label = "SigBlk:\t";
-    const std::size_t at = status.find(label);
-    return at != std::string::npos &&
-           (std::stoull(status.substr(at + label.size()), nullptr, 16) >> (SIGTERM - 1) & 1) != 0;
+  /// Until then a signal ends the start.
+  static bool runs(pid_t process) {
+    std::error_code gone;
+    std::filesystem::directory_iterator task("/proc/" + std::to_string(process) + "/task", gone);
+    for (; !gone && task != std::filesystem::directory_iterator(); task.increment(gone)) {
+      if (read_file(task->path() / "comm") == std::string(kSignalsThread) + "\n") return true;
+    }
+    return false;
   }
   /// Writes a policy that holds the nominal pose, so that the robot is still up when the signal
   /// comes.

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A robot's hardware file on the command line: what cannot work is one line and exit code 2, before
 // anything is opened; what can be told without the robot is told.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
 
 #include "rt/base/config_tree.h"
 #include "rt/run/process_config.h"
@@ -106,6 +111,20 @@ TEST_F(HardwareTest, CheckOfARobotOfAnotherKindHasNoOptions) {
   }
   expect_refused("check hardware.toml --set hardware.unitree.interface=nosuch0",
                  "DDS: domain 0 on interface nosuch0");
+}
+
+TEST_F(HardwareTest, AStartThatWaitsForARobotEndsAtOnce) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    ChildProcess controller({SANDRUNNER_PROGRAM, "--hardware", SANDRUNNER_UNITREE_EXAMPLE, "--set",
+                             "hardware.unitree.interface=lo", "--set",
+                             fmt::format("hardware.unitree.domain={}", 60 + getpid() % 150),
+                             "--policy", "none", "--duration", "1", "--arm"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    const auto begin = std::chrono::steady_clock::now();
+    controller.signal(number);
+    EXPECT_EQ(controller.wait().code, 128 + number);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  }
 }
 
 TEST_F(HardwareTest, TheGateWaitsForStatesThatCome500TimesASecond) {

@@ -3,12 +3,17 @@
 #include "rt/run/signals.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <cstdlib>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -35,7 +40,8 @@ TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
                            SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGRTMAX}) {
     const auto child = [number] {
       signal(number, SIG_DFL);  // whatever the test's own parent did
-      const SignalWatch watch;
+      SignalWatch watch;
+      watch.run_begins();
       if (watch.interrupts()) _exit(1);
       kill(getpid(), number);
       if (!comes_true(watch.interrupts())) _exit(2);
@@ -49,7 +55,8 @@ TEST(SignalWatchDeathTest, EachSignalSetsTheFlag) {
 TEST(SignalWatchDeathTest, DoesNotInterruptCallsOfOtherThreads) {
   const auto child = [] {
     signal(SIGINT, SIG_DFL);
-    const SignalWatch watch;
+    SignalWatch watch;
+    watch.run_begins();
     int ends[2];
     if (pipe(ends) != 0) _exit(2);
     std::atomic<pid_t> reader_id{0};
@@ -71,7 +78,8 @@ TEST(SignalWatchDeathTest, DoesNotInterruptCallsOfOtherThreads) {
 
 TEST(SignalWatchDeathTest, ClosedPipeIsAnErrorOfTheWrite) {
   const auto child = [] {
-    const SignalWatch watch;
+    SignalWatch watch;
+    watch.run_begins();
     int ends[2];
     if (pipe(ends) != 0) _exit(2);
     close(ends[0]);
@@ -82,7 +90,8 @@ TEST(SignalWatchDeathTest, ClosedPipeIsAnErrorOfTheWrite) {
 
 TEST(SignalWatchDeathTest, ATooLargeFileIsAnErrorOfTheWrite) {
   const auto child = [] {
-    const SignalWatch watch;
+    SignalWatch watch;
+    watch.run_begins();
     const rlimit limit{0, 0};
     char name[] = "/tmp/sandrunner-limit-XXXXXX";
     const int file = mkstemp(name);
@@ -140,7 +149,8 @@ TEST(SignalWatchDeathTest, InAScriptsBackgroundInterruptQuitAndTerminateCount) {
   for (const int number : {SIGINT, SIGQUIT, SIGTERM}) {
     const auto child = [number] {
       signal(number, SIG_IGN);  // a shell's &
-      const SignalWatch watch;
+      SignalWatch watch;
+      watch.run_begins();
       kill(getpid(), number);
       _exit(comes_true(watch.interrupts()) ? 0 : 1);
     };
@@ -150,7 +160,8 @@ TEST(SignalWatchDeathTest, InAScriptsBackgroundInterruptQuitAndTerminateCount) {
 
 TEST(SignalWatchDeathTest, ASecondInterruptCountsButNotTheHangUpsOfOneTerminal) {
   const auto child = [] {
-    const SignalWatch watch;
+    SignalWatch watch;
+    watch.run_begins();
     const auto send = [](int number) {
       kill(getpid(), number);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -176,7 +187,8 @@ TEST(SignalWatchDeathTest, ASecondInterruptCountsButNotTheHangUpsOfOneTerminal) 
 TEST(SignalWatchDeathTest, AHangUpThatWasIgnoredFromTheStartStaysIgnored) {
   const auto child = [] {
     signal(SIGHUP, SIG_IGN);  // nohup
-    const SignalWatch watch;
+    SignalWatch watch;
+    watch.run_begins();
     kill(getpid(), SIGHUP);
     // What the watch waits for it blocks.
     sigset_t blocked;
@@ -186,10 +198,91 @@ TEST(SignalWatchDeathTest, AHangUpThatWasIgnoredFromTheStartStaysIgnored) {
   EXPECT_EXIT(child(), testing::ExitedWithCode(0), "");
 }
 
+struct Wait {
+  const char* name;
+  void (*wait)();
+};
+
+// Kinds of waits that a start may have: each is entered for ever.
+constexpr Wait kWaits[] = {
+    {"sleep",
+     [] {
+       for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+     }},
+    {"long sleep", [] { std::this_thread::sleep_for(std::chrono::hours(1)); }},
+    {"computation",
+     [] {
+       for (std::atomic<int> n{0};;) ++n;
+     }},
+    {"pipe nobody writes to",
+     [] {
+       int ends[2];
+       char byte;
+       if (pipe(ends) != 0 || read(ends[0], &byte, 1) != 0) _exit(2);
+     }},
+    {"lock",
+     [] {
+       std::mutex mutex;
+       mutex.lock();
+       std::thread([&] { mutex.lock(); }).join();
+     }},
+    {"condition",
+     [] {
+       std::mutex mutex;
+       std::condition_variable never;
+       std::unique_lock lock(mutex);
+       never.wait(lock, [] { return false; });
+     }},
+    {"process",
+     [] {
+       const pid_t child = fork();
+       if (child == 0) {
+         prctl(PR_SET_PDEATHSIG, SIGKILL);
+         for (;;) pause();
+       }
+       waitpid(child, nullptr, 0);
+     }},
+    {"retried call that a signal would interrupt",
+     [] {
+       for (;;) poll(nullptr, 0, -1);
+     }},
+};
+
+TEST(SignalWatchDeathTest, AStartThatWaitsEndsAtOnce) {
+  for (const Wait& wait : kWaits) {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+      const auto child = [&] {
+        signal(number, SIG_DFL);
+        SignalWatch watch;
+        std::thread([number] {
+          std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          kill(getpid(), number);
+        }).detach();
+        wait.wait();
+        _exit(3);
+      };
+      const auto begin = std::chrono::steady_clock::now();
+      EXPECT_EXIT(child(), testing::KilledBySignal(number), "ended the start; no drive")
+          << wait.name;
+      EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1)) << wait.name;
+    }
+  }
+}
+
+TEST(SignalWatchDeathTest, AStartIsEndedByWhatWouldStopIt) {
+  const auto child = [] {
+    signal(SIGTSTP, SIG_DFL);
+    SignalWatch watch;
+    kill(getpid(), SIGTSTP);
+    for (;;) pause();
+  };
+  EXPECT_EXIT(child(), testing::KilledBySignal(SIGINT), "");
+}
+
 TEST(SignalWatchDeathTest, AfterItASignalKillsAgain) {
   const auto child = [] {
     signal(SIGTERM, SIG_DFL);
-    { const SignalWatch watch; }
+    { SignalWatch watch; }
     kill(getpid(), SIGTERM);
     _exit(0);
   };
