@@ -15,9 +15,9 @@ namespace {
 using Acts = std::function<void(AttackLoop&)>;
 
 Outcome with_defect(const World& world, Drives drives, const Snapshot& at, double duration_s,
-                    const Acts& acts) {
+                    const Acts& acts, double vx_mps) {
   AttackLoop loop(world, drives, at);
-  loop.command.velocity.vx_mps = 1.0;
+  loop.command.velocity.vx_mps = vx_mps;
   loop.run(0.05);
   if (acts) acts(loop);
   return watch(loop, duration_s);
@@ -106,9 +106,9 @@ TEST(QuietDefectTest, CampaignOverDefects) {
     const Drives gains = Drives::kGains;
     const Snapshot walk = walking(world, gains, {.vx_mps = 1.0});
     const Snapshot stand = standing(world, gains);
-    const auto row = [&](const char* name, const Snapshot& at, double duration_s,
-                         const Acts& acts) {
-      print_outcome(robot + ", " + name, with_defect(world, gains, at, duration_s, acts));
+    const auto row = [&](const char* name, const Snapshot& at, double duration_s, const Acts& acts,
+                         double vx_mps = 1.0) {
+      print_outcome(robot + ", " + name, with_defect(world, gains, at, duration_s, acts, vx_mps));
     };
     row("Walk, control", walk, 10.0, nullptr);
     row("Walk, HAA held", walk, 10.0, hold(1u << 0));
@@ -116,6 +116,11 @@ TEST(QuietDefectTest, CampaignOverDefects) {
     row("Walk, KFE held", walk, 10.0, hold(1u << 2));
     row("Walk, lifted", walk, 9.0, lift);
     row("Walk, four HAA limp", walk, 5.0, limp(kAllHaa));
+    for (const double vx_mps : {0.0, 0.5}) {
+      const Snapshot slow = walking(world, gains, {.vx_mps = vx_mps});
+      row(vx_mps == 0.0 ? "Walk on the spot, four HAA limp" : "Walk at 0.5 m/s, four HAA limp",
+          slow, 5.0, limp(kAllHaa), vx_mps);
+    }
     row("Walk, one HAA limp", walk, 5.0, limp(1u << 0));
     row("Walk, HAA stuck but for a count", walk, 5.0, stuck(0));
     row("Walk, HFE stuck but for a count", walk, 5.0, stuck(1));
