@@ -35,11 +35,8 @@ LAYERS = [
     ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
     ["tools/train/learner", "tools/train/task"],
     ["tools/train/model"],
-    ["tools/evaluate", "tools/hil/emulated", "tools/study/analysis", "tools/study/simulated"],
-    ["tools/study/evidence"],
+    ["tools/evaluate", "tools/hil/emulated", "tools/study/simulated"],
     ["tools/study/experiments"],
-    ["tools/study/claims"],
-    ["tools/study/page"],
     ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
     ["tools/python"],
 ]

@@ -20,12 +20,14 @@ packages=(
   esbuild libjs-three libboost-dev
 )
 # Trainer, benches, tests and the Debian package with its man pages; the emulated machine of
-# tools/hil; a DDS peer that is not ours, and the generator of its code; the Python module.
+# tools/hil; a DDS peer that is not ours, and the generator of its code; the Python module; the page
+# of tools/study.
 [[ ${1:-all} == sandrunner ]] || packages+=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file help2man
   qemu-system-x86 busybox-static cpio xz-utils
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
   pybind11-dev python3-dev python3-onnx
+  python3-scipy python3-sklearn python3-matplotlib
 )
 [[ ${1:-all} != @(test|checks) ]] || packages+=(chromium-headless-shell python3-venv spin)
 [[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev)

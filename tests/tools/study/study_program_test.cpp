@@ -149,6 +149,15 @@ TEST_F(StudyProgramTest, KeepsWhatIsDoneAndTakesADamagedFileAgain) {
   EXPECT_EQ(read("dir/results.json"), before);
 }
 
+TEST_F(StudyProgramTest, SaysWhereThePageCannotBeWrittenAndKeepsTheResults) {
+  std::filesystem::create_directories(folder_.path("dir/report.html"));
+  ASSERT_EQ(run("--from models --only E6 --runs 1 --out dir"), 2);
+  EXPECT_EQ(std::count(error().begin(), error().end(), '\n'), 1) << error();
+  EXPECT_TRUE(error().starts_with("sandrunner-study: ")) << error();
+  EXPECT_NE(error().find("report.html"), std::string::npos) << error();
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("dir/results.json")));
+}
+
 TEST_F(StudyProgramTest, RefusesBadInputInOneLine) {
   std::filesystem::create_directory(folder_.path("broken"));
   write_file(folder_.path("broken/ours-1.safetensors"), "no policy");

@@ -11,7 +11,7 @@
 #include "rt/base/output_files.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
-#include "tools/study/evidence/controllers.h"
+#include "tools/study/experiments/controllers.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/train_config.h"
 

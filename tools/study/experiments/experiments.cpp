@@ -3,33 +3,22 @@
 
 #include <algorithm>
 
-#include "tools/study/evidence/grid_evidence.h"
-#include "tools/study/experiments/oracles.h"
-
 namespace sandrunner::study {
-namespace {
-
-std::vector<const char*> with_published(std::vector<const char*> keys) {
-  keys.push_back("published");
-  return keys;
-}
-
-}  // namespace
-
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> kAll = {
-      {"fairness", "Fairness: each controller on the ground of its own training",
-       trained_controllers(), run_fairness},
-      {"E1", "Dry sand (Table 1, Fig. 2 C to F)", with_published(beach_controllers()), run_beach},
-      {"E2", "Recovery and transition (Fig. 2 A, B, movie S1)", {"ours"}, run_recovery},
-      {"E3", "Vinyl, track and grass; turns (Fig. 3 D, E)", with_published({"ours", "env-rigid"}),
-       run_grounds},
-      {"E4", "Hidden state (Fig. 3 F)", {"ours"}, run_hidden_state},
-      {"E5", "Air mattress (Fig. 3 G, H)", with_published(mattress_controllers()), run_mattress},
-      {"E6", "Memory foam (fig. S8)", {"ours", "env-rigid"}, run_foam},
-      {"E7", "Grid of stiffnesses (Fig. 4 A to D, table S1, fig. S10)", grid_controllers(),
+      {"fairness", trained_controllers(), run_fairness},
+      {"E1",
+       {"ours", "env-rigid", "env-quasistatic", "env-linear", "pl-gm", "pl-rigid", "published"},
+       run_beach},
+      {"E2", {"ours"}, run_recovery},
+      {"E3", {"ours", "env-rigid", "published"}, run_grounds},
+      {"E4", {"ours"}, run_hidden_state},
+      {"E5", {"ours", "env-rigid", "pl-gm", "pl-rigid", "published"}, run_mattress},
+      {"E6", {"ours", "env-rigid"}, run_foam},
+      {"E7",
+       {"ours", "env-rigid", "pl-gm", "pl-rigid", "teacher-gm", "oracle-h", "oracle-o", "tcn"},
        run_grid},
-      {"E8", "Attribution (Fig. 4 E to G, figs. S9, S11)", oracle_controllers(), run_attribution},
+      {"E8", {"oracle-h", "oracle-o"}, run_attribution},
   };
   return kAll;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The experiments that are run on controllers. Each takes one model and yields numbers; what they
-// mean is for tables, pictures and claims to say.
+// mean is for ../page to say.
 #pragma once
 
 #include <string_view>
@@ -11,8 +11,7 @@
 namespace sandrunner::study {
 
 struct Experiment {
-  const char* key;    ///< in results.json and of --only
-  const char* title;  ///< of its part of the page
+  const char* key;  ///< in results.json and of --only
   std::vector<const char*> controllers;
   Measured (*run)(Lab& lab, const Model& model);
 };

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// E7, Fig. 4 A to D: rewards and clearances over a grid of stiffnesses.
+// E7, Fig. 4 A to D: rewards and clearances over a grid of stiffnesses. Two groups on "grid":
+//   cells: lists, a value for each cell: sigma_flat_npm3, sigma_cone_npm3, static_depth_m, success,
+//     reward, clearance_m (nan where the success is not above kLeastSuccess)
+//   robots: a run is a robot, which has the same start and command in each cell: reward and
+//     success, means over the cells; slope_flat_m, slope_cone_m, of its clearance
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include "tools/study/evidence/grid_evidence.h"
 #include "tools/study/experiments/experiments.h"
 #include "tools/study/simulated/grid_run.h"
 
@@ -12,6 +15,9 @@ namespace sandrunner::study {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kGround = "grid";
+// The paper's criterion: a cell with no more success than this is black.
+constexpr double kLeastSuccess = 0.10;
 
 // [cell][robot]
 using Cells = std::vector<std::vector<GridRobot>>;
@@ -32,7 +38,7 @@ double mean_over(std::size_t count, const Of& of) {
 
 RunGroup cells_group(const std::vector<GridCell>& cells, const Cells& runs,
                      const sim::Robot& robot) {
-  RunGroup group{kGridGround, kGridCells, 0.0, {}, {}};
+  RunGroup group{kGround, "cells", 0.0, {}, {}};
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::vector<GridRobot>& robots = runs[c];
     const double success = success_of(robots);
@@ -51,7 +57,7 @@ RunGroup cells_group(const std::vector<GridCell>& cells, const Cells& runs,
 }
 
 RunGroup robots_group(const std::vector<GridCell>& cells, const Cells& runs) {
-  RunGroup group{kGridGround, kGridRobots, 0.0, {}, {}};
+  RunGroup group{kGround, "robots", 0.0, {}, {}};
   std::vector<double> log_flat, log_cone;
   for (const GridCell& cell : cells) {
     log_flat.push_back(std::log10(cell.sigma_flat_npm3));

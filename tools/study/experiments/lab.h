@@ -9,8 +9,8 @@
 
 #include "tools/evaluate/runner.h"
 #include "tools/evaluate/study.h"
-#include "tools/study/evidence/runs.h"
 #include "tools/study/experiments/models.h"
+#include "tools/study/experiments/runs.h"
 
 namespace sandrunner::study {
 

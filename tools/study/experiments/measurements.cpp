@@ -4,16 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string_view>
 
-#include "rt/base/build.h"
-#include "rt/base/errors.h"
-#include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 #include "tools/study/experiments/experiments.h"
 
@@ -55,24 +50,10 @@ bool takes_part(const Experiment& experiment, const Model& model) {
                      [&](std::string_view key) { return key == model.controller->key; });
 }
 
-// "final depth 14.4 (quartiles 11.8 and 17.8), their range over it 0.42; ..."
-double spread_in(const std::string& text, const std::string& path) {
-  constexpr std::string_view kBefore = "their range over it ";
-  const std::size_t at = text.find(kBefore);
-  double spread = 0.0;
-  if (at == std::string::npos ||
-      std::sscanf(text.c_str() + at + kBefore.size(), "%lf", &spread) != 1) {
-    throw InputError(
-        fmt::format("--contact {}: found '{}', expected '{}' and a number", path, text, kBefore));
-  }
-  return spread;
-}
-
 }  // namespace
 
-Evidence measure(const Options& options, const std::vector<Model>& models) {
-  Evidence evidence;
-  if (!options.contact.empty()) evidence.contact = read_contact_bench(options.contact);
+Measurements measure(const Options& options, const std::vector<Model>& models) {
+  Measurements measurements;
   prepare_folder(options.out + "/cache", "--out");
   const std::uint64_t program = hash_of_program();
   Lab lab(options.lab);
@@ -91,56 +72,12 @@ Evidence measure(const Options& options, const std::vector<Model>& models) {
         measured = experiment.run(lab, model);
         write_file(path, Json{{"key", key}, {"measured", to_json(*measured)}}.dump() + "\n");
       }
-      evidence.measured[name][model.controller->key][model.seed] = std::move(*measured);
+      measurements[name][model.controller->key][model.seed] = std::move(*measured);
     }
     fmt::print("{}: {} models run, {} taken from an earlier run\n", name, ran, kept);
     std::fflush(stdout);
   }
-  return evidence;
-}
-
-ContactBench read_contact_bench(const std::string& path) {
-  const Json json = Json::parse(read_input_file(path, "a file of sandrunner-bench contact --json"),
-                                nullptr, false);
-  ContactBench bench;
-  try {
-    bench.ratio = json.at("drft_vs_cone").at("median").get<double>();
-    for (auto [key, text] : {std::pair{"processor", &bench.processor},
-                             {"cone_mm", &bench.cone_mm},
-                             {"drft_mm", &bench.drft_mm},
-                             {"planar_mm", &bench.planar_mm}}) {
-      *text = json.at(key).get<std::string>();
-    }
-  } catch (const Json::exception&) {
-    throw InputError(fmt::format(
-        "--contact {}: found something else, expected what `sandrunner-bench contact --json FILE` "
-        "writes",
-        path));
-  }
-  bench.spread_cone = spread_in(bench.cone_mm, path);
-  bench.spread_drft = spread_in(bench.drft_mm, path);
-  bench.spread_planar = spread_in(bench.planar_mm, path);
-  return bench;
-}
-
-std::string results_json(const Options& options, const std::vector<Model>& models,
-                         const Evidence& evidence) {
-  Json json;
-  json["version"] = SANDRUNNER_VERSION;
-  json["runs"] = options.lab.runs;
-  json["grid_runs"] = options.lab.grid_runs;
-  for (const Model& model : models) {
-    json["models"][model_name(model)] = {{"hash", fmt::format("{:016x}", model.hash)},
-                                         {"provenance", model.network.spec.provenance}};
-  }
-  for (const auto& [experiment, controllers] : evidence.measured) {
-    for (const auto& [controller, seeds] : controllers) {
-      for (const auto& [seed, measured] : seeds) {
-        json["experiments"][experiment][controller][std::to_string(seed)] = to_json(measured);
-      }
-    }
-  }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return measurements;
 }
 
 }  // namespace sandrunner::study

@@ -10,7 +10,7 @@
 
 #include "sim/robot/robot_model.h"
 #include "tools/evaluate/runner.h"
-#include "tools/study/evidence/controllers.h"
+#include "tools/study/experiments/controllers.h"
 #include "tools/train/model/model_file.h"
 
 namespace sandrunner::study {

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/study/experiments/oracles.h"
-
+// E8: what the answers of the two oracles depend on. Names of the numbers that it measures, in a
+// group of runs on kGround:
+//   runs: ablation of the groups of inputs "cmd", "h" or "o", "e" and "T"; a run is a block of 48
+//   robots, which has the same starts, grounds and commands for every controller
+//   lists: "states", "robots", "fell" (share of the robots), "gap_median", "gap_p99"; in ten bins
+//   of sigma_flat "bin_sigma_npm3" (middle), "bin_states", "bin_T" (ablation of T); of each
+//   parameter of the ground "deviation", "alone" (its ablation), and the lists of kGradients
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,7 +14,7 @@
 
 #include "rt/base/config_tree.h"
 #include "rt/base/quantile.h"
-#include "tools/study/analysis/attribution.h"
+#include "tools/study/experiments/attribution.h"
 #include "tools/study/experiments/experiments.h"
 #include "tools/study/simulated/task_run.h"
 #include "tools/train/task/leg_modes.h"
@@ -18,6 +23,11 @@ namespace sandrunner::study {
 namespace {
 
 using learner::Matrix;
+
+constexpr const char* kGround = "training";
+constexpr int kSigmaFlat = 1;  // its place among the parameters of the ground
+// Lists with the mean |integrated gradient| of each parameter, by kind of joint.
+constexpr const char* kGradients[kJointsPerLeg] = {"gradient_haa", "gradient_hfe", "gradient_kfe"};
 
 constexpr int kBlockEnvs = 48;
 // The paper's 10,800 robots; fewer with fewer than the 360 runs of a cell of its grid.
@@ -162,29 +172,12 @@ void add_parameters(const Attribution& a, std::size_t first_alone, RunGroup& gro
       for (int leg = 0; leg < kNumLegs; ++leg) {
         sum += a.gradients(kJointsPerLeg * leg + joint, input);
       }
-      group.lists[kOracleJoints[joint].list].push_back(sum / kNumLegs);
+      group.lists[kGradients[joint]].push_back(sum / kNumLegs);
     }
   }
 }
 
 }  // namespace
-
-const std::vector<const char*>& oracle_controllers() {
-  static const std::vector<const char*> kKeys = {"oracle-h", "oracle-o"};
-  return kKeys;
-}
-
-Figure oracle_ablation(const Evidence& evidence, const char* oracle, const char* group) {
-  return evidence.figure(
-      "E8", oracle, [&](const Measured& m) { return mean_value(m.select(kOracleGround), group); });
-}
-
-Figure oracle_value(const Evidence& evidence, const char* oracle, const char* list,
-                    std::size_t at) {
-  return evidence.figure("E8", oracle, [&](const Measured& m) {
-    return SeedValue{m.select(kOracleGround).at(0)->lists.at(list).at(at)};
-  });
-}
 
 Measured run_attribution(Lab& lab, const Model& model) {
   WorkerPool pool(lab.settings().threads);
@@ -194,7 +187,7 @@ Measured run_attribution(Lab& lab, const Model& model) {
   const Attribution a =
       attribute(joint_actor(model.network, task.policy.mode_gain), states.inputs, groups, pool);
 
-  RunGroup group{kOracleGround, "", 0.0, {}, {}};
+  RunGroup group{kGround, "", 0.0, {}, {}};
   const std::size_t named = groups.size() - learner::kTerrainSize;
   for (std::size_t g = 0; g < named; ++g) {
     group.runs[groups[g].name] =

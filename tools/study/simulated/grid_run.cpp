@@ -2,12 +2,14 @@
 #include "tools/study/simulated/grid_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
 namespace sandrunner::study {
 namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kBlock = 16, kSteps = 4 * kPolicyHz;
 constexpr std::uint64_t kSeed = 7;  // of starts and commands
 
@@ -69,8 +71,35 @@ double ClearanceSums::clearance_m() const {
     depth_sum_m += depth_m;
     stances += depth_m > 0.0;
   }
-  if (stances == 0) return std::numeric_limits<double>::quiet_NaN();
+  if (stances == 0) return kNan;
   return height_sum_m_ / heights_ + depth_sum_m / stances;
+}
+
+Slopes fit_slopes(const std::vector<double>& a, const std::vector<double>& b,
+                  const std::vector<double>& y) {
+  double n = 0.0, mean_a = 0.0, mean_b = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (std::isnan(y[i])) continue;
+    n += 1.0;
+    mean_a += a[i];
+    mean_b += b[i];
+  }
+  mean_a /= n;
+  mean_b /= n;
+  double aa = 0.0, bb = 0.0, ab = 0.0, ay = 0.0, by = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    if (std::isnan(y[i])) continue;
+    const double da = a[i] - mean_a, db = b[i] - mean_b;
+    aa += da * da;
+    bb += db * db;
+    ab += da * db;
+    ay += da * y[i];
+    by += db * y[i];
+  }
+  const double determinant = aa * bb - ab * ab;
+  // Also without a point, as nan.
+  if (!(determinant > 1e-9 * aa * bb)) return {kNan, kNan};
+  return {(ay * bb - by * ab) / determinant, (by * aa - ay * ab) / determinant};
 }
 
 std::vector<GridRobot> run_cell(const train::TaskNetwork& network, const GridCell& cell, int robots,
@@ -93,9 +122,8 @@ std::vector<GridRobot> run_cell(const train::TaskNetwork& network, const GridCel
   std::vector<GridRobot> result;
   for (int i = 0; i < robots; ++i) {
     const RobotSums& one = sums[static_cast<std::size_t>(i)];
-    result.push_back(
-        {one.fell, one.reward / (run.task.reward.scale * kSteps),
-         one.fell ? std::numeric_limits<double>::quiet_NaN() : one.clearance.clearance_m()});
+    result.push_back({one.fell, one.reward / (run.task.reward.scale * kSteps),
+                      one.fell ? kNan : one.clearance.clearance_m()});
   }
   return result;
 }

@@ -41,6 +41,13 @@ class ClearanceSums {
   int stances_ = 0;
 };
 
+/// y = constant + a_slope a + b_slope b, by least squares over the points whose y is not nan.
+struct Slopes {
+  double a = 0.0, b = 0.0;  ///< nan if the points don't tell them
+};
+Slopes fit_slopes(const std::vector<double>& a, const std::vector<double>& b,
+                  const std::vector<double>& y);
+
 /// Runs `robots` robots; each has the same start and command in every cell and for every network.
 std::vector<GridRobot> run_cell(const train::TaskNetwork& network, const GridCell& cell, int robots,
                                 const sim::Robot& robot, WorkerPool& pool);

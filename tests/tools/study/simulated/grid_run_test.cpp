@@ -8,6 +8,7 @@
 
 #include "policy/policy_file.h"
 #include "rt/base/output_files.h"
+#include "tests/support/not_finite.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/train/task/robot_settings.h"
 
@@ -42,6 +43,23 @@ TEST(ClearanceTest, AStanceThatLastsCountsAndAFootAboveTheGroundHasNone) {
   EXPECT_TRUE(std::isnan(sums.clearance_m()));
   sums.add({-0.02, -0.02, -0.02, -0.02}, {true, true, true, true});
   EXPECT_NEAR(sums.clearance_m(), 0.0 + 0.02, 1e-12);
+}
+
+TEST(SlopesTest, AreThoseOfAPlaneAlsoWithGaps) {
+  std::vector<double> a, b, y;
+  for (int i = 0; i < 12; ++i) {
+    a.push_back(i % 3);
+    b.push_back(i / 3 + 0.2 * (i % 3));
+    y.push_back(i == 5 ? kNan : 7.0 - 0.3 * a.back() + 0.1 * b.back());
+  }
+  const Slopes slopes = fit_slopes(a, b, y);
+  EXPECT_NEAR(slopes.a, -0.3, 1e-12);
+  EXPECT_NEAR(slopes.b, 0.1, 1e-12);
+}
+
+TEST(SlopesTest, AreNotDefinedOnALine) {
+  EXPECT_TRUE(std::isnan(fit_slopes({0, 1, 2}, {5, 5, 5}, {1, 2, 3}).a));
+  EXPECT_TRUE(std::isnan(fit_slopes({0, 1, 2}, {0, 0, 1}, {kNan, kNan, kNan}).b));
 }
 
 TEST(StaticDepthTest, GrowsOnSofterGroundAndBearsAQuarterOfTheRobot) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's controllers: what their files are. Names and looks are in ../page/controllers.py.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace sandrunner::study {
+
+/// What the files of a controller are.
+enum class ModelKind {
+  kPolicy,
+  kStudyModel,  ///< other networks, which see what sensors measure
+  kSeesGround,  ///< networks that see the ground too, which only the training's environments show
+  kPublished,   ///< the authors' own policy (--published): in tables and figures, in no verdict
+};
+
+struct Controller {
+  const char* key;  ///< of its files and in results.json
+  ModelKind kind;
+  const char* wiring = "encoder lstm, actor sees encoding, estimate";  ///< learner::wiring_text
+};
+
+/// All of them, in the order of the tables.
+const std::vector<Controller>& controllers();
+/// The one with this key; null: there is none.
+const Controller* find_controller(std::string_view key);
+
+/// Those that the trainer makes: all but the authors' network.
+const std::vector<const char*>& trained_controllers();
+
+}  // namespace sandrunner::study

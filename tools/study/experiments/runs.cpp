@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/study/experiments/runs.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace sandrunner::study {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Json lists_json(const std::map<std::string, std::vector<double>>& lists) {
+  Json json = Json::object();
+  for (const auto& [name, values] : lists) json[name] = values;  // nan becomes null
+  return json;
+}
+
+std::map<std::string, std::vector<double>> lists_from(const Json& json) {
+  std::map<std::string, std::vector<double>> lists;
+  for (const auto& [name, values] : json.items()) {
+    std::vector<double>& list = lists[name];
+    for (const Json& value : values) list.push_back(value.is_null() ? kNan : value.get<double>());
+  }
+  return lists;
+}
+
+}  // namespace
+
+const std::vector<double>& RunGroup::values(const std::string& figure) const {
+  const auto found = runs.find(figure);
+  if (found == runs.end()) {
+    throw std::logic_error(fmt::format("no figure '{}' on {} {}", figure, ground, scenario));
+  }
+  return found->second;
+}
+
+Json to_json(const Measured& measured) {
+  Json groups = Json::array();
+  for (const RunGroup& group : measured.groups) {
+    groups.push_back({{"ground", group.ground},
+                      {"scenario", group.scenario},
+                      {"command", group.command},
+                      {"runs", lists_json(group.runs)},
+                      {"lists", lists_json(group.lists)},
+                      {"packed", group.packed}});
+  }
+  return groups;
+}
+
+Measured measured_from(const Json& json) {
+  Measured measured;
+  for (const Json& group : json) {
+    measured.groups.push_back({group.at("ground").get<std::string>(),
+                               group.at("scenario").get<std::string>(),
+                               group.at("command").get<double>(), lists_from(group.at("runs")),
+                               lists_from(group.at("lists")),
+                               group.at("packed").get<std::map<std::string, std::string>>()});
+  }
+  return measured;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  int n = 0;
+  for (const double v : values) {
+    if (std::isnan(v)) continue;
+    sum += v;
+    ++n;
+  }
+  return n > 0 ? sum / n : kNan;
+}
+
+}  // namespace sandrunner::study

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""report.html, chapter by chapter."""
+import chapters
+import figures
+import figures_simulated
+import tables
+from controllers import CONTROLLERS
+from markup import escaped, picture
+
+
+class Page:
+    """The page as it grows, and the folder of its pictures."""
+
+    def __init__(self, folder, results, evidence):
+        self.folder, self.results, self.evidence, self.html = folder, results, evidence, ""
+
+    def add(self, html):
+        self.html += html
+
+    def section(self, title):
+        self.add(f"<h2>{escaped(title)}</h2>\n")
+
+    def figure(self, figure):
+        figure.sheet.save(self.folder / f"{figure.name}.png")
+        self.add(picture(self.folder / f"{figure.name}.png", figure.sheet.title))
+        self.notes(figure.paper, figure.note)
+
+    def notes(self, paper, note):
+        """What the paper prints of the figure above, if anything is known, and what differs."""
+        if paper:
+            self.add(f'<p class="note">The paper: {escaped(paper)}.</p>\n')
+        self.add(f'<p class="note">{escaped(note)}</p>\n')
+
+    def figures(self, found):
+        for figure in found:
+            self.figure(figure)
+
+    def experiment(self, key, runs=""):
+        """A section with what the experiment rests on; whether it was run. `runs`: how many."""
+        self.section(f"{key}: {chapters.TITLES[key]}")
+        ran, missing = [], []
+        for controller in self.results["takes_part"][key]:
+            name, seeds = CONTROLLERS[controller].name, len(self.evidence.seeds(key, controller))
+            if controller == "published":
+                ran += [name] * bool(seeds)
+            elif seeds:
+                ran.append(f"{name} ({seeds} seed{'' if seeds == 1 else 's'})")
+            else:
+                missing.append(name)
+        runs = runs or f"{self.results['runs']} runs each, unless it says otherwise"
+        self.add(f'<p class="note">Run: {", ".join(ran) or "none"}. Not run: {", ".join(missing) or "none"}. {runs}.'
+                 "</p>\n")
+        return bool(ran)
+
+
+def add_recovery(page):
+    page.add(tables.recovery_table(page.evidence))
+    run = page.results["recovery_run"]
+    if run is None:
+        page.add(chapters.NO_RECOVERY)
+        return
+    page.add(picture(page.folder / "fig2a.png", "Recovery from loose sand, seen from the right"))
+    page.add(f'<p class="note">Start {run["start"]} of seed {run["seed"]}: the left front foot touches down on loose '
+             "sand at 0 s (Fig. 2 A, B; the paper's times). The whole run in 3D: <a href=\"recovery.html\">"
+             "recovery.html</a>.</p>\n")
+    page.figure(figures_simulated.recovery_figure(run))
+
+
+def add_grid(page):
+    results = page.results
+    if not page.experiment("E7", f"{results['grid_runs']} robots in each of {results['grid_cells'] ** 2} cells"):
+        return
+    page.add(chapters.GRID)
+    page.figure(figures_simulated.grid_maps(page.evidence))
+    page.figure(figures_simulated.grid_lines(page.evidence))
+    page.add(tables.grid_table(page.evidence))
+    page.notes("", chapters.GRID_TABLE)
+
+
+def add_experiments(page):
+    evidence = page.evidence
+    has_beach = page.experiment("E1")
+    page.add(chapters.BEACH)
+    page.add(tables.beach_table(evidence))
+    if has_beach:
+        page.figures(figures.beach_figures(evidence))
+    if page.experiment("E2"):
+        add_recovery(page)
+    if page.experiment("E3"):
+        page.figures(figures.ground_figures(evidence))
+    if page.experiment("E4"):
+        page.figures(figures_simulated.hidden_state_figures(evidence))
+        page.add(tables.hidden_state_table(evidence))
+    if page.experiment("E5"):
+        page.figures(figures.mattress_figures(evidence))
+    if page.experiment("E6"):
+        page.figures(figures.foam_figures(evidence))
+        page.add(tables.foam_table(evidence))
+    add_grid(page)
+    if page.experiment("E8", "Robots and states: see the table"):
+        page.add(chapters.ATTRIBUTION)
+        page.figures(figures_simulated.attribution_figures(evidence))
+        page.add(tables.attribution_tables(evidence))
+    page.section("E9: Estimator (section S4)")
+    page.figures(figures.estimator_figures(evidence))
+    page.section("E10: The peer's contact model (fig. S12)")
+    page.add(tables.contact_table(evidence.contact))
+
+
+def report_html(folder, results, evidence, judged):
+    """The page; its pictures are written to `folder`."""
+    page = Page(folder, results, evidence)
+    page.add("<h1>The paper's experiments in simulation</h1>\n" + chapters.INTRODUCTION)
+    page.figure(figures.summary_figure(evidence))
+    page.section("Verdicts")
+    page.add(tables.verdict_counts(judged) + tables.verdict_tables(judged))
+    page.section(chapters.TITLES["fairness"])
+    page.add(chapters.FAIRNESS + tables.fairness_table(evidence))
+    add_experiments(page)
+    page.section("Is the ground right?")
+    page.add(chapters.GROUND)
+    page.figure(figures_simulated.ball_figure(results["ground"]["ball"]))
+    page.add(tables.anchor_table(results["ground"]["anchors"]) + chapters.GROUND_RESULT)
+    page.section("Learning curves")
+    page.figure(figures_simulated.learning_figure(results["models"]))
+    page.section("Methods")
+    page.add(chapters.METHODS.format(runs=results["runs"]) + chapters.TRAININGS)
+    page.add(tables.origin_table(results["models"]) + tables.settings_table(results["models"]))
+    page.section("What a simulation cannot show")
+    longest = max(model["length"] for model in results["models"].values())
+    page.add(chapters.LIMITS.format(longest=1e-6 * longest))
+    return chapters.DOCUMENT.format(style=chapters.STYLE, body=page.html)
