@@ -149,6 +149,17 @@ TEST_F(StudyProgramTest, KeepsWhatIsDoneAndTakesADamagedFileAgain) {
   EXPECT_EQ(read("dir/results.json"), before);
 }
 
+TEST_F(StudyProgramTest, TakesAMeasurementOfAnotherVersionAgain) {
+  const std::string line = "--from models --only E6 --runs 1 --out dir";
+  ASSERT_EQ(run(line), 0) << error();
+  std::string measured = read("dir/cache/E6-ours-1.json");
+  const std::string key = "{\"key\":\"version ";
+  ASSERT_TRUE(measured.starts_with(key)) << measured.substr(0, 60);
+  write_file(folder_.path("dir/cache/E6-ours-1.json"), measured.insert(key.size(), "9"));
+  ASSERT_EQ(run(line), 0) << error();
+  EXPECT_NE(output().find("E6: 1 models run, 1 taken"), std::string::npos) << output();
+}
+
 TEST_F(StudyProgramTest, SaysWhereThePageCannotBeWrittenAndKeepsTheResults) {
   std::filesystem::create_directories(folder_.path("dir/report.html"));
   ASSERT_EQ(run("--from models --only E6 --runs 1 --out dir"), 2);

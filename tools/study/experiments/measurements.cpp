@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "rt/base/output_files.h"
@@ -15,26 +14,18 @@
 namespace sandrunner::study {
 namespace {
 
-/// Of this program's own bytes: a measurement by another build may differ.
-std::uint64_t hash_of_program() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  return hash_of(bytes);
-}
-
 std::string cache_path(const Options& options, const Experiment& experiment, const Model& model) {
   return fmt::format("{}/cache/{}-{}.json", options.out, experiment.key, model_name(model));
 }
 
-std::string cache_key(const Options& options, const Experiment& experiment, const Model& model,
-                      std::uint64_t program) {
+std::string cache_key(const Options& options, const Experiment& experiment, const Model& model) {
   const LabSettings& lab = options.lab;
   const std::string_view experiment_key = experiment.key;
   const bool on_task = experiment_key == "E7" || experiment_key == "E8";
   const std::string runs = on_task ? fmt::format("{} robots, {} x {} cells", lab.grid_runs,
                                                  lab.grid_cells, lab.grid_cells)
                                    : fmt::format("{} runs", lab.runs);
-  return fmt::format("{:016x} {:016x} {}", program, model.hash, runs);
+  return fmt::format("version {}, model {:016x}, {}", kMeasurementVersion, model.hash, runs);
 }
 
 // What the file holds under the key; nothing if it is absent, of another key or damaged.
@@ -55,7 +46,6 @@ bool takes_part(const Experiment& experiment, const Model& model) {
 Measurements measure(const Options& options, const std::vector<Model>& models) {
   Measurements measurements;
   prepare_folder(options.out + "/cache", "--out");
-  const std::uint64_t program = hash_of_program();
   Lab lab(options.lab);
   for (const std::string& name : options.only) {
     const Experiment& experiment = *find_experiment(name);
@@ -63,7 +53,7 @@ Measurements measure(const Options& options, const std::vector<Model>& models) {
     for (const Model& model : models) {
       if (!takes_part(experiment, model)) continue;
       const std::string path = cache_path(options, experiment, model);
-      const std::string key = cache_key(options, experiment, model, program);
+      const std::string key = cache_key(options, experiment, model);
       std::optional<Measured> measured = read_cache(path, key);
       if (measured) {
         ++kept;

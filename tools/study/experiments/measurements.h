@@ -8,9 +8,13 @@
 
 namespace sandrunner::study {
 
+/// Part of the key of each measurement in the cache. Raise it with every change of the simulator,
+/// an experiment or the format after which a measurement may be another.
+inline constexpr int kMeasurementVersion = 1;
+
 /// Measures each model in each chosen experiment. Each measurement is kept in
-/// OUT/cache/EXPERIMENT-NAME-SEED.json and taken from there if model, settings and program are the
-/// same. Prints a line for each experiment. Throws InputError.
+/// OUT/cache/EXPERIMENT-NAME-SEED.json and taken from there if model, settings and
+/// kMeasurementVersion are the same. Prints a line for each experiment. Throws InputError.
 Measurements measure(const Options& options, const std::vector<Model>& models);
 
 }  // namespace sandrunner::study
