@@ -6,8 +6,8 @@
 # NAME-SEED.safetensors, NAME-SEED.csv. (Not the best policy of the battery: for some controllers
 # that is one of before the late penalties, so their training would differ in length and reward.) A
 # student (pl-*) imitates the teacher of this seed in DIR.
-# TRANSITIONS: length of each training, the same for all controllers that are compared; a teacher has
-# three fifths of it, its student the other two.
+# TRANSITIONS: length of each training, the same for all controllers that are compared; a teacher
+# has three fifths of it, its student the other two.
 # THREADS: worker threads of a training, without it all cores; weights do not depend on it.
 set -eu
 for word; do

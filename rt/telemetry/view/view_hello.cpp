@@ -10,8 +10,8 @@
 #include "estimator/kinematics.h"
 #include "rt/base/build.h"
 #include "rt/core/faults.h"
-#include "rt/core/warnings.h"
 #include "rt/core/mode_machine.h"
+#include "rt/core/warnings.h"
 #include "rt/report/run_row.h"
 #include "rt/telemetry/view/view_tiles.h"
 

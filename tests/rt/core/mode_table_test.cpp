@@ -95,7 +95,8 @@ std::string mode_table_promela() {
 
 TEST(ModeTableTest, TheModelOfTheModeMachineHasTheTablesOfTheCode) {
   const std::string expected = mode_table_promela();
-  if (std::getenv("SANDRUNNER_RENEW") != nullptr) std::ofstream(SANDRUNNER_ROOT "/tests/models/mode_table.pml") << expected;
+  if (std::getenv("SANDRUNNER_RENEW") != nullptr)
+    std::ofstream(SANDRUNNER_ROOT "/tests/models/mode_table.pml") << expected;
   std::ostringstream found;
   found << std::ifstream(SANDRUNNER_ROOT "/tests/models/mode_table.pml").rdbuf();
   EXPECT_EQ(found.str(), expected)
