@@ -165,7 +165,8 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      kAlways, "2 frames in 10 ms"},
 }};
 
-/// After these the values of the joints that they are about are not to be trusted.
+/// After these neither the values nor the drives of the joints that they are about are to be
+/// trusted: a drive with reversed torque would be damped the wrong way.
 inline constexpr std::uint64_t kBlindingFaults =
     static_cast<std::uint64_t>(Fault::kNonFiniteJoint) |
     static_cast<std::uint64_t>(Fault::kJointsStale) |
@@ -173,6 +174,7 @@ inline constexpr std::uint64_t kBlindingFaults =
     static_cast<std::uint64_t>(Fault::kJointSpeed) |
     static_cast<std::uint64_t>(Fault::kEncoderJump) |
     static_cast<std::uint64_t>(Fault::kEncoderFrozen) |
+    static_cast<std::uint64_t>(Fault::kTorqueMissing) |
     static_cast<std::uint64_t>(Fault::kSpeedMismatch);
 
 constexpr bool faults_in_order() noexcept {

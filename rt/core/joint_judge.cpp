@@ -80,29 +80,30 @@ bool ignores_target(const GateConfig& config, const JointState& joints, int j,
   return m.frozen_ticks[j] >= config.frozen_ticks || m.still_ticks[j] >= ticks_from_s(kStill_s);
 }
 
-/// Whether joint j has long stayed the same to the bit while something pushes the other joints of
-/// its leg away from where they are commanded to be: of a leg that stands, no joint is spared.
+/// Whether joint j has stayed the same to the bit while something pushes the other joints of its
+/// leg from where they stand: of a leg that stands, no joint is spared. One that rests may repeat
+/// the codes of a coarse encoder while the others are commanded elsewhere or sink slowly.
 bool rests_alone(const JointState& joints, int j, const JointContext& context,
                  JointMemory& m) noexcept {
   const int first = j - j % kJointsPerLeg;
-  const bool rests =
-      context.mode == Mode::kStand && context.stiff && m.changed_tick[j] != joints.tick[j];
+  if (context.mode != Mode::kStand) m.stand_tick = joints.tick[j];
+  const bool stands = joints.tick[j] - m.stand_tick > ticks_from_s(kSettled_s);
+  const bool rests = stands && context.stiff && m.changed_tick[j] != joints.tick[j];
+  const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
+  const double share = rests ? std::min(seconds(ticks) / kPushedFrom_s, 1.0) : 1.0;
   bool pushed = false;
   for (int k = 0; k < kJointsPerLeg; ++k) {
-    const double position_rad = joints.position_rad[first + k];
-    const double away_rad = position_rad - context.sent_rad[first + k];
-    double &position_before_rad = m.leg_position_rad[j][k], &away_before_rad = m.leg_away_rad[j][k];
-    if (!rests) {
-      position_before_rad = position_rad;
-      away_before_rad = away_rad;
-    }
-    // It has moved, and not because its target has.
-    pushed = pushed || (std::fabs(position_rad - position_before_rad) > kPushed_rad &&
-                        std::fabs(away_rad - away_before_rad) > kPushed_rad);
+    const auto follow = [&](double rad, double& mean_rad) {
+      mean_rad += share * (rad - mean_rad);
+      return std::fabs(rad - mean_rad);
+    };
+    const double moved_rad = follow(joints.position_rad[first + k], m.leg_position_rad[j][k]);
+    const double told_rad = follow(context.sent_rad[first + k], m.leg_target_rad[j][k]);
+    pushed = pushed || (moved_rad > kPushed_rad && told_rad < 0.25 * kPushed_rad);
   }
-  std::uint64_t& ticks = m.pushed_ticks[j];
-  ticks = rests && pushed ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
-  return ticks >= ticks_from_s(kPushed_s);
+  std::uint64_t& pushed_ticks = m.pushed_ticks[j];
+  pushed_ticks = rests && pushed ? pushed_ticks + ticks : 0;
+  return pushed_ticks >= ticks_from_s(kPushed_s);
 }
 
 /// Whether the position of joint j has changed by something else than its speed.

@@ -28,7 +28,9 @@ inline constexpr double kStill_s = 0.1;          ///< ... for this long.
 /// Fault in Stand: another joint of a leg is pushed away by this much, while one stays the same to
 /// the bit, ...
 inline constexpr double kPushed_rad = 0.04;
-inline constexpr double kPushed_s = 0.025;  ///< ... for this long.
+inline constexpr double kPushed_s = 0.025;  ///< ... for this long. Away from its mean over ...
+inline constexpr double kPushedFrom_s = 0.5;
+inline constexpr double kSettled_s = 1.0;  ///< In Stand for so long; before, it still settles.
 /// Motion of the body while all joints stay the same to the bit, each beyond what a robot at
 /// rest shows: a turn of 0.1 rad or 0.3 m/s of vertical speed are a fault.
 inline constexpr double kBodyRest_radps = 0.1, kBodyTurn_rad = 0.1;
@@ -62,9 +64,9 @@ struct JointMemory {
   JointArray<double> still_rad{};            ///< position near which the joint rests
   JointArray<double> still_target_rad{};     ///< commanded position when it came there
   JointArray<std::uint64_t> still_ticks{};   ///< for which that has been far away
-  /// Of each joint's leg, when the joint last changed: positions, and these less the commanded
-  /// ones.
-  JointArray<LegJoints<double>> leg_position_rad{}, leg_away_rad{};
+  /// Of each joint's leg, while the joint rests: low-passed positions and commanded positions.
+  JointArray<LegJoints<double>> leg_position_rad{}, leg_target_rad{};
+  std::uint64_t stand_tick = 0;              ///< newest sample outside Stand
   JointArray<std::uint64_t> pushed_ticks{};  ///< for which the leg's others have been elsewhere
   JointArray<double> drift_rad{};            ///< change of position, less the integral of the speed
 
@@ -78,7 +80,7 @@ struct JointMemory {
   JointArray<double> folded_rad{};  ///< where all joints are still, in the lying pose, ...
   std::uint64_t folded_tick = 0;    ///< ... and since when
 };
-static_assert(sizeof(JointMemory) == 8 * (7 + 22 * kNumJoints), "no padding");
+static_assert(sizeof(JointMemory) == 8 * (8 + 22 * kNumJoints), "no padding");
 
 /// What a judgement of joints rests on besides their values.
 struct JointContext {

@@ -135,6 +135,7 @@ void serve(Player& player) {
   player.observer->end();
   player.feed->end();
   const ViewServer server(player.config.view_port, {.feed = *player.feed, .recorded = true});
+  signals.run_begins();
   to_standard_error(fmt::format("sandrunner-replay: look at {}\n", server.url()));
   while (signals.interrupts() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }

@@ -22,10 +22,10 @@ void become_page_maker(const std::string& out) {
   if (std::fflush(stdout) != 0) return;
   // Isolated from what the user's Python has, and without files next to the source.
   execl(kPython, kPython, "-IB", SANDRUNNER_STUDY_PAGE, out.c_str(), nullptr);
-  throw InputError(fmt::format(
-      "found no {}, expected the Debian package python3; {}/results.json is complete: then run "
-      "python3 {} {}",
-      kPython, out, SANDRUNNER_STUDY_PAGE, out));
+  throw InputError(
+      fmt::format("found no {0}, expected the Debian package python3; {1}/results.json is "
+                  "complete: install it, then run {0} {2} {1}",
+                  kPython, out, SANDRUNNER_STUDY_PAGE));
 }
 
 int run(int argc, char** argv) {

@@ -183,7 +183,9 @@ std::uint64_t pushed_while_one_rests(Mode mode, double pushed_rad, double target
   robot.judge(mode);
   robot.stiff = true;
   robot.judge(mode);
+  for (int n = 0; n < 1010; ++n) robot.judge(mode);
   robot.resting = 1;
+  robot.judge(mode);
   std::uint64_t found = 0;
   for (int n = 0; n < 500; ++n) {
     const double share = std::min(0.01 * n, 1.0);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""python3 tools/study/page OUT: makes claims.csv, report.html and figures/ from OUT/results.json,
-which sandrunner-study writes before it runs this."""
+"""/usr/bin/python3 tools/study/page OUT: makes claims.csv, report.html and figures/ from
+OUT/results.json, which sandrunner-study writes before it runs this."""
 import logging
 import os
 import sys
