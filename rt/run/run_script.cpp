@@ -115,8 +115,9 @@ void RunScript::end(ModeRequest r) noexcept {
 }
 
 void RunScript::fail(const char* reason, WayDown way) noexcept {
-  // Who interrupts a run lets the robot down: a fault on the way is no fall.
-  if (fall_reason_ || interrupted_) return;
+  // Who interrupts a run lets the robot down: a fault on the way is no fall. After a warning it is.
+  if ((fall_reason_ && !(warned_ && way == kAtOnce)) || interrupted_) return;
+  warned_ = way == kGently;
   fall_reason_ = reason;
   fall_time_s_ = walked_s();
   end(way == kAtOnce ? end_.damp() : end_.lie());

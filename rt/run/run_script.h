@@ -57,7 +57,7 @@ class RunScript final : public OperatorInput {
   OperatorCommand command_;
   GentleEnd end_;
   std::uint64_t standing_ = 0, walked_ = 0;
-  bool has_walked_, interrupted_ = false;
+  bool has_walked_, interrupted_ = false, warned_ = false;
   const char* fall_reason_ = nullptr;
   double fall_time_s_ = 0.0;
   Mode fall_mode_;  // until it falls: the last mode that was not Fault

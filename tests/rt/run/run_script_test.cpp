@@ -56,6 +56,19 @@ TEST_F(RunScriptTest, AWarningLaysTheRobotDownAndFailsTheRun) {
   EXPECT_EQ(ticks_in(script, Mode::kDamping), kDamping_ticks);
 }
 
+TEST_F(RunScriptTest, AFaultAfterAWarningIsTheReason) {
+  RunScript script = walk_from_lying();
+  stand_up(script);
+  script.advance({.mode = Mode::kWalk, .warnings = 4});
+  EXPECT_STREQ(script.fall_reason(), "imu_late");
+  script.advance({.mode = Mode::kFault,
+                  .faults = fault_bit(Fault::kImuStale),
+                  .first_fault = Fault::kImuStale,
+                  .warnings = 4});
+  EXPECT_STREQ(script.fall_reason(), "imu_stale");
+  EXPECT_EQ(asked(script), ModeRequest::kDamp);
+}
+
 TEST_F(RunScriptTest, StandsUpSettlesWalksStopsWaitsAndLiesDown) {
   RunScript script = walk_from_lying();
   EXPECT_EQ(asked(script), ModeRequest::kStand);
