@@ -30,7 +30,7 @@ inline constexpr double kStill_s = 0.1;          ///< ... for this long.
 inline constexpr double kPushed_rad = 0.04;
 inline constexpr double kPushed_s = 0.025;  ///< ... for this long. Away from its mean over ...
 inline constexpr double kPushedFrom_s = 0.5;
-inline constexpr double kSettled_s = 1.0;  ///< In Stand for so long; before, it still settles.
+inline constexpr double kSettled_s = 1.0;  ///< After this time in Stand; before, the robot settles.
 /// Motion of the body while all joints stay the same to the bit, each beyond what a robot at
 /// rest shows: a turn of 0.1 rad or 0.3 m/s of vertical speed are a fault.
 inline constexpr double kBodyRest_radps = 0.1, kBodyTurn_rad = 0.1;
