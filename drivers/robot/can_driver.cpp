@@ -14,10 +14,9 @@ CanDriver::CanDriver(HardwareConfig config, RobotDescription robot, const GateCo
     : config_(std::move(config)), robot_(std::move(robot)), gate_(gate) {}
 
 void CanDriver::fork_processes() {
-  OffFrames off = off_frames(config_, true);
+  const OffFrames off = off_frames(config_, true);
   if (std::ranges::all_of(off, &std::vector<CanFrame>::empty)) return;
-  guard_ =
-      std::make_unique<CanGuard>(std::move(off), config_.drive_timeout_s, open_buses_of(config_));
+  guard_ = std::make_unique<CanGuard>(off, config_.drive_timeout_s, open_buses_of(config_));
 }
 
 std::unique_ptr<RobotIo> CanDriver::connect() {

@@ -50,7 +50,7 @@ struct CanGuard::Memory {
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 };
 
-CanGuard::CanGuard(OffFrames off, double timeout_s, Open open) {
+CanGuard::CanGuard(const OffFrames& off, double timeout_s, const Open& open) {
   void* const shared =
       mmap(nullptr, sizeof(Memory), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) {

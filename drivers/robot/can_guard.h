@@ -29,7 +29,7 @@ class CanGuard {
 
   /// Forks it; it does nothing yet. `timeout_s`: without a command for this long, drives that are
   /// on are switched off. To be called while this process has one thread. Throws InputError.
-  CanGuard(OffFrames off, double timeout_s, Open open);
+  CanGuard(const OffFrames& off, double timeout_s, const Open& open);
   /// Ends it.
   ~CanGuard();
   CanGuard(const CanGuard&) = delete;

@@ -34,6 +34,7 @@ std::span<char> command_line() noexcept {
     if (number == kEnd) end = std::strtoull(field + 1, nullptr, 10);
   }
   if (start == 0 || end <= start) return {};
+  // The kernel says it as a number. NOLINTNEXTLINE(performance-no-int-to-ptr)
   return {reinterpret_cast<char*>(start), end - start};
 }
 

@@ -114,14 +114,15 @@ Outcome random_walk(const World& world, const Snapshot& at, std::uint64_t seed,
     const double u = draw(0.0, 3.0);
     return u < 1.0 ? low : u < 2.0 ? 0.0 : high;
   };
+  constexpr std::uint64_t kCommand_ticks = 5 * kControlHz / 2, kPush_ticks = 5 * kControlHz;
   std::uint64_t n = 0;
   loop.hand = [&](sim::SimulatorState& state) {
-    if (n % ticks_from_s(2.5) == 0) {
+    if (n % kCommand_ticks == 0) {
       loop.command.velocity = {corner(-most.backward_mps, most.forward_mps),
                                corner(-most.lateral_mps, most.lateral_mps),
                                corner(-most.yaw_radps, most.yaw_radps)};
     }
-    if (++n % ticks_from_s(5.0) == 0) {
+    if (++n % kPush_ticks == 0) {
       state.robot.rigid.velocity =
           state.robot.rigid.velocity + sim::Vec3<double>{draw(-0.5, 0.5), draw(-0.5, 0.5), 0.0};
     }
