@@ -18,7 +18,7 @@ namespace sandrunner {
 using OffFrames = std::vector<std::vector<CanFrame>>;
 
 /// A process that switches drives off when the controller is killed, hangs or is stopped, for
-/// drives whose own time-out nobody can verify (`hardware.timeout_unverified`). It has sockets of
+/// drives that cannot report their own time-out (`hardware.timeout_unverified`). It has sockets of
 /// its own and sends nothing before. Example: can_guard_test.cpp.
 class CanGuard {
  public:
@@ -56,8 +56,8 @@ class CanGuard {
   pid_t pid_ = 0;
 };
 
-/// The off frames of this robot's drives; `unverified`: of those alone whose own time-out nobody
-/// can verify. (A moteus damps by its own; told to be off it would be limp.)
+/// The off frames of this robot's drives; `unverified`: only of those that cannot report their own
+/// time-out. (A moteus damps by its own; one that is commanded off would be limp.)
 OffFrames off_frames(const HardwareConfig& config, bool unverified);
 
 /// Opens this robot's buses, to send alone.

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "rt/core/warnings.h"
+
 namespace sandrunner {
 namespace {
 

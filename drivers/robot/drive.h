@@ -23,9 +23,6 @@ enum class DriveTrouble : std::uint64_t {
                               ///< start, which writes it again
 };
 inline constexpr double kEnable_s = 0.1;
-/// Beyond its first limit, a warning, a drive is a fault: time to stop and to lie down.
-inline constexpr double kTooHot_degc = 10.0;
-inline constexpr double kVoltageShare = 0.05;
 
 /// The command of one exchange to a drive, at the joint.
 struct JointSetPoint {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rt/base/clock_ns.h"
+#include "rt/core/warnings.h"
 
 namespace sandrunner {
 namespace {
@@ -36,7 +37,7 @@ UnitreeRobot::UnitreeRobot(const UnitreeConfig& config, std::unique_ptr<unitree:
 std::uint64_t UnitreeRobot::faults_of(int j) const noexcept {
   const bool follows =
       enabled_ticks_ <= kModeFollows_ticks || newest_.state.mode[j] == config_.motor_mode;
-  return beyond(j, kMotorTooHot_degc, 0.5) |
+  return beyond(j, kTooHot_degc, kBatteryShare) |
          (follows ? 0 : static_cast<std::uint64_t>(UnitreeFault::kMode));
 }
 

@@ -12,15 +12,13 @@
 namespace sandrunner {
 
 /// What SensorFrame says of a motor as drive_fault or drive_warning, as bits. The limits of
-/// temperature and battery are those of the warning; kMotorTooHot_degc above, and at half the
+/// temperature and battery are those of the warning; kTooHot_degc above, and at half the
 /// charge, a motor is a fault.
 enum class UnitreeFault : std::uint64_t {
   kMode = 1,     ///< it is not in the mode that it is commanded
   kTooHot = 2,   ///< of hardware.temperature_limit_degc
   kBattery = 4,  ///< the robot's battery has less than hardware.unitree.low_battery_percent
 };
-
-inline constexpr double kMotorTooHot_degc = 10.0;
 
 /// "too hot, battery low".
 std::string unitree_fault_words(std::uint64_t faults);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "rt/core/rotation.h"
+
 namespace sandrunner {
 namespace {
 
@@ -156,14 +158,17 @@ void Controller::yield_to_heat(const JointState& joints) noexcept {
 }
 
 void Controller::watch_lean(const ImuSample& imu, std::uint64_t tick) noexcept {
-  const auto& [w, x, y, z] = imu.orientation_wxyz;
-  const Vector3 up{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
-  const bool stands = state_.mode == Mode::kStand && state_.folding == 0 && motion_done(tick);
-  if (!stands || state_.stands == 0) {
+  if (state_.mode != Mode::kStand || state_.folding != 0 || !motion_done(tick)) {
+    state_.stands = 0;
+    return;
+  }
+  const std::array<Vector3, 3> axes = body_axes(imu.orientation_wxyz);
+  const Vector3 up{axes[0][2], axes[1][2], axes[2][2]};
+  if (state_.stands == 0) {
+    state_.stands = 1;
     state_.stood_up = up;
     state_.leans_since_tick = tick;
   }
-  state_.stands = stands ? 1 : 0;
   const Vector3& before = state_.stood_up;
   const Vector3 leans{up[1] * before[2] - up[2] * before[1], up[2] * before[0] - up[0] * before[2],
                       up[0] * before[1] - up[1] * before[0]};

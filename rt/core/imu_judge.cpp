@@ -30,12 +30,10 @@ Vector3 turn_between(const Rotation& from, const Rotation& to) noexcept {
 /// attitude turns and the gyroscope does not, and goes towards the angle at which the mean specific
 /// force stands away from the vertical. So drifts of any speed add up. What lasts without such an
 /// angle is an offset of the gyroscope. (A Luenberger observer of both, critically damped.)
-void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess_rad, double step_s,
-                       ImuMemory& memory) noexcept {
+void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess_rad, double felt,
+                       double step_s, ImuMemory& memory) noexcept {
   constexpr double kRate = 1.0 / kTiltCompare_s;
   const Vector3& felt_mps2 = memory.felt_mps2;
-  const double felt = std::sqrt(squared(felt_mps2));
-  if (felt < 0.5 * kGravity_mps2) return;  // it falls
   const std::array<double, 2> leans_rad = {-felt_mps2[1] / felt, felt_mps2[0] / felt};
   Vector3& offset_radps = memory.gyro_offset_radps;
   Vector3 turned_rad;
@@ -106,13 +104,14 @@ std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool com
     error_rad += excess_rad[i] - share * error_rad;
     memory.felt_mps2[i] += share * (felt_mps2[i] - memory.felt_mps2[i]);
   }
-  follow_tilt_error(axes, excess_rad, step_s, memory);
   if (squared(memory.turn_error_rad) > kGyroDisagrees_rad * kGyroDisagrees_rad) {
     found |= fault_bit(Fault::kImuGyro);
   }
   // Falling there is no direction to judge, and a fall is another fault.
   const double felt = std::sqrt(squared(memory.felt_mps2));
-  const bool leans = felt > 0.5 * kGravity_mps2 && memory.felt_mps2[2] < kLeanCosine * felt;
+  const bool falls = felt <= 0.5 * kGravity_mps2;
+  if (!falls) follow_tilt_error(axes, excess_rad, felt, step_s, memory);
+  const bool leans = !falls && memory.felt_mps2[2] < kLeanCosine * felt;
   memory.lean_ticks = leans ? memory.lean_ticks + ticks : 0;
   const auto& [x_rad, y_rad] = memory.mean_error_rad;
   const bool drifts = x_rad * x_rad + y_rad * y_rad > kTiltDisagrees_rad * kTiltDisagrees_rad;

@@ -85,8 +85,13 @@ bool ignores_target(const GateConfig& config, const JointState& joints, int j,
 /// the codes of a coarse encoder while the others are commanded elsewhere or sink slowly.
 bool rests_alone(const JointState& joints, int j, const JointContext& context,
                  JointMemory& m) noexcept {
+  std::uint64_t& pushed_ticks = m.pushed_ticks[j];
+  if (context.mode != Mode::kStand) {
+    m.stand_tick = joints.tick[j];
+    pushed_ticks = 0;
+    return false;
+  }
   const int first = j - j % kJointsPerLeg;
-  if (context.mode != Mode::kStand) m.stand_tick = joints.tick[j];
   const bool stands = joints.tick[j] - m.stand_tick > ticks_from_s(kSettled_s);
   const bool rests = stands && context.stiff && m.changed_tick[j] != joints.tick[j];
   const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
@@ -101,7 +106,6 @@ bool rests_alone(const JointState& joints, int j, const JointContext& context,
     const double told_rad = follow(context.sent_rad[first + k], m.leg_target_rad[j][k]);
     pushed = pushed || (moved_rad > kPushed_rad && told_rad < 0.25 * kPushed_rad);
   }
-  std::uint64_t& pushed_ticks = m.pushed_ticks[j];
   pushed_ticks = rests && pushed ? pushed_ticks + ticks : 0;
   return pushed_ticks >= ticks_from_s(kPushed_s);
 }

@@ -48,6 +48,11 @@ inline constexpr std::array<WarningRow, kNumWarnings> kWarningTable = {{
      "past 45 and 60 degrees: `tilt`"},
 }};
 
+// From the first limit to the second: time to stop and to lie down.
+inline constexpr double kTooHot_degc = 10.0;
+inline constexpr double kVoltageShare = 0.05;
+inline constexpr double kBatteryShare = 0.5;
+
 constexpr bool warnings_in_order() noexcept {
   for (int i = 0; i < kNumWarnings; ++i) {
     if (warning_bit(kWarningTable[i].warning) != std::uint64_t{1} << i) return false;

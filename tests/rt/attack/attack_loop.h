@@ -214,7 +214,7 @@ class AttackLoop {
   sim::Simulator simulator;
   AttackedRobot robot;
   OperatorCommand command;
-  /// Moves the robot before each tick, as somebody does who takes hold of it.
+  /// Moves the robot before each tick, as a person does who takes hold of it.
   std::function<void(sim::SimulatorState&)> hand;
 
  private:
