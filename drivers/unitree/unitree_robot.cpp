@@ -15,7 +15,6 @@ namespace {
 constexpr std::uint64_t kModeFollows_ticks = kControlHz / 10;
 constexpr std::uint64_t kRemoteLost_ticks = kControlHz / 5;
 constexpr std::uint64_t kStatesStopped_ticks = 16;  // two were not there
-constexpr std::uint64_t kAllJoints = (std::uint64_t{1} << kNumJoints) - 1;
 
 }  // namespace
 

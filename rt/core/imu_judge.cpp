@@ -34,7 +34,8 @@ void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess
                        double step_s, ImuMemory& memory) noexcept {
   constexpr double kRate = 1.0 / kTiltCompare_s;
   const Vector3& felt_mps2 = memory.felt_mps2;
-  const std::array<double, 2> leans_rad = {-felt_mps2[1] / felt, felt_mps2[0] / felt};
+  const double per_felt = 1.0 / felt, mean_share = std::min(step_s * (1.0 / kTiltMean_s), 1.0);
+  const std::array<double, 2> leans_rad = {-felt_mps2[1] * per_felt, felt_mps2[0] * per_felt};
   Vector3& offset_radps = memory.gyro_offset_radps;
   Vector3 turned_rad;
   for (int i = 0; i < 3; ++i) turned_rad[i] = excess_rad[i] + step_s * offset_radps[i];
@@ -45,7 +46,7 @@ void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess
     miss_rad[i] = leans_rad[i] - error_rad;
     error_rad += turned_rad[i] + step_s * 2.0 * kRate * miss_rad[i];
     double& mean_rad = memory.mean_error_rad[i];
-    mean_rad += std::min(step_s / kTiltMean_s, 1.0) * (error_rad - mean_rad);
+    mean_rad += mean_share * (error_rad - mean_rad);
   }
   for (int i = 0; i < 3; ++i) {
     const double body_rad = axes[i][0] * miss_rad[0] + axes[i][1] * miss_rad[1];

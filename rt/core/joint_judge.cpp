@@ -83,17 +83,12 @@ bool ignores_target(const GateConfig& config, const JointState& joints, int j,
 /// Whether joint j has stayed the same to the bit while something pushes the other joints of its
 /// leg from where they stand: of a leg that stands, no joint is spared. One that rests may repeat
 /// the codes of a coarse encoder while the others are commanded elsewhere or sink slowly.
+/// Called in Stand only.
 bool rests_alone(const JointState& joints, int j, const JointContext& context,
                  JointMemory& m) noexcept {
-  std::uint64_t& pushed_ticks = m.pushed_ticks[j];
-  if (context.mode != Mode::kStand) {
-    m.stand_tick = joints.tick[j];
-    pushed_ticks = 0;
-    return false;
-  }
   const int first = j - j % kJointsPerLeg;
-  const bool stands = joints.tick[j] - m.stand_tick > ticks_from_s(kSettled_s);
-  const bool rests = stands && context.stiff && m.changed_tick[j] != joints.tick[j];
+  const bool settled = joints.tick[j] > m.stand_tick + ticks_from_s(kSettled_s);
+  const bool rests = settled && context.stiff && m.changed_tick[j] != joints.tick[j];
   const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
   const double share = rests ? std::min(seconds(ticks) / kPushedFrom_s, 1.0) : 1.0;
   bool pushed = false;
@@ -106,6 +101,7 @@ bool rests_alone(const JointState& joints, int j, const JointContext& context,
     const double told_rad = follow(context.sent_rad[first + k], m.leg_target_rad[j][k]);
     pushed = pushed || (moved_rad > kPushed_rad && told_rad < 0.25 * kPushed_rad);
   }
+  std::uint64_t& pushed_ticks = m.pushed_ticks[j];
   pushed_ticks = rests && pushed ? pushed_ticks + ticks : 0;
   return pushed_ticks >= ticks_from_s(kPushed_s);
 }
@@ -173,17 +169,14 @@ bool was_folded(const GateConfig& config, const JointState& joints, JointMemory&
   return newest - m.folded_tick >= ticks_from_s(kFolded_s);
 }
 
-/// A joint that comes back after a silence may have lost its zero. So may all joints of a robot
-/// that starts, unless it lies.
-void doubt(const JointState& joints, int j, bool starts_unsure, JointMemory& m) noexcept {
+/// A joint that comes back after a silence may have lost its zero.
+void doubt(int j, JointMemory& m) noexcept {
   const std::uint64_t joint = std::uint64_t{1} << j;
-  const bool first = m.seen == 0;
-  const bool returns = !first && joints.tick[j] - m.sample_tick[j] > kSilent_ticks;
-  if (returns && (m.unsure_joints & joint) == 0) {
+  if ((m.unsure_joints & joint) == 0) {
     m.known_joints |= joint;
     m.known_rad[j] = m.position_rad[j];
   }
-  if (returns || (first && starts_unsure)) m.unsure_joints |= joint;
+  m.unsure_joints |= joint;
 }
 
 /// The joints whose zero nothing vouches for: neither where they were nor where a lying robot has
@@ -209,7 +202,11 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
   const Mode mode = context.mode;
   const bool driven = (kDriven & mode_set(mode)) != 0;
   const bool all_frozen = body_moves_alone(joints, context, m);
-  const bool starts_unsure = !driven && !lies(config, joints);  // a simulated one may start in Walk
+  const bool stands = mode == Mode::kStand;
+  if (!stands || m.seen == 0) m.stand_tick = m.body_tick;  // the newest
+  // All joints of a robot that starts are in doubt, unless it lies. (A simulated one may start in
+  // Walk.)
+  if (m.seen == 0 && !driven && !lies(config, joints)) m.unsure_joints = kAllJoints;
   for (int j = 0; j < kNumJoints; ++j) {
     if (m.seen != 0 && joints.tick[j] <= m.sample_tick[j]) continue;  // no new sample
     const std::uint64_t joint = std::uint64_t{1} << j;
@@ -218,8 +215,8 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       if (found && judged_in(mode, fault)) faults |= fault_bit(fault);
       return found;
     };
-    doubt(joints, j, starts_unsure, m);
     if (m.seen != 0) {
+      if (joints.tick[j] - m.sample_tick[j] > kSilent_ticks) doubt(j, m);
       const double way_rad = std::fabs(joints.position_rad[j] - m.position_rad[j]);
       const double reach_rad =
           config.encoder_jump_rad +
@@ -227,7 +224,8 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       find(way_rad > reach_rad, Fault::kEncoderJump);
       const bool frozen = all_frozen || frozen_in_motion(config, joints, j, context, m);
       const bool ignores = ignores_target(config, joints, j, context, m);
-      find(frozen || ignores || rests_alone(joints, j, context, m), Fault::kEncoderFrozen);
+      const bool alone = stands && rests_alone(joints, j, context, m);
+      find(frozen || ignores || alone, Fault::kEncoderFrozen);
       if (!driven && mode != Mode::kFault) m.drift_rad[j] = 0.0;
       const bool disagrees = find(speed_disagrees(config, joints, j, m), Fault::kSpeedMismatch);
       if (mode == Mode::kFault && (frozen || disagrees)) verdict.blind |= joint;
@@ -236,7 +234,6 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
     } else {
       m.changed_tick[j] = joints.tick[j];
       m.still_rad[j] = joints.position_rad[j];
-      rests_alone(joints, j, context, m);
     }
     if (faults != 0) verdict.joints |= joint;
     verdict.faults |= faults;

@@ -46,6 +46,8 @@ inline constexpr std::array<const char*, kNumLegs> kLegNames = {"LF", "RF", "LH"
 
 template <typename T>
 using JointArray = std::array<T, kNumJoints>;
+/// Every joint as a bit, bit j for joint j.
+inline constexpr std::uint64_t kAllJoints = (std::uint64_t{1} << kNumJoints) - 1;
 /// One value for each joint of a leg, HAA, HFE, KFE: the same for all legs. Joint j of a robot is
 /// element `j % kJointsPerLeg`.
 template <typename T>

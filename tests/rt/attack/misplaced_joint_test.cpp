@@ -33,7 +33,7 @@ class SupplyCut {
   /// `sound`. The legs are then moved alike in both cases, and the robot is armed.
   Attempt run(int joint, double offset_rad, bool sound, Release release) {
     AttackLoop loop(world_, Drives::kGains, at_);
-    loop.robot.limp = (std::uint64_t{1} << kNumJoints) - 1;
+    loop.robot.limp = kAllJoints;
     bool silent = true;
     loop.step();
     const JointState last = loop.loop.record().input.sensors.joints;
