@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/robot/can_guard.h"
 
-#include <fmt/format.h>
-#include <sched.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <memory>
-#include <new>
 #include <variant>
 
 #include "drivers/can/can_socket.h"
@@ -35,11 +28,6 @@ constexpr std::int64_t kOpen_ns = 2'000'000'000;
 // Above the control thread, 80: it must not wait for one that hangs.
 constexpr int kPriority = 81;
 
-void pause_ns(std::int64_t time_ns) noexcept {
-  const timespec pause{.tv_sec = 0, .tv_nsec = time_ns};
-  nanosleep(&pause, nullptr);
-}
-
 }  // namespace
 
 /// What both processes share.
@@ -50,50 +38,39 @@ struct CanGuard::Memory {
   static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 };
 
-CanGuard::CanGuard(const OffFrames& off, double timeout_s, const Open& open) {
-  void* const shared =
-      mmap(nullptr, sizeof(Memory), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) {
-    throw InputError(fmt::format("hardware: found no memory to share ({})", std::strerror(errno)));
-  }
-  memory_ = new (shared) Memory;
+CanGuard::CanGuard(const OffFrames& off, double timeout_s, const Open& open)
+    : memory_(std::make_unique<Shared<Memory>>("hardware")) {
   const pid_t controller = getpid();
-  pid_ = fork();
-  if (pid_ == 0) live(off, static_cast<std::int64_t>(1e9 * timeout_s), open, *memory_, controller);
-  if (pid_ < 0) {
-    const int error = errno;
-    munmap(shared, sizeof(Memory));
-    throw InputError(fmt::format("hardware: no process can be started ({})", std::strerror(error)));
-  }
+  pid_ = fork_process("hardware");
+  if (pid_ == 0) live(off, static_cast<std::int64_t>(1e9 * timeout_s), open, **memory_, controller);
 }
 
 CanGuard::~CanGuard() {
-  memory_->ended = true;
-  if (!memory_->cut) {
-    kill(pid_, SIGKILL);  // it has nothing to do any more
-    waitpid(pid_, nullptr, 0);
-  }
-  munmap(memory_, sizeof(Memory));
+  Memory& memory = **memory_;
+  memory.ended = true;
+  if (memory.cut) return;
+  kill(pid_, SIGKILL);  // it has nothing to do any more
+  waitpid(pid_, nullptr, 0);
 }
 
 void CanGuard::start() {
-  memory_->start = true;
-  for (std::int64_t waited_ns = 0; waited_ns < kOpen_ns && !memory_->failed;
-       waited_ns += kLook_ns) {
-    if (memory_->ready) return;
+  Memory& memory = **memory_;
+  memory.start = true;
+  for (std::int64_t waited_ns = 0; waited_ns < kOpen_ns && !memory.failed; waited_ns += kLook_ns) {
+    if (memory.ready) return;
     pause_ns(kLook_ns);
   }
-  if (memory_->failed) throw InputError(memory_->error.data());
+  if (memory.failed) throw InputError(memory.error.data());
   throw InputError("hardware: the process that guards the drives does not answer");
 }
 
 void CanGuard::note_command(std::int64_t now_ns) noexcept {
-  memory_->commanded_ns.store(now_ns, std::memory_order_relaxed);
+  (*memory_)->commanded_ns.store(now_ns, std::memory_order_relaxed);
 }
 
-void CanGuard::note_off() noexcept { memory_->commanded_ns.store(0, std::memory_order_relaxed); }
+void CanGuard::note_off() noexcept { (*memory_)->commanded_ns.store(0, std::memory_order_relaxed); }
 
-bool CanGuard::has_cut() const noexcept { return memory_->cut.load(std::memory_order_relaxed); }
+bool CanGuard::has_cut() const noexcept { return (*memory_)->cut.load(std::memory_order_relaxed); }
 
 void CanGuard::live(const OffFrames& off, std::int64_t timeout_ns, const Open& open, Memory& memory,
                     pid_t controller) {
@@ -108,14 +85,11 @@ void CanGuard::live(const OffFrames& off, std::int64_t timeout_ns, const Open& o
   try {
     send = open();
   } catch (const std::exception& error) {
-    const std::size_t size = std::min(std::strlen(error.what()), memory.error.size() - 1);
-    std::copy_n(error.what(), size, memory.error.begin());
+    write_text(error.what(), memory.error);
     memory.failed = true;
     _exit(0);
   }
-  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
-  const sched_param priority{.sched_priority = kPriority};
-  sched_setscheduler(0, SCHED_FIFO, &priority);  // without it: as well as it can
+  become_real_time(kPriority);  // without it: as well as it can
   memory.ready = true;
   std::int64_t looked_ns = clock_ns(CLOCK_MONOTONIC), held_up_ns = 0;
   for (;;) {

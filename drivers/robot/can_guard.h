@@ -6,11 +6,13 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "drivers/can/can_frame.h"
 #include "drivers/robot/hardware_config.h"
+#include "rt/base/guard_process.h"
 
 namespace sandrunner {
 
@@ -52,7 +54,7 @@ class CanGuard {
   [[noreturn]] static void live(const OffFrames& off, std::int64_t timeout_ns, const Open& open,
                                 Memory& memory, pid_t controller);
 
-  Memory* memory_ = nullptr;
+  std::unique_ptr<Shared<Memory>> memory_;
   pid_t pid_ = 0;
 };
 

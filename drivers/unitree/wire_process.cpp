@@ -2,21 +2,16 @@
 #include "drivers/unitree/wire_process.h"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
-#include <new>
 
 #include "drivers/unitree/command_watch.h"
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
-#include "rt/base/guard_process.h"
 #include "rt/base/process_name.h"
 
 namespace sandrunner::unitree {
@@ -28,17 +23,6 @@ constexpr std::int64_t kModeLook_ns = 1'000'000'000;
 constexpr int kPriority = 76, kReceivePriority = 75;
 constexpr int kConnect_s = 30;
 
-void pause_ms(long milliseconds) {
-  const timespec pause{.tv_sec = 0, .tv_nsec = milliseconds * 1'000'000};
-  nanosleep(&pause, nullptr);
-}
-
-bool become_real_time() {
-  mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
-  const sched_param priority{.sched_priority = kPriority};
-  return sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
-}
-
 /// The wire, in its process.
 class Wire {
  public:
@@ -49,10 +33,10 @@ class Wire {
   void run() {
     while (!memory_.start) {
       if (!may_go_on()) return;
-      pause_ms(5);
+      pause_ns(5'000'000);
     }
     memory_.phase = WirePhase::kStarting;
-    memory_.real_time = become_real_time();
+    memory_.real_time = become_real_time(kPriority);
     RobotLink link(config_, memory_.real_time ? kReceivePriority : 0);
     bring_up(link, config_, robot_, [this] { return may_go_on(); });
     if (!may_go_on()) return;
@@ -156,8 +140,7 @@ class Wire {
 };
 
 void note_error(WireMemory& memory, const std::string& error) {
-  const std::size_t size = std::min(error.size(), memory.error.size() - 1);
-  std::copy_n(error.begin(), size, memory.error.begin());
+  write_text(error, memory.error);
   memory.phase = WirePhase::kFailed;
 }
 
@@ -178,14 +161,14 @@ void note_error(WireMemory& memory, const std::string& error) {
 
 /// Damps a robot whose wire is gone, then switches it off.
 void take_over(const UnitreeConfig& config, const RobotFigures& robot) {
-  RobotLink link(config, become_real_time() ? kReceivePriority : 0);
+  RobotLink link(config, become_real_time(kPriority) ? kReceivePriority : 0);
   link.open_commands();
   LowCmd message;
   const auto send_for = [&](std::int64_t time_ns) {
     const std::int64_t end_ns = clock_ns(CLOCK_MONOTONIC) + time_ns;
     while (clock_ns(CLOCK_MONOTONIC) < end_ns) {
       link.send(message);
-      pause_ms(2);
+      pause_ns(2'000'000);
     }
   };
   encode_damping(static_cast<std::uint8_t>(config.motor_mode), robot.damping_kd_nmsprad, message);
@@ -224,29 +207,17 @@ void take_over(const UnitreeConfig& config, const RobotFigures& robot) {
 
 }  // namespace
 
-WireProcess::WireProcess(const UnitreeConfig& config, const RobotFigures& robot) {
-  void* const shared =
-      mmap(nullptr, sizeof(WireMemory), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) {
-    throw InputError(
-        fmt::format("hardware.unitree: found no memory to share ({})", std::strerror(errno)));
-  }
-  memory_ = new (shared) WireMemory;
+WireProcess::WireProcess(const UnitreeConfig& config, const RobotFigures& robot)
+    : memory_("hardware.unitree") {
   const pid_t controller = getpid();
-  pid_ = fork();
+  pid_ = fork_process("hardware.unitree");
   if (pid_ == 0) guard(config, robot, *memory_, controller);
-  if (pid_ < 0) {
-    const int error = errno;
-    munmap(shared, sizeof(WireMemory));
-    throw InputError(
-        fmt::format("hardware.unitree: no process can be started ({})", std::strerror(error)));
-  }
   process_ = open_process(pid_);
 }
 
 WireProcess::~WireProcess() {
   memory_->ended = true;
-  for (int i = 0; i < 200 && runs() && !memory_->guarding; ++i) pause_ms(5);
+  for (int i = 0; i < 200 && runs() && !memory_->guarding; ++i) pause_ns(5'000'000);
   if (!memory_->guarding) {
     if (runs()) {
       kill(memory_->sender, SIGKILL);
@@ -255,7 +226,6 @@ WireProcess::~WireProcess() {
     waitpid(pid_, nullptr, 0);
   }
   close(process_);
-  munmap(memory_, sizeof(WireMemory));
 }
 
 bool WireProcess::runs() const noexcept { return process_runs(process_); }
@@ -266,7 +236,7 @@ void WireProcess::connect() {
     if (memory_->phase == WirePhase::kReady) return;
     if (memory_->phase == WirePhase::kFailed) throw InputError(memory_->error.data());
     if (!runs()) throw InputError("hardware.unitree: the process of the wire has ended");
-    pause_ms(10);
+    pause_ns(10'000'000);
   }
   throw InputError(fmt::format("hardware.unitree: the robot is not ready after {} s", kConnect_s));
 }

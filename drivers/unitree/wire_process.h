@@ -8,6 +8,7 @@
 #include "drivers/unitree/bring_up.h"
 #include "drivers/unitree/unitree_config.h"
 #include "drivers/unitree/wire_memory.h"
+#include "rt/base/guard_process.h"
 
 namespace sandrunner::unitree {
 
@@ -36,7 +37,7 @@ class WireProcess {
   bool runs() const noexcept;
 
  private:
-  WireMemory* memory_ = nullptr;
+  Shared<WireMemory> memory_;
   pid_t pid_ = 0;     // of the guard
   int process_ = -1;  // pidfd: readable once it has ended
 };

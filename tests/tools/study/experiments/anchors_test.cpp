@@ -48,7 +48,7 @@ TEST(AnchorsTest, NoValueOfOursDriftsByMoreThanOnePercent) {
 
 TEST(AnchorsTest, KatsuragiAndDuriansLawFollowsItsClosedForm) {
   // v^2(z) from their energy equation is zero at the final depth.
-  constexpr double k = 1040.0, d = 0.087, g = 9.81;
+  const double k = 1040.0, d = 0.087, g = 9.81;
   for (const double v0 : {0.5, 2.0, 4.0}) {
     const double z = katsuragi_durian(v0).depth_m;
     const double decay = std::exp(-2.0 * z / d);
