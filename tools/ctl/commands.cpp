@@ -13,7 +13,6 @@
 #include "rt/core/mode_machine.h"
 #include "tools/ctl/dds_io.h"
 #include "tools/ctl/errors.h"
-#include "tools/ctl/topics.h"
 #include "tools/ctl/view_reader.h"
 
 namespace sandrunner::ctl {
@@ -136,32 +135,6 @@ void request_mode(const Options& options, Interrupt& interrupt) {
   if (robots > 1) {
     to_standard_error(
         fmt::format("sandrunner-ctl: {} robots obey {}\n", robots, place(options.dds)));
-  }
-}
-
-void watch_topic(const Options& options, Interrupt& interrupt) {
-  const Topic topic = find_topic(options.topic, options.dds);
-  const DdsParticipant participant(options.dds, kIdentity);
-  const dds_entity_t reader =
-      participant.reader(topic.name, *topic.type, topic.depth, topic.reliable, topic.latched);
-  const long long wanted = options.count > 0 ? options.count : INT64_MAX;
-  long long printed = 0;
-  bool open = true;
-  const auto look = [&] {
-    printed += take(
-        reader,
-        [&](const void* message, const dds_sample_info_t&) {
-          open = open && print(topic.text(message) + "\n");
-        },
-        wanted - printed);
-    return printed == wanted || !open;
-  };
-  if (!interrupt.wait_until(kFindRobot_ns, [&] { return look() || writers_of(reader) > 0; }) &&
-      !interrupt.came()) {
-    to_standard_error(fmt::format("sandrunner-ctl: found no publisher of {} {} yet, waiting\n",
-                                  topic.name, place(options.dds)));
-  }
-  while (!look() && !interrupt.wait(kLook_ns)) {
   }
 }
 

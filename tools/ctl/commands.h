@@ -26,9 +26,7 @@ void show_status(const Options& options, Interrupt& interrupt);
 void send_command(const Options& options, Interrupt& interrupt);
 /// Sends a mode request and prints the answer.
 void request_mode(const Options& options, Interrupt& interrupt);
-/// Prints the messages of a topic.
-void watch_topic(const Options& options, Interrupt& interrupt);
-/// Drives by keyboard and gamepad (drive.cpp).
+/// Drives by keyboard (drive.cpp).
 void drive_robot(const Options& options, Interrupt& interrupt);
 
 }  // namespace sandrunner::ctl

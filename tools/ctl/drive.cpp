@@ -12,7 +12,6 @@
 #include "tools/ctl/commands.h"
 #include "tools/ctl/dds_io.h"
 #include "tools/ctl/errors.h"
-#include "tools/ctl/gamepad_device.h"
 #include "tools/ctl/key_driver.h"
 #include "tools/ctl/raw_terminal.h"
 #include "tools/ctl/view_reader.h"
@@ -52,10 +51,7 @@ class Drive {
         writer_(participant_, options.dds),
         modes_(participant_),
         reader_(participant_),
-        device_(GamepadDevice::find()),
-        where_(place(options.dds)) {
-    if (device_) gamepad_.emplace(device_->ranges());
-  }
+        where_(place(options.dds)) {}
 
   void run() {
     if (!interrupt_.wait_until(kFindRobot_ns,
@@ -64,17 +60,12 @@ class Drive {
       throw RefusedError(fmt::format("drive: no robot answered {}", where_));
     }
     RawTerminal terminal;
-    say(fmt::format(
-        "{}{}", help(),
-        device_ ? "gamepad " + device_->name() +
-                      ": hold the left shoulder button; left stick moves, right stick turns\n"
-                : "no gamepad\n"));
+    say(help());
     while (!quit_ && !interrupt_.came()) {
       poll_inputs(terminal);
       step();
     }
     keys_.press(' ', steady_ns());
-    if (gamepad_) gamepad_->stop();
     while (pacer_.busy()) {
       send(std::nullopt);
       usleep(5000);
@@ -84,27 +75,15 @@ class Drive {
 
  private:
   void poll_inputs(RawTerminal& terminal) {
-    pollfd fds[3] = {{interrupt_.fd(), POLLIN, 0},
-                     {STDIN_FILENO, POLLIN, 0},
-                     {device_ ? device_->fd() : -1, POLLIN, 0}};
-    if (poll(fds, 3, kLook_ns / kMs_ns) <= 0) return;
-    if (fds[1].revents != 0) {
-      const std::string bytes = terminal.read();
-      if (bytes.empty()) quit_ = true;
-      for (const char key : key_reader_.keys(bytes)) press(key);
-    }
-    if (fds[2].revents != 0 && !device_->read_into(*gamepad_)) {
-      device_.reset();
-      gamepad_.reset();
-      report("the gamepad is gone");
-    }
-    if (fds[2].revents != 0 && gamepad_) gamepad_->heard(steady_ns());
+    pollfd fds[2] = {{interrupt_.fd(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
+    if (poll(fds, 2, kLook_ns / kMs_ns) <= 0 || fds[1].revents == 0) return;
+    const std::string bytes = terminal.read();
+    if (bytes.empty()) quit_ = true;
+    for (const char key : key_reader_.keys(bytes)) press(key);
   }
 
   void press(char key) {
     const KeyAction action = keys_.press(key, steady_ns());
-    if (!action.request && !action.quits) return;
-    if (gamepad_) gamepad_->stop();
     quit_ = quit_ || action.quits;
     if (!action.request) return;
     send(std::nullopt);  // zero at once, before the request
@@ -123,17 +102,12 @@ class Drive {
       report(asked_ + ": no answer");  // it may come yet
       waits_ = false;
     }
-    const double scale = 0.1 * keys_.scale_tenths();
-    std::optional<VelocityCommand> wanted = keys_.command(now_ns);
-    if (!wanted && gamepad_) wanted = gamepad_->command(scale, now_ns);
-    const bool silent = gamepad_ && gamepad_->silent(now_ns);
-    if (silent && !silent_) report("the gamepad has said nothing for 1 s: zero until it does");
-    silent_ = silent;
-    send(wanted);
+    send(keys_.command(now_ns));
     reader_.take_into(view_);
     if (now_ns < next_line_ns_) return;
     next_line_ns_ = now_ns + 200 * kMs_ns;
-    const std::string line = fmt::format("scale {:.1f}  {}", scale, view_.line(now_ns));
+    const std::string line =
+        fmt::format("scale {:.1f}  {}", 0.1 * keys_.scale_tenths(), view_.line(now_ns));
     say("\r\x1b[K" + line.substr(0, columns()));
   }
 
@@ -153,13 +127,10 @@ class Drive {
   KeyReader key_reader_;
   KeyDriver keys_;
   CommandPacer pacer_;
-  std::optional<GamepadDevice> device_;
-  std::optional<Gamepad> gamepad_;
   const std::string where_;  // the robot is looked for
   bool quit_ = false;
-  bool silent_ = false;  // the gamepad, while it is to drive
-  std::string asked_;    // the latest request
-  bool waits_ = false;   // for its answer
+  std::string asked_;   // the latest request
+  bool waits_ = false;  // for its answer
   std::int64_t asked_ns_ = 0, next_line_ns_ = 0;
 };
 

@@ -18,7 +18,6 @@ int run(int argc, char** argv) try {
   if (options->subcommand == "status") show_status(*options, interrupt);
   if (options->subcommand == "cmd") send_command(*options, interrupt);
   if (options->subcommand == "mode") request_mode(*options, interrupt);
-  if (options->subcommand == "watch") watch_topic(*options, interrupt);
   if (options->subcommand == "drive") drive_robot(*options, interrupt);
   return kExitOk;
 } catch (const RefusedError& error) {

@@ -11,7 +11,6 @@
 #include "rt/core/mode_machine.h"
 #include "rt/operator/command_gate.h"
 #include "rt/operator/mode_requests.h"
-#include "tools/ctl/topics.h"
 
 namespace sandrunner::ctl {
 namespace {
@@ -37,11 +36,6 @@ void check(const Options& o) {
     }
   } else if (o.subcommand == "mode" && !request_named(o.mode)) {
     throw InputError(fmt::format("mode: found '{}', expected {}", o.mode, request_names()));
-  } else if (o.subcommand == "watch") {
-    find_topic(o.topic, o.dds);
-    if (o.count < 0) {
-      throw InputError(fmt::format("--count: found {}, expected 0 (no end) or more", o.count));
-    }
   }
 }
 
@@ -79,15 +73,11 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
           ->default_str("");
   CLI::App* mode = app.add_subcommand("mode", "request a mode and print the answer");
   mode->add_option("REQUEST", o.mode, request_names())->required()->always_capture_default(false);
-  CLI::App* watch = app.add_subcommand("watch", "print the messages of a topic, one per line");
-  watch->add_option("TOPIC", o.topic, topic_names())->required()->always_capture_default(false);
-  watch->add_option("--count", o.count, "end after N messages; 0: at Ctrl-C")->type_name("N");
-  app.add_subcommand("drive", "drive with the keyboard, and with a gamepad if there is one");
+  app.add_subcommand("drive", "drive with the keyboard");
   app.footer(
       "Examples:\n"
       "  sandrunner-ctl mode stand\n"
-      "  sandrunner-ctl cmd 0.5 0 0 --for 3\n"
-      "  sandrunner-ctl watch rt/odom --count 1");
+      "  sandrunner-ctl cmd 0.5 0 0 --for 3");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   if (cmd_vel != "twist" && cmd_vel != "twist_stamped") {
     throw InputError(

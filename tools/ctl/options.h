@@ -12,13 +12,11 @@ namespace sandrunner::ctl {
 /// The command line of `sandrunner-ctl`.
 struct Options {
   DdsConfig dds;                ///< where to look for the robot; its own defaults
-  std::string subcommand;       ///< status, cmd, mode, watch, drive
+  std::string subcommand;       ///< status, cmd, mode, drive
   bool once = false;            ///< status
   VelocityCommand velocity;     ///< cmd
   std::optional<double> for_s;  ///< cmd; none: until interrupted
   std::string mode;             ///< mode: name of the request
-  std::string topic;            ///< watch
-  long long count = 0;          ///< watch: messages; 0: until interrupted
 };
 
 /// Parses and checks the command line. Returns nothing after --help and --version, which print to

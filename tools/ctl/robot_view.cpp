@@ -9,8 +9,8 @@
 #include "rt/base/fixed_text.h"
 #include "rt/base/quantile.h"
 #include "rt/core/messages.h"
+#include "rt/core/mode_machine.h"
 #include "rt/telemetry/diagnostics.h"
-#include "tools/ctl/message_text.h"
 
 namespace sandrunner::ctl {
 namespace {
@@ -22,6 +22,11 @@ constexpr std::size_t kRecentTicks = 2 * kControlHz;
 std::string velocity_text(double vx_mps, double vy_mps, double wz_radps) {
   return fmt::format("{} {} m/s {} rad/s", fixed_text(vx_mps, 2), fixed_text(vy_mps, 2),
                      fixed_text(wz_radps, 2));
+}
+
+const char* mode_text(std::uint32_t mode) {
+  return mode <= static_cast<std::uint32_t>(Mode::kFault) ? mode_name(static_cast<Mode>(mode))
+                                                          : "unknown";
 }
 
 }  // namespace

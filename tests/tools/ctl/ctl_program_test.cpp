@@ -45,7 +45,6 @@ TEST(CtlProgramTest, BadInputIsOneLineAndExitCodeTwo) {
   const DdsConfig config = test_config();
   expect_error(run({"mode", "jump"}, config), 2, "mode: found 'jump'");
   expect_error(run({"cmd", "nan", "0", "0"}, config), 2, "VX: found nan");
-  expect_error(run({"watch", "rt/nothing"}, config), 2, "expected rt/joint_states");
   expect_error(run({}, config), 2, "subcommand");
   expect_error(run({"drive"}, config), 2, "not a terminal");
   expect_error(run({"status", "--once", "--security", "/nowhere"}, config), 2, "/nowhere/");
@@ -199,93 +198,6 @@ TEST(CtlProgramTest, CmdSaysWhenTheRobotIsGone) {
   ASSERT_TRUE(wait_until([&] { return robot->desk.counts().accepted > 3; }));
   robot.reset();
   expect_error(program.wait(), 1, "the robot is gone after ");
-}
-
-TEST(CtlProgramTest, WatchPrintsEachMessageOfEachTopicInOneLine) {
-  const DdsConfig config = test_config();
-  FakeRobot robot(config);
-  const std::pair<const char*, const char*> kCases[] = {
-      {"rt/joint_states", "  FL_thigh 0.1"},
-      {"rt/imu/data", "turning 0.100 0.200 0.300 rad/s"},
-      {"rt/odom", "velocity 0.000 0.000 0.000 m/s"},
-      {"rt/tf", "odom to base_link: "},
-      {"rt/diagnostics", "sandrunner ok: passive; mode=passive; faults=none;"},
-      {"sandrunner/ticks", "mode passive  faults none  command 0.90 -0.10 0.20"}};
-  for (const auto& [topic, part] : kCases) {
-    const Ended ended = run({"watch", topic, "--count", "2"}, config);
-    EXPECT_EQ(ended.code, 0) << ended.err;
-    EXPECT_EQ(lines(ended.out), 2) << ended.out;
-    EXPECT_TRUE(has(ended.out, part)) << ended.out;
-    EXPECT_EQ(ended.err, "");
-  }
-  const Ended ended = run({"watch", "rt/robot_description", "--count", "1"}, config);
-  EXPECT_EQ(ended.out, "<robot name=\"example\"/>\n");  // came before; its line break is none here
-}
-
-TEST(CtlProgramTest, WatchSeesEveryTickMessageInOrder) {
-  const DdsConfig config = test_config();
-  FakeRobot robot(config);
-  const Ended ended = run({"watch", "sandrunner/ticks", "--count", "150"}, config);
-  long long last = -1;
-  std::size_t at = 0;
-  int gaps = 0;
-  for (int i = 0; i < 150; ++i) {
-    ASSERT_EQ(ended.out.at(at), '#');
-    const long long number = std::stoll(ended.out.substr(at + 1));
-    if (last >= 0 && number != last + 1) ++gaps;
-    last = number;
-    at = ended.out.find('\n', at) + 1;
-  }
-  EXPECT_EQ(gaps, 0);
-  EXPECT_EQ(at, ended.out.size());
-}
-
-TEST(CtlProgramTest, WatchShowsWhatOthersAskAndWhatTheRobotAnswers) {
-  const DdsConfig config = test_config();
-  FakeRobot robot(config);
-  Peer peer(config);
-  Program commands({"watch", "rt/cmd_vel"}, config);
-  Program requests({"watch", "sandrunner/mode_request"}, config);
-  Program replies({"watch", "sandrunner/mode_reply"}, config);
-  // Each returns when all that read the topic are known: the robot and the program, or only that.
-  const auto cmd_vel = peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc, 2);
-  const auto request = peer.writer("sandrunner/mode_request", sandrunner_ModeRequest_desc, 2);
-  dds_delete(peer.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1));
-  const sandrunner_ModeRequest asked[] = {{.id = 0xabc, .request = "reset_fault"},
-                                          {.id = 0xdef, .request = "damp"}};
-  EXPECT_TRUE(wait_until([&] {  // they may not yet know these writers
-    for (const auto& a : asked) dds_write(request, &a);
-    drive(cmd_vel, 0.5);
-    return commands.has_printed("linear 0.500 0.000 0.000 m/s  angular 0.000 0.000 0.000") &&
-           requests.has_printed("0000000000000abc  reset_fault\n0000000000000def  damp\n") &&
-           replies.has_printed("0000000000000abc  refused: no fault is latched  mode ") &&
-           replies.has_printed("0000000000000def  accepted  mode passive  robot example@here\n");
-  }));
-  for (Program* program : {&commands, &requests, &replies}) {
-    program->signal(SIGINT);
-    EXPECT_EQ(program->wait().code, 0) << program->wait();
-  }
-}
-
-TEST(CtlProgramTest, WatchIsEndedBySignals) {
-  const DdsConfig config = test_config();
-  DdsParticipant us(config);
-  for (const int number : {SIGINT, SIGTERM}) {
-    Peer peer(config);
-    Program program({"watch", "rt/cmd_vel"}, config);
-    peer.writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc);
-    program.signal(number);
-    EXPECT_EQ(program.wait().code, 0) << number;
-    EXPECT_EQ(program.wait().err, "");
-  }
-}
-
-TEST(CtlProgramTest, WatchEndsWhenNobodyReadsItsOutput) {
-  const DdsConfig config = test_config();
-  FakeRobot robot(config);
-  Program program({"watch", "rt/imu/data"}, config);
-  program.close_out();
-  EXPECT_EQ(program.wait().code, 0);
 }
 
 TEST(CtlProgramTest, StatusOnceShowsTheRobot) {

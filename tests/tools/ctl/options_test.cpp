@@ -68,10 +68,7 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
       {{"cmd", "1", "0", "0", "--for", "0"}, "--for: found 0"},
       {{"cmd", "1", "0", "0", "--for", "nan"}, "--for: found nan"},
       {{"mode", "jump"}, "mode: found 'jump', expected arm, stand, walk, stop, lie, damp"},
-      {{"mode"}, "REQUEST is required"},
-      {{"watch", "rt/nothing"}, "watch: found 'rt/nothing', expected rt/joint_states,"},
-      {{"watch", "/nothing"}, "watch: found '/nothing', expected rt/joint_states,"},
-      {{"watch", "/odom", "--count", "-1"}, "--count: found -1"}};
+      {{"mode"}, "REQUEST is required"}};
   for (const auto& c : kCases) {
     try {
       parse(c.words);

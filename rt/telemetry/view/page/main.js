@@ -14,7 +14,6 @@ import { Player } from './player.js';
 import { Robot } from './robot.js';
 import { makeRobotTime } from './robot_time.js';
 import { Scene } from './scene.js';
-import { SideView } from './side.js';
 import { State } from './state.js';
 import { Surface } from './surface.js';
 import { Timeline } from './timeline.js';
@@ -27,12 +26,9 @@ function makeView(run, robot, surface) {
   try {
     return new Scene(element('scene'), run, robot, surface, light ? 3 : 0);
   } catch (error) {
-    // A canvas that was asked for WebGL gives nothing else.
-    const canvas = element('scene').cloneNode();
-    element('scene').replaceWith(canvas);
-    element('note').textContent = `${run.hello.note} This browser has no WebGL: the robot is drawn from its right side.`.trim();
-    element('camera').hidden = true;
-    return new SideView(canvas, run, robot, surface);
+    element('note').textContent = `${run.hello.note} This browser has no WebGL: plots and figures only.`.trim();
+    element('camera').hidden = element('picture').hidden = true;
+    return { draw() {} };
   }
 }
 
@@ -160,7 +156,7 @@ function show(run) {
   // For tests and for who is curious in the console.
   window.sandrunner = {
     ready_ms: performance.now(),
-    kind: view instanceof Scene ? '3d' : 'side',
+    kind: view instanceof Scene ? '3d' : 'plots',
     get frames() { return frames.count; },
     hello, run, player, view, robot,
     get drawn() { return drawn; },

@@ -111,7 +111,7 @@ await openFile(browserPath, `${folder}/run.html`, kSoftware, { width: 900, heigh
 });
 
 await openFile(browserPath, `${folder}/run.html`, kNoGraphics, { width: 700, height: 500 }, async (page) => {
-  assert.equal(await page.evaluate("sandrunner.kind"), "side");
+  assert.equal(await page.evaluate("sandrunner.kind"), "plots");
   assert.match(await page.$eval("#note", (note) => note.textContent), /no WebGL/);
   const worst = await checkFeet(page), share = shares(await picture(page, deepMoment()));
   within(share, "sand", 0.15, 0.7);
