@@ -33,9 +33,7 @@ int run(int argc, char** argv) {
   CLI::App* learner = app.add_subcommand(
       "learner", "GFLOP/s of the training's matrix products, against Eigen and this core's peak");
   CLI::App* rt = app.add_subcommand(
-      "rt",
-      "wake-up of the control thread against cyclictest, policy step against Eigen and a read "
-      "floor, exchange between threads against a mutex");
+      "rt", "wake-up of the control thread against cyclictest, policy step against a read floor");
   CLI::App* unitree = app.add_subcommand(
       "unitree", "tick of the control thread of a Unitree robot over DDS, against one without DDS");
   unitree
@@ -61,8 +59,6 @@ int run(int argc, char** argv) {
   if (learner->parsed()) report = bench::run_learner_bench(rounds);
   if (rt->parsed()) {
     report = bench::run_policy_bench(rounds);
-    bench::run_exchange_bench(rounds, report);
-    bench::run_handover_bench(rounds, report);
     bench::run_wakeup_bench(rounds, report);
   }
   if (unitree->parsed()) report = bench::run_unitree_bench(hardware, rounds);

@@ -14,7 +14,6 @@
 #include <list>
 #include <map>
 #include <random>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -22,7 +21,6 @@
 #include "rt/base/processor_name.h"
 #include "rt/core/floating_point.h"
 #include "tools/bench/clock.h"
-#include "tools/bench/eigen_network.h"
 
 namespace sandrunner::bench {
 namespace {
@@ -36,7 +34,6 @@ constexpr std::size_t kWalkBytes = 16 << 20, kLongWalkBytes = 64 << 20;
 /// The kernel stops real-time threads that take more than 95 % of a second.
 constexpr auto kRest = std::chrono::milliseconds(10);
 constexpr int kObservations = 16;
-constexpr double kTolerance = 1e-4;
 
 using Observation = std::array<float, kObservationSize>;
 
@@ -110,29 +107,6 @@ class Bytes {
   std::vector<Line> lines_;
 };
 
-void require_agreement(const Network& ours, EigenNetwork eigen,
-                       const std::vector<Observation>& observations) {
-  NetworkState state;
-  for (int k = 0; k < 100; ++k) {
-    NetworkOutput a, b;
-    ours.step(observations[k % kObservations], state, a);
-    eigen.step(observations[k % kObservations], b);
-    double worst = 0.0;
-    const auto compare = [&](const auto& x, const auto& y) {
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        worst = std::max<double>(worst, std::isfinite(x[i]) ? std::fabs(x[i] - y[i]) : 1.0);
-      }
-    };
-    compare(a.action, b.action);
-    compare(a.estimate_raw, b.estimate_raw);
-    if (!(worst <= kTolerance)) {
-      throw std::runtime_error(fmt::format(
-          "the network and Eigen's differ by {:.1e} in step {}, expected at most {:.0e}", worst, k,
-          kTolerance));
-    }
-  }
-}
-
 }  // namespace
 
 Report run_policy_bench(int rounds) {
@@ -145,21 +119,16 @@ Report run_policy_bench(int rounds) {
   for (Observation& observation : observations) {
     for (float& value : observation) value = normal(random);
   }
-  require_agreement(Network(parameters), EigenNetwork(parameters), observations);
 
   // Those of the round. New ones each round, none freed before the end: the time of a cold step
   // depends on which pages of memory it was given.
   std::list<Network> ours;
-  std::list<EigenNetwork> eigens;
   std::list<Bytes> floors;
   const Bytes short_walk(kWalkBytes), long_walk(kLongWalkBytes);
   NetworkState state;
   NetworkOutput output;
   const auto our_step = [&](int k) {
     ours.back().step(observations[k % kObservations], state, output);
-  };
-  const auto eigen_step = [&](int k) {
-    eigens.back().step(observations[k % kObservations], output);
   };
   const auto read = [&](int) { floors.back().read(); };
   struct Candidate {
@@ -168,16 +137,12 @@ Report run_policy_bench(int rounds) {
     bool touch;         ///< of the weights, after the walk
     std::function<void(int)> step;
   };
-  const std::vector<Candidate> candidates = {
-      {"hot", nullptr, false, our_step},
-      {"hot_dynamic_eigen", nullptr, false, eigen_step},
-      {"hot_read_floor", nullptr, false, read},
-      {"l2_cold", &short_walk, false, our_step},
-      {"l2_cold_dynamic_eigen", &short_walk, false, eigen_step},
-      {"l2_cold_pretouched", &short_walk, true, our_step},
-      {"cold", &long_walk, false, our_step},
-      {"cold_dynamic_eigen", &long_walk, false, eigen_step},
-      {"cold_pretouched", &long_walk, true, our_step}};
+  const std::vector<Candidate> candidates = {{"hot", nullptr, false, our_step},
+                                             {"hot_read_floor", nullptr, false, read},
+                                             {"l2_cold", &short_walk, false, our_step},
+                                             {"l2_cold_pretouched", &short_walk, true, our_step},
+                                             {"cold", &long_walk, false, our_step},
+                                             {"cold_pretouched", &long_walk, true, our_step}};
 
   // Median over a block's steps: interruptions are not in it.
   const auto median_time_s = [&](const Candidate& candidate) {
@@ -196,7 +161,6 @@ Report run_policy_bench(int rounds) {
   std::map<std::string, std::vector<double>> times_s;
   for (int round = 0; round < rounds; ++round) {
     ours.emplace_back(parameters);
-    eigens.emplace_back(parameters);
     floors.emplace_back(Network::weight_bytes());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[(i + round) % candidates.size()];
@@ -209,7 +173,6 @@ Report run_policy_bench(int rounds) {
       {"processor", processor_name()},
       {"policy", fmt::format("one step of the network, {} bytes of weights as packed; {}",
                              Network::weight_bytes(), realtime.description())},
-      {"dynamic_eigen", "the same network, Eigen matrices of dynamic size, column-major"},
       {"read_floor", "as many bytes, AVX2 loads into eight registers and nothing else"},
       {"l2_cold", fmt::format("after a walk through {} MiB on the same core", kWalkBytes >> 20)},
       {"cold", fmt::format("after a walk through {} MiB on the same core", kLongWalkBytes >> 20)}};
@@ -223,11 +186,8 @@ Report run_policy_bench(int rounds) {
     for (int i = 0; i < rounds; ++i) values.push_back(times_s[above][i] / times_s[below][i]);
     report.ratios.emplace_back(name, quartiles(values));
   };
-  ratio("policy_hot_vs_dynamic_eigen", "hot", "hot_dynamic_eigen");
   ratio("policy_hot_vs_read_floor", "hot", "hot_read_floor");
-  ratio("policy_l2_cold_vs_dynamic_eigen", "l2_cold", "l2_cold_dynamic_eigen");
   ratio("policy_l2_pretouched_vs_cold", "l2_cold_pretouched", "l2_cold");
-  ratio("policy_cold_vs_dynamic_eigen", "cold", "cold_dynamic_eigen");
   ratio("policy_pretouched_vs_cold", "cold_pretouched", "cold");
   return report;
 }
