@@ -85,7 +85,7 @@ class Check {
     }
   }
 
-  /// Before anything is sent: a robot that runs would fall if its drives were told to be off.
+  /// Before anything is sent: a robot that runs would fall if its drives received an off command.
   bool buses_are_ours() {
     const std::vector<std::string> problems =
         traffic_problems(config_, task_.robot, listen(config_, sockets_));

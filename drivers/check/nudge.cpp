@@ -97,7 +97,7 @@ class Pusher {
     return true;
   }
 
-  /// Exchanges with this torque for so long, or until the joint has moved enough. False: an end.
+  /// Exchanges with this torque for this long, or until the joint has moved enough. False: an end.
   bool spend(double most_s, double torque_nm) {
     const double start_s = last_.time_s;
     double torque_sum_nm = 0.0;

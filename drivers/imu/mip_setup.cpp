@@ -55,7 +55,7 @@ void change_speed(MipDialogue& dialogue, unsigned found_baud, unsigned baud) {
     dialogue.refuse(fmt::format("does not take {} baud (it is at {}): {}", baud, found_baud,
                                 mip::ack_text(code)));
   }
-  dialogue.change_baud(baud, kSpeedChange_ms);  // for so long it is to be left alone
+  dialogue.change_baud(baud, kSpeedChange_ms);  // it needs this long without requests
   demand(dialogue, mip::ping(), "answer at its new speed");
 }
 

@@ -105,7 +105,7 @@ SerialPort::SerialPort(const std::string& device, unsigned baud) : device_(devic
 }
 
 SerialPort::~SerialPort() {
-  // The terminal lives on where somebody else has it open: he may then open it again.
+  // The terminal lives on where another program has it open, which may then open it again.
   ioctl(fd_, TIOCNXCL);
   ::close(fd_);
 }

@@ -9,10 +9,10 @@ namespace sandrunner {
 namespace {
 
 constexpr std::uint64_t kEnable_ticks = static_cast<std::uint64_t>(kEnable_s * kControlHz);
-/// A drive that does not say whether it is enabled is taken to be after so many replies.
+/// A drive that does not say whether it is enabled is taken to be after this many replies.
 constexpr std::uint64_t kRepliesToEnable = 3;
-/// A drive that did not answer so many requests for so long may have been without its supply. The
-/// first alone excludes a stall of this program.
+/// A drive that did not answer this many requests for this long may have been without its supply.
+/// The first alone excludes a stall of this program.
 constexpr std::uint64_t kRebootRequests = 10, kReboot_ticks = kControlHz / 20;
 /// A request is lost if it was not answered for one to two of these. Adapters that hold frames back
 /// for less deliver no surplus.
@@ -138,7 +138,7 @@ bool Drive::take(const CanFrame& frame, std::uint64_t tick) noexcept {
 void Drive::judge_power(bool was_silent) noexcept {
   const bool known = state_.power != DrivePower::kUnknown;
   const bool enabled = state_.power == DrivePower::kOn;
-  // Off without a reason of its own: it has just started, or somebody else switched it off. What
+  // Off without a reason of its own: it has just started, or another program switched it off. What
   // was cleared after a fault says so too, but not in its first answer.
   const bool plainly_off = known && !enabled && state_.fault == 0;
   const bool at_once = phase_ == Phase::kOn && !has(DriveTrouble::kSwitchedOff);

@@ -49,7 +49,7 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)), part_(path_ + "
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     fail(path_, "not a regular file");
   }
-  // What is left of a program that was killed, or a link that somebody put there: it is removed and
+  // What is left of a program that was killed, or a link that is in its place: it is removed and
   // not followed.
   ::unlink(part_.c_str());
   descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -69,7 +69,7 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
                          .policy = counts ? &input.policy : nullptr,
                          .policy_input_tick = walking ? state_.policy_input_tick : tick,
                          .not_standing = too_late_to_stand};
-  // A reset is judged as strictly as where the robot will stand up from: whoever lies on its back
+  // A reset is judged as strictly as where the robot will stand up from: a robot on its back
   // is to be put right first.
   const bool resetting = state_.mode == Mode::kFault && next != Mode::kFault;
   const GateVerdict found = gate_.judge(judged, resetting ? Mode::kStand : next, state_.gate);

@@ -154,8 +154,9 @@ bool lies(const GateConfig& config, const JointState& joints) noexcept {
   return true;
 }
 
-/// Whether all joints have been still in the lying pose for long enough: somebody has folded the
-/// legs. (They may sag after that. A leg that is moved only passes the pose, with any offset.)
+/// Whether all joints have been still in the lying pose for long enough: its legs were
+/// folded by hand. (They may sag after that. A leg that is moved only passes the pose, with any
+/// offset.)
 bool was_folded(const GateConfig& config, const JointState& joints, JointMemory& m) noexcept {
   const auto [oldest, newest] = std::ranges::minmax(joints.tick);
   bool still = lies(config, joints) && newest - oldest <= kSilent_ticks;

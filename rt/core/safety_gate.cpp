@@ -200,7 +200,7 @@ std::uint64_t SafetyGate::judge_time(std::uint64_t tick, Mode mode,
   ++state.counters.stalled;
   state.stall_end_tick = tick;
   state.stall_ticks = skipped;
-  // One more than is a fault is enough: what a loop missed while nobody judged it is soon over.
+  // Saturate one past the threshold, so that misses in unjudged ticks decay quickly.
   missed = std::min(missed + std::min(skipped, config_.stall_fault_ticks + 1),
                     config_.stall_fault_ticks + 1);
   const bool too_many = missed > config_.stall_fault_ticks;

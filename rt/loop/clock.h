@@ -26,7 +26,7 @@ class Clock {
   virtual void sleep_until(std::int64_t time_ns) noexcept = 0;
 };
 
-/// Time that passes only when somebody says so: of lockstep, and of tests of the threaded loop.
+/// Time that passes only on command: of lockstep, and of tests of the threaded loop.
 class ManualClock final : public Clock {
  public:
   std::int64_t now_ns() noexcept override { return now_ns_; }

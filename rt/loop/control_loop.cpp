@@ -6,8 +6,8 @@ namespace sandrunner {
 void ControlLoop::tick(const SlotGrid::Slot& slot, const OperatorCommand& command,
                        TickRecord& record) noexcept {
   if (slot.skipped > 0) robot_.skip(slot.skipped, output_.command);
-  // Nothing moves between a write and the next tick, unless slots were skipped or somebody reached
-  // in.
+  // Nothing moves between a write and the next tick, unless slots were skipped or an operator
+  // reached in.
   if (slot.skipped > 0 || truth_is_old_) has_truth_ = robot_.truth(truth_);
   truth_is_old_ = false;
   record.before = {truth_.joint_velocity_radps, truth_.state};

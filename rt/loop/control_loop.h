@@ -27,13 +27,13 @@ class ControlLoop {
   void tick(const SlotGrid::Slot& slot, const OperatorCommand& command,
             TickRecord& record) noexcept;
 
-  /// The same under an operator, who sees what came of it. `interrupts`: how often somebody has
+  /// The same under an operator, who sees what came of it. `interrupts`: how often a signal has
   /// wanted the process to end.
   AfterTick tick(const SlotGrid::Slot& slot, OperatorInput& op, int interrupts,
                  TickRecord& record) noexcept;
 
   const Controller& controller() const noexcept { return controller_; }
-  /// Somebody has changed the robot since the last tick: its truth is another one.
+  /// An operator has changed the robot since the last tick: its truth is another one.
   void robot_changed() noexcept { truth_is_old_ = true; }
   /// Goes on from a snapshot; the robot is restored by its owner.
   void restore(const ControllerState& state) noexcept;

@@ -29,7 +29,7 @@ class Lockstep {
   /// The same under an operator.
   AfterTick tick(OperatorInput& op, int interrupts) noexcept;
 
-  /// Somebody has changed the robot since the last tick.
+  /// An operator has changed the robot since the last tick.
   void robot_changed() noexcept { loop_.robot_changed(); }
 
   /// The tick done last.

@@ -20,7 +20,7 @@ struct TickFacts {
   std::uint64_t warnings = 0;        ///< bits of Warning for which the robot lies down
   bool base_contact = false;         ///< simulated robot: its base touches the ground
   bool thigh_contact = false;        ///< likewise
-  int interrupts = 0;                ///< how often somebody has wanted the process to end
+  int interrupts = 0;                ///< how often a signal has asked for the end
 };
 
 /// Whether another tick follows.

@@ -50,7 +50,7 @@ CommandVerdict OperatorDesk::drive(const Twist& twist, std::uint64_t publisher,
       ++counts_.other_publisher;
       break;
     case CommandVerdict::kObjection:
-      // What the robot was told before holds no longer either: it need not wait until that is
+      // Earlier requests hold no longer either: it need not wait until that is
       // stale.
       if (who == holder_ && (asked_.velocity.vx_mps != 0.0 || asked_.velocity.vy_mps != 0.0 ||
                              asked_.velocity.wz_radps != 0.0)) {

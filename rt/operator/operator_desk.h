@@ -32,7 +32,7 @@ struct CommandCounts {
 };
 
 /// Where all that operators ask for comes together, by whatever way, in front of the control
-/// thread. One of them holds the velocity command; while somebody does, requests are accepted from
+/// thread. One of them holds the velocity command; while one does, requests are accepted from
 /// that operator alone, but for stop and damp, which anybody may ask for. For ordinary threads, any
 /// number of them. While one waits for the controller's answer, stop and damp, velocities and the
 /// counts do not wait behind it.

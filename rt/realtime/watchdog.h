@@ -31,7 +31,7 @@ class Watchdog {
   /// One look; the first one is given the time from which it watches. Cuts the drives if need be.
   void look(std::int64_t now_ns) noexcept;
   bool has_cut() const noexcept { return cut_.load(std::memory_order_relaxed); }
-  /// Longest time between two looks: for so long nothing watched the control thread.
+  /// Longest time between two looks: for this long nothing watched the control thread.
   std::int64_t longest_gap_ns() const noexcept {
     return longest_gap_ns_.load(std::memory_order_relaxed);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the robot's ROS 2 messages contain, whoever serialises them: recordings
+// What the robot's ROS 2 messages contain, however they are serialised: recordings
 // (recording/ros_cdr.h) and DDS (dds/ros_publisher.h). Stamps are in ns since 1970, not negative.
 #pragma once
 
@@ -63,7 +63,7 @@ struct DiagnosticsMessage {
   std::string name, message, hardware_id;
   std::vector<std::pair<std::string, std::string>> values;
 
-  /// Adds something that somebody should look at.
+  /// Adds something that an operator should look at.
   void warn(const std::string& what);
 };
 

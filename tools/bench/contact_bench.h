@@ -54,8 +54,8 @@ Depths drop_on_drft(const Drft& foot, const Drop& drop) noexcept;
 extern template Depths drop_on_drft(const PlanarDrft&, const Drop&) noexcept;
 extern template Depths drop_on_drft(const SpatialDrft&, const Drop&) noexcept;
 
-/// Times `drops` drops on each model, in turn, `rounds` times. Throws std::runtime_error if one has
-/// not come to rest: the depths would mean nothing.
+/// Times `drops` drops on each model, alternately, `rounds` times. Throws std::runtime_error if one
+/// has not come to rest: the depths would mean nothing.
 Report run_contact_bench(int rounds, int drops = 1000);
 
 }  // namespace sandrunner::bench

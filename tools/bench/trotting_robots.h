@@ -19,7 +19,7 @@ inline constexpr double kTrotHz = 2.5;
 /// A robot whose base is lower has fallen, m.
 inline constexpr double kFallenHeight_m = 0.25;
 
-/// Joint targets of the trot at a time, rad: diagonal legs are lifted in turn. `phase`: of the
+/// Joint targets of the trot at a time, rad: diagonal legs are lifted alternately. `phase`: of the
 /// stride, 0..1.
 JointArray<double> trot_targets(const JointArray<double>& nominal_rad, double time_s, double phase);
 

@@ -98,7 +98,7 @@ void run_wakeup_bench(int rounds, Report& report) {
 
   std::vector<double> p50, p99, our_p50, our_p99, their_p50, their_p99;
   for (int round = 0; round < rounds; ++round) {
-    // Either goes first in turn.
+    // They alternate in going first.
     Wakeups a, b;
     if (round % 2 == 0) a = ours(config, policy);
     b = cyclictest(cpu);

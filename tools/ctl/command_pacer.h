@@ -8,8 +8,8 @@
 
 namespace sandrunner::ctl {
 
-/// When to send a velocity: at 20 Hz while somebody steers; then a few zeros, the first of them at
-/// once; then nothing, so that another publisher can take over. Contains no clock.
+/// When to send a velocity: at 20 Hz while the operator steers; then a few zeros, the first of them
+/// at once; then nothing, so that another publisher can take over. Contains no clock.
 class CommandPacer {
  public:
   /// `wanted`: the velocity steered at `now_ns`, if any. Returns what to send now, if anything.

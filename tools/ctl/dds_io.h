@@ -37,7 +37,7 @@ class CommandWriter {
 
 /// Sends mode requests and receives the answers, one request at a time. Where the network is gone,
 /// a stop or damp is sent again until it arrives; what sets the robot in motion is not after half a
-/// second: an operator who was told "no answer" must not see it move later.
+/// second: an operator who has read "no answer" must not see it move later.
 class ModeClient {
  public:
   /// Throws InputError.

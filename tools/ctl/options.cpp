@@ -15,7 +15,7 @@
 namespace sandrunner::ctl {
 namespace {
 
-// What the robot would refuse is refused here, where somebody reads the reason.
+// What the robot would refuse is refused here, where the operator reads the reason.
 void check_speed(const char* name, double value, double limit, const char* unit) {
   if (!std::isfinite(value) || std::abs(value) > limit) {
     throw InputError(

@@ -20,7 +20,7 @@ class TaskLoop {
         task_(like.config(), like.robot(), {envs_, block_envs_}, seed),
         rollout_({.envs = envs_, .steps = 1, .privileged = train::Task::privileged_size()}, 1) {}
 
-  /// Seconds of so many steps, with these actions in each.
+  /// Seconds of this many steps, with these actions in each.
   double run(const py::object& actions, int steps) {
     const auto array = checked_array<float>("actions", actions, {envs_, kNumJoints});
     const float* const from = array.data();

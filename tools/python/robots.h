@@ -29,7 +29,7 @@ class Robots {
   /// As after the construction.
   void stand(const std::vector<int>& robots);
 
-  /// Advances all robots by so many steps with the drives as they are in `drives`, and fills the
+  /// Advances all robots by this many steps with the drives as they are in `drives`, and fills the
   /// other arrays. Throws InputError for a drive that is not finite.
   void advance(int ticks);
 

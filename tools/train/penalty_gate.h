@@ -25,7 +25,7 @@ class PenaltyGate {
 
   /// The latest battery's result, which holds until the next.
   void judge(const BatteryFigures& figures);
-  /// Moves on to so many transitions since the start of the training.
+  /// Moves on to this many transitions since the start of the training.
   void advance(double transitions);
 
   /// 0 to 1: how much of what comes late in a training is on.

@@ -169,7 +169,7 @@ void draw_curve(const std::vector<ProgressRow>& rows, const std::vector<Series>&
   plot::draw(figure, path);
 }
 
-// Means of every so many values, as a list of JSON.
+// Means of every N values, as a list of JSON.
 std::string json_list(const std::vector<double>& values, std::size_t every) {
   std::string text;
   for (std::size_t i = 0; i < values.size(); i += every) {

@@ -52,7 +52,7 @@ class Training {
   /// scales are not taken over, those of the configuration hold; the critic starts at random.
   void go_on_from(PolicyFile policy);
 
-  /// Windows until the transitions are done or somebody interrupts; writes the files now and then
+  /// Windows until the transitions are done or a signal interrupts; writes the files now and then
   /// and at the end. A training that was complete stays as it is.
   void run(const std::atomic<bool>& interrupted);
 

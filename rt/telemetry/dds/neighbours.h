@@ -12,7 +12,7 @@ namespace sandrunner {
 struct Neighbours {
   /// Other robots that would obey the same requests: "host robot7, process 4711".
   std::vector<std::string> robots;
-  /// Types under which somebody publishes rt/cmd_vel and which the robot does not read.
+  /// Types under which others publish rt/cmd_vel and which the robot does not read.
   std::vector<std::string> other_commands;
 };
 
@@ -26,7 +26,7 @@ class NeighbourWatch {
   NeighbourWatch(const NeighbourWatch&) = delete;
   NeighbourWatch& operator=(const NeighbourWatch&) = delete;
 
-  /// Those that are there now. Somebody who was killed counts for another ten seconds.
+  /// Those that are there now. One that was killed counts for another ten seconds.
   Neighbours look() const;
 
  private:

@@ -20,7 +20,7 @@ constexpr int kServiceDepth = 10;  // rmw_qos_profile_services_default
 constexpr auto kFindReader = std::chrono::milliseconds(100);
 constexpr auto kLookEvery = std::chrono::milliseconds(1);
 
-// Whether somebody of this participant reads what `writer` writes.
+// Whether a reader of this participant reads what `writer` writes.
 bool is_read_by(dds_entity_t writer, const dds_guid_t& participant) {
   std::array<dds_instance_handle_t, 64> readers{};
   const int n = dds_get_matched_subscriptions(writer, readers.data(), readers.size());

@@ -77,7 +77,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
   channels_.odometry = ros(odometry_topic());
   channels_.transforms = ros(transforms_topic());
   channels_.diagnostics = ros(diagnostics_topic());
-  // What ROS 2 gives to whoever comes later; here it comes first.
+  // What ROS 2 gives to readers that come later; here it comes first.
   const std::uint64_t begin_ns = time_ns(info.first_tick);
   const auto once = [&](const RosTopic& topic, const CdrWriter& content) {
     file_.write_message({.channel_id = ros(topic, kLatched),

@@ -56,7 +56,7 @@ class RecordingWriter {
   /// The state before the next tick (replay_state_bytes()), from which a replay can go on if what
   /// is before it in the file was lost.
   void write_state(std::uint64_t next_tick, const std::string& state);
-  /// What somebody did before `tick` to the robot or its ground.
+  /// What an operator did before `tick` to the robot or its ground.
   void write_event(std::uint64_t tick, const std::string& kind, const std::string& text);
   /// Finishes the file. Throws InputError.
   void close() { file_.close(); }

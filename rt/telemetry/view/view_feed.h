@@ -41,7 +41,7 @@ class ViewFeed final : public TickSink, public RowSink {
     std::size_t footprints = 4096;
     std::size_t tiles = 1024;
   };
-  /// A page without a gap of its own keeps so many frames: those of a second.
+  /// A page without a gap of its own keeps this many frames: those of a second.
   static constexpr std::uint64_t kMostBehind = 100;
 
   ViewFeed(RunScene scene, const Limits& limits);

@@ -24,7 +24,7 @@ std::span<const RowField> page_fields();
 /// What a page receives once, before any frame, as JSON: the robot (its URDF with shapes, which
 /// also has its limits), names, ground, layout of frames and footprints, names of modes, faults and
 /// requests.
-/// `note`: a line for whoever looks at the page; may be empty. All
+/// `note`: a line for readers of the page; may be empty. All
 /// characters that HTML could take for its own are escaped.
 std::string view_hello(const RunScene& scene, const std::string& note);
 

@@ -22,7 +22,7 @@ class ViewPace {
   /// `rate`: times the robot's own speed.
   void set_rate(double rate);
   void pause(bool on);
-  /// So many ticks more, then it pauses.
+  /// This many ticks more, then it pauses.
   void step(int ticks);
 
   struct Status {

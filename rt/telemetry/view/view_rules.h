@@ -40,7 +40,7 @@ struct ViewRequest {
 /// The answer to a request.
 struct ViewVerdict {
   int status = 0;                ///< of HTTP; 101: a page's live connection
-  std::string_view reason = {};  ///< for whoever was refused
+  std::string_view reason = {};  ///< for the client that was refused
   std::string_view file = {};    ///< status 200: embedded file to send
   std::string_view type = {};    ///< of its content
 };

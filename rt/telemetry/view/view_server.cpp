@@ -47,12 +47,12 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 
 class Page;
 
-// A connection that somebody else may need the place of: a request that is not answered, or a page
+// A connection that another client may need the place of: a request that is not answered, or a page
 // that has not said hello.
 class Guest {
  public:
   virtual ~Guest() = default;
-  // Gives its place to somebody else.
+  // Gives its place to another client.
   virtual void leave() = 0;
 };
 
@@ -341,7 +341,8 @@ class ViewServer::Implementation {
         refused_.push_back(&acceptor);
         return;
       }
-      // A browser's request is there at once: whoever has kept the server waiting longest goes.
+      // A browser's request is there at once: the client that has kept the server waiting longest
+      // goes.
       if (hub_.sockets >= kViewSockets && !hub_.guests.empty()) hub_.guests.front()->leave();
       if (hub_.sockets < kViewSockets) {
         Error ignored;

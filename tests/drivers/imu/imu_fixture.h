@@ -35,7 +35,7 @@ class ImuTest : public testing::Test {
 
   explicit ImuTest(ImuProtocol protocol) : protocol_(protocol), device_(new_device()) {}
 
-  /// What the reader is told to do, by the name under which the line is found.
+  /// What the reader is commanded to do, by the name under which the line is found.
   ImuConfig config() const {
     ImuConfig config;
     config.protocol = protocol_;

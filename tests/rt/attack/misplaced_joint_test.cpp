@@ -14,7 +14,7 @@
 namespace sandrunner::attack {
 namespace {
 
-/// Where the leg is let go.
+/// Where the leg is released.
 enum class Release {
   kFolded,  ///< in the lying pose, after the joint has passed the place where it reads that pose
   kThere,   ///< in that place: the drives' values cannot tell it from the lying pose

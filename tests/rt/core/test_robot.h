@@ -9,7 +9,7 @@ namespace sandrunner {
 inline constexpr JointArray<double> kLyingPosture_rad = {0.3, 1.5, -2.3, -0.3, 1.5, -2.3,
                                                          0.3, 1.5, -2.3, -0.3, 1.5, -2.3};
 
-/// What the controller is told of a robot of round numbers; everything else at its default.
+/// What the controller knows of a robot of round numbers; everything else at its default.
 inline ControllerConfig test_robot() {
   ControllerConfig c;
   c.walk.kp_nmprad = 50.0;

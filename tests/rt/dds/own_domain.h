@@ -40,7 +40,7 @@ inline DdsNetwork own_network() {
   return network;
 }
 
-/// The ports of a domain's first `count` participants, taken: as if there were so many already.
+/// The ports of a domain's first `count` participants, taken: as if there were that number already.
 class TakenPorts {
  public:
   TakenPorts(int domain, int count) {

@@ -306,7 +306,7 @@ TEST_F(InterruptTest, FullDiskLeavesNoHalfFileAndNoneOfAnEarlierRun) {
     EXPECT_EQ(name.find(".part"), std::string::npos) << name;
     EXPECT_NE(name, "run.csv");
   }
-  // What became of the robot is told all the same.
+  // What became of the robot is reported all the same.
   EXPECT_NE(ended.out.find("interrupted, ended in damping"), std::string::npos) << ended.out;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A robot's hardware file on the command line: what cannot work is one line and exit code 2, before
-// anything is opened; what can be told without the robot is told.
+// anything is opened; what can be judged without the robot is judged.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -169,7 +169,7 @@ struct Story {
 /// Hashes of everything of each robot after every period, by its number.
 using Hashes = std::vector<std::uint64_t>;
 
-/// Robot `order[i]` at place i, the packs shared out to the threads in turn.
+/// Robot `order[i]` at place i, the packs dealt to the threads one after the other.
 Hashes run(const std::vector<int>& order, BatchWidth width, int threads = 1) {
   flush_denormals_to_zero();
   Batch batch(static_cast<int>(order.size()), foot(), {}, width);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What RViz and its like are told of a robot.
+// What RViz and its like read about a robot.
 #include "sim/robot/ros_description.h"
 
 #include <gtest/gtest.h>

@@ -63,8 +63,8 @@ TEST(StandingTest, SpringGroundYieldsByItsStiffness) {
 }
 
 TEST(StandingTest, DrySandCarriesTheWeight) {
-  // Let go at the surface, the robot falls into the sand: a mass on a curve F(z) that gives nothing
-  // back comes to rest where int F dz = m g z, 77 mm, twice the static depth for the nearly
+  // Released at the surface, the robot falls into the sand: a mass on a curve F(z) that gives
+  // nothing back comes to rest where int F dz = m g z, 77 mm, twice the static depth for the nearly
   // straight law at (1, 0.2) MN/m^3.
   const GroundParameters sand;
   Bench bench(sand);

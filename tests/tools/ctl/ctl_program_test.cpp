@@ -70,7 +70,7 @@ TEST(CtlProgramTest, ARobotThatDoesNotAnswerIsWaitedForTwoSeconds) {
   const dds_entity_t replies = us.writer("sandrunner/mode_reply", sandrunner_ModeReply_desc, 1);
   const auto start = std::chrono::steady_clock::now();
   Program program({"mode", "damp"}, config);
-  // An answer to somebody else's request.
+  // An answer to another operator's request.
   sandrunner_ModeReply reply{};
   ASSERT_TRUE(wait_until([&] {
     return take<sandrunner_ModeRequest>(

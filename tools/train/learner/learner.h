@@ -34,14 +34,15 @@ struct LearnerConfig {
   double gamma = 0.99;
   double lambda = 0.95;
   double max_gradient_norm = 1.0;
-  double kl_target = 0.02;    ///< of a minibatch, from the policy that acted
-  int average_updates = 200;  ///< over about so many updates the weights of averaged() are averaged
+  double kl_target = 0.02;  ///< of a minibatch, from the policy that acted
+  int average_updates =
+      200;  ///< over about this many updates the weights of averaged() are averaged
   double learning_rate_start = 5e-4;
   double learning_rate_min = 2e-5;
   double learning_rate_max = 2e-3;
   double action_std_start = 0.6;
   double action_std_min = 0.2;
-  /// Over about so many steps the answers are compared with those of the mirror: what they differ
+  /// Over about this many steps the answers are compared with those of the mirror: what they differ
   /// by for a shorter time, such as a first step, is not pulled together.
   int symmetry_steps = 1;
 };

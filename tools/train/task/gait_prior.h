@@ -14,7 +14,7 @@ inline bool told_to_move(const StepOutcome& s) {
   return std::fabs(s.command[0]) + std::fabs(s.command[1]) + std::fabs(s.command[2]) >= 0.1f;
 }
 
-/// Diagonal feet loaded together and neighbours in turn: 1 in a trot, 0 in a hop or pace,
+/// Diagonal feet loaded together and neighbours alternately: 1 in a trot, 0 in a hop or pace,
 /// -1 in a bound; 0 if told to stand.
 inline double diagonality(const StepOutcome& s) {
   if (!told_to_move(s)) return 0.0;

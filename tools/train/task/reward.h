@@ -63,7 +63,7 @@ struct RewardSettings {
   }
 };
 
-/// Factors after so many transitions, with this share of the late penalties.
+/// Factors after this many transitions, with this share of the late penalties.
 inline RewardSchedule schedule_at(const RewardSettings& r, double transitions, double late) {
   const auto passed = [&](double start, double end) {  // 0 to exactly 1
     return std::clamp((transitions - start) / std::max(end - start, 1.0), 0.0, 1.0);

@@ -29,8 +29,8 @@ struct Curriculum {
   double ground = 0.0;
 };
 
-/// What the robots are told to do, now: speeds either way but for forward and backward. Most are
-/// told so from one moment to the next, whatever they were told before (`ramp_share`).
+/// What the robots are commanded now: speeds either way but for forward and backward. Most are
+/// commanded from one moment to the next, whatever was commanded before (`ramp_share`).
 struct CommandRange {
   double forward_mps = 0, backward_mps = 0, lateral_mps = 0, yaw_radps = 0;
 };

@@ -23,7 +23,7 @@ struct WindowStats {
   double power_w = 0.0;
   double stride_hz = 0.0;  ///< lift-offs of a foot per second
   /// How feet go together under a command to go, side by side ones and diagonal ones: 1
-  /// together, 0 like independent feet, below 0 in turn. Share of the steps in which both are
+  /// together, 0 like independent feet, below 0 alternating. Share of the steps in which both are
   /// loaded or both not, a, as (a - b)/(1 - b), b that of independent feet.
   double abreast = 0.0, diagonal = 0.0;
 };

@@ -27,7 +27,7 @@ export class Heights {
     this.surface = surface;
     this.lasting = new Float32Array(kSide * kSide);  // less what only the feet of this very moment press
     this.texels = new Uint16Array(kSide * kSide);    // what is shown, in halves
-    this.changed = [];  // rectangles of world cells [x0, y0, x1, y1) of `texels`, since somebody last emptied it
+    this.changed = [];  // rectangles of world cells [x0, y0, x1, y1) of `texels`, since it was last emptied
     this.pressed = 0;   // footprints in it
     this.feet = [];     // rectangles that feet press at this moment
     this.x0 = this.y0 = NaN;

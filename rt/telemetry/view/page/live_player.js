@@ -31,7 +31,7 @@ export class LivePlayer {
     this.t = Math.min(this.end, Math.max(this.begin, t));
   }
 
-  /** @param {number} seconds that have passed for whoever looks */
+  /** @param {number} seconds that have passed for the viewer */
   advance(seconds) {
     if (!this.playing) return;
     const newest = Math.max(this.begin, this.end - kBehind_s);

@@ -62,7 +62,7 @@ function savePicture(view, t) {
   });
 }
 
-// What only a page has that somebody serves.
+// What only a page with a server has.
 function makeLive({ live, frames, hello }, player, view, changed) {
   const showTime = makeRobotTime(live), drive = new Drive(live, hello.requests), lost = element('lost');
   const controls = new SceneControls(live, frames, view, (kind) => {

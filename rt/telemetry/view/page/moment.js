@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is drawn at one time: between two frames, everything that moves is interpolated.
 
-const kLongestGap_s = 0.1;  // over a longer one, unless all are so long, nothing is known of the motion between
+const kLongestGap_s = 0.1;  // over a longer one, unless all are as long, nothing is known of the motion between
 
 /** Whether a run tells what really is: simulated robots do. */
 export const tellsTruth = (frames) => frames.count > 0 && frames.has(0, frames.flags.has_truth);

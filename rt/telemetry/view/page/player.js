@@ -21,7 +21,7 @@ export class Player {
     this.t = Math.min(this.end, Math.max(this.begin, t));
   }
 
-  /** @param {number} seconds that have passed for whoever looks */
+  /** @param {number} seconds that have passed for the viewer */
   advance(seconds) {
     if (!this.playing) return;
     this.t += this.rate * seconds;

@@ -8,7 +8,7 @@ import { Overlays } from './overlays.js';
 
 const kHorizon = new THREE.Color(0xdbe6ee).convertSRGBToLinear(), kZenith = new THREE.Color(0x8fb4d6).convertSRGBToLinear();
 const kFirstView = new THREE.Vector3(1.25, -1.75, 0.62), kLookAt_m = 0.27;
-// What is given up in turn while the machine draws fewer than 20 pictures a second.
+// What is given up, one after the other, while the machine draws fewer than 20 pictures a second.
 const kQualities = [{ pixels: 2, shadow: 2048 }, { pixels: 1, shadow: 1024 }, { pixels: 0.75, coarse: true }, { pixels: 0.5, coarse: true }];
 const kSlow_ms = 50, kPatience = 12;  // pictures in a row
 

@@ -15,7 +15,7 @@ const kSliders = [
 ];
 
 export class SceneControls {
-  /** @param {Function} onKind is told 'granular', 'rigid' or 'linear' when the ground has become another one */
+  /** @param {Function} onKind receives 'granular', 'rigid' or 'linear' when the ground has become another one */
   constructor(live, frames, view, onKind) {
     Object.assign(this, { live, frames, view, onKind });
     this.sliders = kSliders.map((slider) => this.#makeSlider(slider));

@@ -222,7 +222,7 @@ class Attacker {
               &message);
   }
 
-  /// Somebody who comes, says one thing and goes.
+  /// A participant that comes, sends one message and goes.
   void stranger() {
     Stranger one(domain_);
     geometry_msgs_msg_dds__TwistStamped_ stamped{};

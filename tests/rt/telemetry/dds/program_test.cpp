@@ -109,7 +109,7 @@ TEST_F(DdsProgramTest, StateHashIsTheSameWithAndWithoutTelemetryAndRecording) {
   ChildProcess watcher(words_of(peer(config_) + "watch 60"));
   EXPECT_EQ(hash(program(config_), ""), without);
   EXPECT_EQ(hash(program(config_), " --record " + folder_.path("recording")), without);
-  ASSERT_TRUE(watcher.wait_for("matched"));  // somebody listened
+  ASSERT_TRUE(watcher.wait_for("matched"));  // a reader listened
 }
 
 // An operator has the robot stand up, walk and stand again, or a fault ends the walk.

@@ -56,7 +56,7 @@ struct ViewControlTest : testing::Test, TickSink, BetweenTicks {
     return control->act(next, sinks);
   }
 
-  /// Walks for so long; `before` may say something before a tick.
+  /// Walks for this long; `before` may say something before a tick.
   RunResult walk(double seconds, const std::function<void(std::uint64_t)>& before,
                  OperatorInput* live = nullptr) {
     before_tick = before;

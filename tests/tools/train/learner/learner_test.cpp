@@ -29,7 +29,7 @@ LearnerConfig small_config() {
 }
 const RolloutShape kSmallShape{64, 8, kToyPrivileged};
 
-/// A training on the toy task, whose symmetry it is told.
+/// A training on the toy task, whose symmetry it knows.
 struct Training {
   Training(int threads, std::uint64_t seed, const LearnerConfig& config = small_config(),
            const Kernels<float>& kernels = best_kernels<float>())

@@ -51,7 +51,7 @@ class CheckpointWatch {
   CheckpointWatch(const CheckpointWatch&) = delete;
   CheckpointWatch& operator=(const CheckpointWatch&) = delete;
 
-  /// False if there have not been so many more after a minute.
+  /// False if there have not been this many more after a minute.
   bool wait_for(int checkpoints) {
     pollfd ready{notify_, POLLIN, 0};
     while (checkpoints > 0 && ::poll(&ready, 1, 60'000) == 1) {

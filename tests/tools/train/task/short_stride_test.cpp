@@ -17,8 +17,8 @@ constexpr int kMarching = 16, kMarch_steps = 120, kStride_steps = 20;
 constexpr int kTrot = 3 * kJointsPerLeg;  // the mode's first output
 constexpr float kLift = 0.8f;             // network units
 
-/// Penalty on short strides in a step, the mean of robots that lift diagonal pairs of feet in turn
-/// on hard ground every 0.2 s.
+/// Penalty on short strides in a step, the mean of robots that lift diagonal pairs of feet
+/// alternately on hard ground every 0.2 s.
 double penalty_on(double shortest_s) {
   flush_denormals_to_zero();
   const sim::Robot robot = sim::load_raibo();
