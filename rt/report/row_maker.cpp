@@ -88,9 +88,10 @@ float RowMaker::cost_of_transport(const Effort& newest) {
     mean.power.mechanical_w += e.power.mechanical_w / kPolicyHz;
     mean.power.torque_squared_nm2 += e.power.torque_squared_nm2 / kPolicyHz;
     mean.vx_mps += e.vx_mps / kPolicyHz;
+    mean.vy_mps += e.vy_mps / kPolicyHz;
   }
   const auto cost = sandrunner::cost_of_transport(
-      mean.power.mechanical_w, mean.power.torque_squared_nm2, std::abs(mean.vx_mps),
+      mean.power.mechanical_w, mean.power.torque_squared_nm2, std::hypot(mean.vx_mps, mean.vy_mps),
       {.mass_kg = scene_.mass_kg, .motor_constant = scene_.motor_constant[0]});
   return cost ? static_cast<float>(*cost) : kUnknown;
 }
@@ -119,7 +120,8 @@ RunRow RowMaker::make_row(const TickRecord& tick) {
   row.estimate.fill(kUnknown);
   row.power_w = static_cast<float>(power.mechanical_w);
   row.torque_squared_nm2 = static_cast<float>(power.torque_squared_nm2);
-  row.cost_of_transport = cost_of_transport({power, share * sums.motion[0]});
+  row.cost_of_transport =
+      cost_of_transport({power, share * sums.motion[0], share * sums.motion[1]});
   row.late_us = micro(sums.worst.late_ns);
   row.control_us = micro(sums.worst.control_ns);
   row.tick_us = micro(sums.worst_tick_ns);

@@ -47,7 +47,7 @@ class RowMaker {
   /// What the cost of transport is made of: means of one period.
   struct Effort {
     JointPower power;
-    double vx_mps = 0.0;
+    double vx_mps = 0.0, vy_mps = 0.0;
   };
 
   void follow(const TickRecord& tick);

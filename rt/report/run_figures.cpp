@@ -98,7 +98,8 @@ RunFigures run_figures(const RunRecord& record) {
   m.mean_velocity_mps = {motion[0], motion[1]};
   m.mean_yaw_rate_radps = motion[2];
   m.cost_of_transport = cost_of_transport(
-      f.mechanical_power_w, f.torque_squared_nm2, std::fabs(m.mean_velocity_mps[0]),
+      f.mechanical_power_w, f.torque_squared_nm2,
+      std::hypot(m.mean_velocity_mps[0], m.mean_velocity_mps[1]),
       {.mass_kg = record.scene.mass_kg, .motor_constant = record.scene.motor_constant[0]});
   m.foot_clearance_iqr_m = foot_clearance_iqr_m(record, steady);
   add_stances(record, steady, m);

@@ -65,6 +65,14 @@ class RobotStepper {
   struct Frame {  // rows in body components
     Vec3<S> t1, t2, n;
   };
+  /// A ball of the base, or of the leg that its first `joints` joints move.
+  struct HardPoint {
+    Vec3<S> r_base{}, r_hip{};  ///< from the base origin and, of a leg, from its hip
+    S radius{};
+    int leg = -1, joints = 0;  ///< -1: of the base
+    bool only_rigid = false;   ///< granular and linear ground do not touch it
+    int slot = 0;              ///< of its impulse in RobotState
+  };
   using Columns = std::array<Vec3<S>, 3>;  // of a leg's Jacobian, body components
   /// Maps an impulse along e (body components) at r_base (from the base origin) to the base and the
   /// joints.
@@ -77,9 +85,8 @@ class RobotStepper {
   void couple_feet(const Terrain<S>& terrain, S dt, StepReport<S>& report) noexcept;
   void add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain, RobotState<S>& x,
                        StepReport<S>& report) noexcept;
-  void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const Vec3<S>& r_base,
-                      const Vec3<S>& r_hip, int leg, int joints, S radius, bool only_rigid,
-                      const Mask<S>& near, int slot, RobotState<S>& x, S& touched) noexcept;
+  void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const HardPoint& point,
+                      const Mask<S>& near, RobotState<S>& x, S& touched) noexcept;
   void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
   Frame contact_frame(const Ground<S>& ground, const Surface<S>& surface) const noexcept;
 

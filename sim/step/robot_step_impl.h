@@ -156,12 +156,12 @@ void RobotStepper<S>::couple_feet(const Terrain<S>& terrain, S dt, StepReport<S>
 
 template <typename S>
 void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain,
-                                     const Vec3<S>& r_base, const Vec3<S>& r_hip, int leg,
-                                     int joints, S radius, bool only_rigid, const Mask<S>& near,
-                                     int slot, RobotState<S>& x, S& touched) noexcept {
+                                     const HardPoint& point, const Mask<S>& near, RobotState<S>& x,
+                                     S& touched) noexcept {
+  const auto& [r_base, r_hip, radius, leg, joints, only_rigid, slot] = point;
   const S zero = S(0.0), one = S(1.0);
   const Vec3<S> place = x.rigid.position + rotation_ * r_base;
-  const auto forget = [&] { x.impulse[slot] = {zero, zero, zero}; };
+  const auto forget = [&x, at = point.slot, zero] { x.impulse[at] = {zero, zero, zero}; };
   // Lanes outside this mask stay outside, whatever rounding says of them further down: one robot
   // alone stops here.
   const Mask<S> close = both(near, place.z - radius < terrain.highest);
@@ -203,14 +203,25 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
     const LegPose<S>& pose = dynamics_.leg(l);
     const Vec3<S> knee_base = hip_to_base(model.legs[l], pose, pose.knee);
     report.knee[l] = x.rigid.position + rotation_ * knee_base;
-    add_hard_point(model, terrain, knee_base, pose.knee, l, 2, model.knee_radius_m, false,
-                   every_lane<S>(), kNumLegs + l, x, report.thigh_contact);
+    const HardPoint knee{.r_base = knee_base,
+                         .r_hip = pose.knee,
+                         .radius = model.knee_radius_m,
+                         .leg = l,
+                         .joints = 2,
+                         .slot = kNumLegs + l};
+    add_hard_point(model, terrain, knee, every_lane<S>(), x, report.thigh_contact);
     // On level ground knee and foot cover the shank; only uneven rigid ground can touch it.
     const Mask<S> uneven = terrain.highest > zero;
     if (any(uneven)) {
       const Vec3<S> middle = S(0.5) * (pose.knee + pose.foot);
-      add_hard_point(model, terrain, hip_to_base(model.legs[l], pose, middle), middle, l, 3,
-                     model.shank_radius_m, true, uneven, 2 * kNumLegs + l, x, shank_contact);
+      const HardPoint shank{.r_base = hip_to_base(model.legs[l], pose, middle),
+                            .r_hip = middle,
+                            .radius = model.shank_radius_m,
+                            .leg = l,
+                            .joints = 3,
+                            .only_rigid = true,
+                            .slot = 2 * kNumLegs + l};
+      add_hard_point(model, terrain, shank, uneven, x, shank_contact);
     }
   }
   const Vec3<S>& half = model.base_box_half_m;
@@ -226,8 +237,8 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
     const Vec3<S> corner =
         model.base_box_centre_m +
         Vec3<S>{(i & 1) ? half.x : -half.x, (i & 2) ? half.y : -half.y, (i & 4) ? half.z : -half.z};
-    add_hard_point(model, terrain, corner, corner, -1, 0, zero, false, low, 3 * kNumLegs + i, x,
-                   report.base_contact);
+    add_hard_point(model, terrain, {.r_base = corner, .radius = zero, .slot = 3 * kNumLegs + i},
+                   low, x, report.base_contact);
   }
 }
 

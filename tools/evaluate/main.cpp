@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <stdexcept>
 
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
@@ -20,15 +18,6 @@
 
 namespace sandrunner::evaluate {
 namespace {
-
-Part make_part(Study& study, const std::string& name) {
-  if (name == "straight") return study.straight();
-  if (name == "grid") return study.grid();
-  if (name == "turn") return study.turn();
-  if (name == "commands") return study.commands();
-  if (name == "robust") return study.robust();
-  throw std::logic_error("no part '" + name + "'");
-}
 
 std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& part,
                                                 const Subject& subject, const std::string& name,
@@ -79,8 +68,8 @@ int run(int argc, char** argv) {
   RunnerSettings settings;
   settings.threads = options->threads;
   settings.torque_speed_line = options->torque_speed_line;
-  for (const std::string& name : options->parts) {
-    PartResults part{make_part(study, name), {}};
+  for (const PartRow& row : options->parts) {
+    PartResults part{(study.*row.make)(), {}};
     for (std::size_t p = 0; p < policies.size(); ++p) {
       part.runs.push_back(run_part(study, part.part, policies[p], results.policies[p], settings));
     }

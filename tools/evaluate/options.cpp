@@ -24,7 +24,8 @@ void check(const char* name, long long value, long long low, long long high) {
 std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const std::vector<std::string> all_parts = o.parts;
+  std::vector<std::string> all_parts, chosen;
+  for (const PartRow& row : kParts) all_parts.emplace_back(row.name);
   long long seed = static_cast<long long>(o.study.seed);
   std::string line = "on";
   CLI::App app{
@@ -50,7 +51,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("N");
   app.add_option("--seed", seed, "seed of starts, noise, pushes and random commands")
       ->type_name("N");
-  app.add_option("--only", o.parts, "some of " + fmt::format("{}", fmt::join(all_parts, ",")))
+  app.add_option("--only", chosen, "some of " + fmt::format("{}", fmt::join(all_parts, ",")))
       ->delimiter(',')
       ->type_name("PART,...")
       ->always_capture_default(false);
@@ -67,17 +68,16 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   check("--grid-runs", o.study.grid_runs, 1, 100000);
   check("--seed", seed, 1, 1'000'000'000);
   o.study.seed = static_cast<std::uint64_t>(seed);
-  for (const std::string& part : o.parts) {
+  for (const std::string& part : chosen) {
     if (std::find(all_parts.begin(), all_parts.end(), part) == all_parts.end()) {
       throw InputError(
           fmt::format("--only: '{}', expected some of {}", part, fmt::join(all_parts, ", ")));
     }
   }
-  std::vector<std::string> chosen;  // in the order of all, each once
-  for (const std::string& part : all_parts) {
-    if (std::find(o.parts.begin(), o.parts.end(), part) != o.parts.end()) chosen.push_back(part);
+  for (const PartRow& row : kParts) {
+    const bool is_chosen = std::find(chosen.begin(), chosen.end(), row.name) != chosen.end();
+    if (chosen.empty() || is_chosen) o.parts.push_back(row);
   }
-  o.parts = chosen;
   if (line != "on" && line != "off") {
     throw InputError(fmt::format("--torque-speed-line: '{}', expected on or off", line));
   }

@@ -13,7 +13,7 @@ struct Options {
   std::string policy_path, against_path, robot = "raibo", out_dir;
   StudySettings study;
   int threads = 1;
-  std::vector<std::string> parts = {"straight", "grid", "turn", "robust", "commands"};
+  std::vector<PartRow> parts;  ///< of kParts, in its order
   bool torque_speed_line = true;
 };
 

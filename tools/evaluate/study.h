@@ -76,4 +76,15 @@ class Study {
   std::vector<sim::RobotState<float>> starts_;
 };
 
+struct PartRow {
+  const char* name;
+  Part (Study::*make)();
+};
+/// All parts, in the order in which they run.
+inline constexpr PartRow kParts[] = {{"straight", &Study::straight},
+                                     {"grid", &Study::grid},
+                                     {"turn", &Study::turn},
+                                     {"robust", &Study::robust},
+                                     {"commands", &Study::commands}};
+
 }  // namespace sandrunner::evaluate

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The figures of one run of one robot. Where rt/report/run_figures.h has the same figure, the
-// definition is the same, except for the cost of transport: of |v_xy| here, of |vx| there. "Steady"
-// is the second half of the run.
+// definition is the same. "Steady" is the second half of the run.
 #pragma once
 
 #include <array>

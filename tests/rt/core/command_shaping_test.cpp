@@ -19,10 +19,6 @@ TEST(CommandShapingTest, YawRateIsFreeAtRest) {
   EXPECT_EQ(shape_yaw_rate(-7.0f, 0.0f, 0.0f, 2.943f), -7.0f);
 }
 
-TEST(CommandShapingTest, LimitIsThreeTenthsOfGravity) {
-  EXPECT_DOUBLE_EQ(kCentripetalLimit_mps2, 2.943);
-}
-
 TEST(CommandShapingTest, SlewArrivesExactlyAndNotSooner) {
   double value = 0.0;
   int steps = 0;
