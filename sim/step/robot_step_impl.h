@@ -158,7 +158,7 @@ template <typename S>
 void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain,
                                      const HardPoint& point, const Mask<S>& near, RobotState<S>& x,
                                      S& touched) noexcept {
-  const auto& [r_base, r_hip, radius, leg, joints, only_rigid, slot] = point;
+  const auto [r_base, r_hip, radius, leg, joints, only_rigid, slot] = point;
   const S zero = S(0.0), one = S(1.0);
   const Vec3<S> place = x.rigid.position + rotation_ * r_base;
   const auto forget = [&x, at = point.slot, zero] { x.impulse[at] = {zero, zero, zero}; };
