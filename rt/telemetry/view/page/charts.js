@@ -29,6 +29,8 @@ export function makeCharts({ hello, frames }, robot, parent) {
   const charts = [
     strip('Forward speed', 'm/s', [requested(0), ...truth(at('motion', 0)),
       { name: 'believed', color: kBelieved, value: at('estimate', 1) }], { least: 0.5, zero: true }),
+    strip('Sideways speed', 'm/s', [requested(1), ...truth(at('motion', 1)),
+      { name: 'believed', color: kBelieved, value: at('estimate', 2) }], { least: 0.5, zero: true }),
     strip('Yaw rate', 'rad/s', [requested(2),
       { name: hasTruth ? 'true' : 'measured', color: kTrue, value: at('motion', 2) }], { least: 0.5, zero: true }),
     strip('Body height', 'm', [...truth(at('truth', 0)),

@@ -135,7 +135,11 @@ function show(run) {
     timeline.draw();
     // Plots are read, not watched: every third picture is enough while the run plays.
     if (!player.playing || drawn % 3 === 0) {
-      for (const chart of charts) if (inSight(chart.canvas)) chart.draw(frames, player.t, kSpan_s);
+      const whole = element('span').value === 'run', until = whole ? player.end : player.t;
+      for (const chart of charts.filter(({ canvas }) => inSight(canvas))) {
+        chart.pointed = whole ? player.t : NaN;
+        chart.draw(frames, until, whole ? Math.max(player.end - player.begin, 0.1) : kSpan_s);
+      }
     }
     ++drawn;
   };

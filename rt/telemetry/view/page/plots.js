@@ -28,6 +28,7 @@ export function marks(low, high, step) {
 
 const digitsOf = (step) => Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 
+const kPointsPerPixel = 8;  // of a line; in fewer, the peaks of a whole run would not show
 const kLeft = 40, kRight = 8, kFont = 'system-ui, sans-serif';
 
 export class Strip {
@@ -46,7 +47,7 @@ export class Strip {
     const { g, width, height } = context2d(this.canvas);
     if (width === 0) return;
     const from = t - span, first = Math.max(0, frames.countUntil(from) - 1), behind = frames.countUntil(t);
-    const every = Math.max(1, Math.floor((behind - first) / (width - kLeft - kRight)));
+    const every = Math.max(1, Math.floor((behind - first) / (kPointsPerPixel * (width - kLeft - kRight))));
     const series = this.lines.map(({ value }) => {
       const points = [];
       for (let i = first; i < behind; i += every) points.push(value(i));

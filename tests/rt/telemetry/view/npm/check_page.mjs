@@ -79,6 +79,21 @@ async function checkDarkness(page, t) {
   await page.evaluate(() => { window.sandrunner.view.overlays.group.visible = true; });
 }
 
+/** With "whole run", a plot has lines behind the shown time too. */
+async function checkWholeRun(page) {
+  const inked = () => page.evaluate(() => {
+    window.sandrunner.seek(0.1);
+    const canvas = document.querySelector("#plots canvas"), { width, height } = canvas;
+    const { data } = canvas.getContext("2d").getImageData(width / 2, height / 4, width / 2, height * 0.75);
+    return data.reduce((count, red, i) => count + (i % 4 === 0 && data[i + 3] > 0 && Math.abs(red - data[i + 2]) > 60), 0);
+  });
+  const before = await inked();
+  await page.select("#span", "run");
+  const after = await inked();
+  assert.ok(before < 60 && after > 200, `${before} pixels of a line, then ${after}`);
+  await page.select("#span", "last 6 s");
+}
+
 /** Numbers that are none, as a broken sensor gives them, neither stop the page nor take the robot away. */
 async function checkMissingNumbers(page, t) {
   const before = await page.evaluate((time) => {
@@ -105,6 +120,7 @@ await openFile(browserPath, `${folder}/run.html`, kSoftware, { width: 900, heigh
   within(share, "dark", 0.004, 0.15);
   within(share, "orange", 0.0005, 0.05);
   await checkDarkness(page, t);
+  await checkWholeRun(page);
   await checkMissingNumbers(page, t);
   const ready = await page.evaluate("sandrunner.ready_ms");
   console.log(`WebGL: feet within ${(1e6 * worst).toFixed(2)} um at 50 times, ready after ${ready.toFixed(0)} ms, shares ${JSON.stringify(share)}`);
