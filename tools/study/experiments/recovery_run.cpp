@@ -9,7 +9,6 @@
 #include <variant>
 
 #include "rt/core/floating_point.h"
-#include "rt/report/side_view.h"
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
 #include "rt/run/run_script.h"
@@ -21,7 +20,7 @@ namespace sandrunner::study {
 namespace {
 
 constexpr double kStripFrom_m = 5.0, kStripTo_m = 5.3;
-constexpr double kTimes_s[] = {0.0, 0.27, 0.37, 0.62, 0.78};  // the paper's
+constexpr double kLast_s = 0.78;  // of the paper's pictures, after the touchdown
 constexpr int kStarts = 16;
 constexpr std::size_t kMostBytes = 3'000'000;
 
@@ -57,12 +56,6 @@ bool on_strip(const RunRow& row, int leg) {
   return stance[2] > 0.0f && stance[0] >= kStripFrom_m && stance[0] < kStripTo_m;
 }
 
-const RunRow& row_at(const RunRecord& record, double t_s) {
-  const auto found = std::find_if(record.rows.begin(), record.rows.end(),
-                                  [&](const RunRow& row) { return row.t_s >= t_s - 1e-9; });
-  return found == record.rows.end() ? record.rows.back() : *found;
-}
-
 }  // namespace
 
 std::optional<RecoveryRun> find_recovery_run(const Lab& lab, const Model& model) {
@@ -74,32 +67,10 @@ std::optional<RecoveryRun> find_recovery_run(const Lab& lab, const Model& model)
       if (run.met_s < 0.0 && on_strip(row, 0)) run.met_s = row.t_s;
       right = right || on_strip(row, 1);
     }
-    const bool long_enough =
-        run.met_s >= 0.0 && run.record.rows.back().t_s >= run.met_s + kTimes_s[4];
+    const bool long_enough = run.met_s >= 0.0 && run.record.rows.back().t_s >= run.met_s + kLast_s;
     if (long_enough && !right) return run;
   }
   return std::nullopt;
-}
-
-void draw_recovery(const RecoveryRun& run, const std::string& png_path) {
-  constexpr int kColumns = 3;
-  constexpr double kGap_px = 20.0, kHead_px = 30.0;
-  constexpr double kAcross_px = kSideViewWidth_px + kGap_px;
-  constexpr double kDown_px = kSideViewHeight_px + kHead_px + 6.0;
-  const plot::Canvas canvas(static_cast<int>(kColumns * kAcross_px + kGap_px),
-                            static_cast<int>(2.0 * kDown_px));
-  const double from_m = row_at(run.record, run.met_s).position_m[0];
-  int place = 0;
-  for (const double t : kTimes_s) {
-    const int column = place % kColumns, line = place / kColumns;
-    const double left = kGap_px + column * kAcross_px;
-    const double top = line * kDown_px + kHead_px;
-    const RunRow& row = row_at(run.record, run.met_s + t);
-    canvas.text(left, top - 9.0, fmt::format("{:.2f} s", t), 15.0, 0.0, plot::kInk, true);
-    draw_side_view(canvas, run.record, row, row.position_m[0] - from_m, left, top);
-    ++place;
-  }
-  canvas.save_png(png_path);
 }
 
 Json recovery_curves(const RecoveryRun& run) {

@@ -23,8 +23,6 @@ struct RecoveryRun {
 /// `model`: a policy file.
 std::optional<RecoveryRun> find_recovery_run(const Lab& lab, const Model& model);
 
-/// The robot from its side at the paper's times after the touchdown, to a PNG.
-void draw_recovery(const RecoveryRun& run, const std::string& png_path);
 /// Speed, tilt and feet around it: lists over "t_s" from the touchdown, with their units.
 Json recovery_curves(const RecoveryRun& run);
 /// The run in 3D, as a page of its own.

@@ -12,6 +12,7 @@
 
 #include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
+#include "rt/report/run_csv.h"
 #include "tools/study/experiments/anchors.h"
 #include "tools/study/experiments/experiments.h"
 #include "tools/study/experiments/recovery_run.h"
@@ -109,9 +110,9 @@ Json recovery_run_json(const Options& options, const std::vector<Model>& models,
   if (!run) return nullptr;
   Json json = recovery_curves(*run);
   json["start"] = run->seed;
+  json["touchdown_s"] = run->met_s;
   json["seed"] = ours->seed;
-  prepare_folder(options.out + "/figures", "--out");
-  draw_recovery(*run, options.out + "/figures/fig2a.png");
+  write_csv(run->record, options.out + "/recovery.csv");
   write_file(options.out + "/recovery.html", recovery_page(std::move(*run)));
   return json;
 }

@@ -10,7 +10,7 @@
 
 namespace sandrunner::study {
 
-/// Writes results.json, and of E2 the run of Fig. 2 A: figures/fig2a.png and recovery.html. Throws
+/// Writes results.json, and of E2 the run of Fig. 2 A: recovery.csv and recovery.html. Throws
 /// InputError if a file cannot be written. `contact`: read_contact_bench, or null.
 ///   version, runs, grid_runs, grid_cells
 ///   models    by name: controller, seed, hash of the file, provenance, length of the training in
@@ -18,8 +18,9 @@ namespace sandrunner::study {
 ///   takes_part    the controllers of each experiment
 ///   experiments   [experiment][controller][seed]: groups of runs (runs.h)
 ///   contact       null without --contact
-///   recovery_run  null without one: number of its start, seed of the model, curves
-///   ground        the contact law against published experiments: anchors, and drops of a ball
+///   recovery_run  null without one: number of its start, seed of the model, time of the touchdown,
+///   curves ground        the contact law against published experiments: anchors, and drops of a
+///   ball
 void write_results(const Options& options, const std::vector<Model>& models,
                    const Measurements& measurements, const Json& contact);
 

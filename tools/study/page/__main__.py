@@ -14,6 +14,8 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 # Without a home folder it warns of its cache.
 logging.getLogger("matplotlib").setLevel(logging.ERROR)
 
+sys.path.append(str(Path(__file__).resolve().parents[2]))  # tools/pictures.py
+
 
 def make_page(out):
     import sklearn  # noqa: F401: not only once a picture needs it

@@ -3,9 +3,12 @@
 import chapters
 import figures
 import figures_simulated
+import pictures
 import tables
 from controllers import CONTROLLERS
 from markup import escaped, picture
+
+FIG_2A_S = (0.0, 0.27, 0.37, 0.62, 0.78)  # the paper's, from the touchdown
 
 
 class Page:
@@ -59,7 +62,11 @@ def add_recovery(page):
     if run is None:
         page.add(chapters.NO_RECOVERY)
         return
-    page.add(picture(page.folder / "fig2a.png", "Recovery from loose sand, seen from the right"))
+    title, csv = "Recovery from loose sand, seen from the right", page.folder.parent / "recovery.csv"
+    recorded, touchdown_s = pictures.Table(csv), run["touchdown_s"]
+    rows = [abs(recorded["t_s"] - touchdown_s - t).argmin() for t in FIG_2A_S]
+    pictures.side_views(recorded, rows, 3, title, page.folder / "fig2a.png", touchdown_s)
+    page.add(picture(page.folder / "fig2a.png", title))
     page.add(f'<p class="note">Start {run["start"]} of seed {run["seed"]}: the left front foot touches down on loose '
              "sand at 0 s (Fig. 2 A, B; the paper's times). The whole run in 3D: <a href=\"recovery.html\">"
              "recovery.html</a>.</p>\n")
