@@ -36,6 +36,13 @@ std::string results_json(const Results& results, const std::string& robot, const
     Json policy;
     policy["name"] = results.policies[p];
     for (const PartResults& part : results.parts) {
+      if (part.part.name == "commands") {
+        const CommandEnvelope& e = results.envelopes[p];
+        policy["envelope"] = {{"forward_mps", e.forward_mps},
+                              {"backward_mps", e.backward_mps},
+                              {"lateral_mps", e.lateral_mps},
+                              {"yaw_radps", e.yaw_radps}};
+      }
       Json groups = Json::array();
       for (std::size_t g = 0; g < part.part.groups.size(); ++g) {
         const Group& group = part.part.groups[g];

@@ -9,7 +9,8 @@
 
 namespace sandrunner::evaluate {
 
-/// Everything: settings, the robot's name, and every figure of every group with its interval.
+/// Everything: settings, the robot's name, and every figure of every group with its interval;
+/// with the part "commands", the policies' envelopes.
 std::string results_json(const Results& results, const std::string& robot, const Options& options);
 
 /// One row a group and policy, columns `key`, `key_low`, `key_high`, `key_n`; empty where there is

@@ -9,10 +9,8 @@
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
-#include "tools/evaluate/commands_picture.h"
 #include "tools/evaluate/files.h"
 #include "tools/evaluate/options.h"
-#include "tools/evaluate/pictures.h"
 #include "tools/evaluate/runner.h"
 #include "tools/evaluate/tables.h"
 
@@ -57,12 +55,11 @@ int run(int argc, char** argv) {
   if (out) prepare_folder(options->out_dir, "--out");
 
   Results results;
-  std::vector<CommandEnvelope> envelopes;
   for (const Subject& policy : policies) {
     const PolicySpec& spec = spec_of(policy);
     const bool taken = !results.policies.empty() && results.policies[0] == spec.name;
     results.policies.push_back(spec.name + (taken ? " (2)" : ""));
-    envelopes.push_back(spec.envelope);
+    results.envelopes.push_back(spec.envelope);
   }
   Study study(options->study, robot);
   RunnerSettings settings;
@@ -81,10 +78,6 @@ int run(int argc, char** argv) {
   if (out) {
     for (const PartResults& part : results.parts) {
       write_file(dir + part.part.name + ".csv", part_csv(part, results.policies));
-      draw_part(part, results.policies, options->out_dir);
-      if (part.part.name == "commands") {
-        draw_commands(part, results.policies, envelopes, dir + "commands.png");
-      }
     }
     write_file(dir + "evaluation.json", results_json(results, robot.description.name, *options));
     fmt::print("wrote evaluation.json and the parts' files into {}\n", options->out_dir);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rt/core/command_shaping.h"
 #include "tools/evaluate/statistics.h"
 #include "tools/evaluate/study.h"
 #include "tools/evaluate/trial_figures.h"
@@ -39,7 +40,8 @@ struct PartResults {
 
 /// All that was evaluated.
 struct Results {
-  std::vector<std::string> policies;  ///< names, made different from each other
+  std::vector<std::string> policies;       ///< names, made different from each other
+  std::vector<CommandEnvelope> envelopes;  ///< of the policies
   std::vector<PartResults> parts;
 };
 

@@ -41,8 +41,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--robot", o.robot,
                  "raibo, go2, or the robot file of another one (sim/robot/README.md)")
       ->type_name("NAME|FILE");
-  app.add_option("--out", o.out_dir, "folder for evaluation.json, CSV files and pictures")
-      ->type_name("DIR");
+  app.add_option("--out", o.out_dir, "folder for evaluation.json and CSV files")->type_name("DIR");
   app.add_option("--threads", o.threads, "worker threads; the results do not depend on them")
       ->type_name("N");
   app.add_option("--runs", o.study.runs, "runs of each ground, command and scenario")

@@ -177,7 +177,7 @@ std::string grid_tables(const PartResults& results, const std::vector<std::strin
 
 /// Commands that all robots survived, of all, by plane and ground.
 std::string command_table(const PartResults& results, const std::vector<std::string>& policies) {
-  std::string text = fmt::format("Commands survived by all of {} robots, of {} (commands.png)\n",
+  std::string text = fmt::format("Commands survived by all of {} robots, of {}\n",
                                  results.runs.at(0).at(0).size(), kCommandColumns * kCommandRows);
   Table table(3);
   table.add({"plane", "ground", "policy", "survived"});

@@ -76,8 +76,8 @@ std::optional<Arguments> parse(int argc, char** argv) {
                "sandrunner-train"};
   app.add_option(
          "--out", a.options.out,
-         "folder for checkpoint.bin, policy.safetensors, best.safetensors, curve.csv, curve.html, "
-         "curve.png (required)")
+         "folder for checkpoint.bin, policy.safetensors, best.safetensors, curve.csv, curve.html "
+         "(required)")
       ->type_name("DIR");
   app.add_option(
          "--config", a.config_file,

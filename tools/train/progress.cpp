@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "rt/base/output_files.h"
-#include "rt/plot/plot.h"
 
 namespace sandrunner::train {
 namespace {
@@ -114,7 +113,6 @@ constexpr Panel kPanels[] = {
      {{{"vx, m/s", "estimate_vx_rms_mps"}, {"body height, m", "estimate_height_rms_m"}}}},
 };
 constexpr const char* kAbscissa = "million transitions";
-constexpr plot::Color kColors[] = {{0.12, 0.37, 0.64}, {0.90, 0.45, 0.10}};
 
 // A column of curve.csv.
 struct Series {
@@ -146,27 +144,6 @@ std::vector<double> millions(const std::vector<ProgressRow>& rows) {
   std::vector<double> x;
   for (const ProgressRow& row : rows) x.push_back(row.transitions / 1e6);
   return x;
-}
-
-void draw_curve(const std::vector<ProgressRow>& rows, const std::vector<Series>& all,
-                const std::string& path) {
-  plot::Figure figure;
-  figure.title = "Training";
-  figure.x_label = kAbscissa;
-  figure.x = millions(rows);
-  for (const Panel& panel : kPanels) {
-    plot::Panel& drawn = figure.panels.emplace_back();
-    drawn.title = panel.title;
-    drawn.y_label = panel.unit;
-    for (std::size_t i = 0; i < panel.lines.size() && panel.lines[i].name; ++i) {
-      plot::Series& series = drawn.series.emplace_back();
-      series.name = panel.lines[i].name;
-      series.color = kColors[i];
-      series.y = values_of(all, panel.lines[i].column);
-    }
-  }
-  figure.views.push_back({"", figure.x.front(), figure.x.back()});
-  plot::draw(figure, path);
 }
 
 // Means of every N values, as a list of JSON.
@@ -239,8 +216,8 @@ const char* Progress::explanation() {
          "curve.csv has a row for each update: all of these, the battery's figures for each\n"
          "forward speed (battery.forward_share, slowest first), reward, tracking and falls under\n"
          "noise and pushes, and each term of the reward by its name (reward_..., penalty_...);\n"
-         "curve.png draws the most telling ones, curve.html all of them and, in 3D, a run of the\n"
-         "policy as it is.\n";
+         "curve.html draws all of them and, in 3D, a run of the policy as it is;\n"
+         "tools/pictures.py draws the most telling ones as curve.png.\n";
 }
 
 void Progress::write(const std::string& dir) const {
@@ -255,7 +232,6 @@ void Progress::write(const std::string& dir) const {
     csv += "\n";
   }
   write_file(dir + "/curve.csv", csv);
-  if (rows_.size() >= 2) draw_curve(rows_, all, dir + "/curve.png");
 }
 
 std::string Progress::page_json(const std::string& title) const {

@@ -42,7 +42,7 @@ class Progress {
   static std::string summary(const BatteryFigures& figures);
   /// What its parts mean, for `--explain`.
   static const char* explanation();
-  /// Writes curve.csv and curve.png into `dir`. Throws InputError.
+  /// Writes curve.csv into `dir`. Throws InputError.
   void write(const std::string& dir) const;
   /// All columns of curve.csv for a page (run_page); of long trainings means of rows, so that
   /// there are at most 1000.

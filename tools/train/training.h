@@ -20,7 +20,7 @@
 namespace sandrunner::train {
 
 struct TrainingOptions {
-  std::string out;  ///< folder for checkpoint.bin, policies, curve.csv, curve.html, curve.png
+  std::string out;  ///< folder for checkpoint.bin, policies, curve.csv, curve.html
   int threads = 1;
   std::uint64_t seed = 1;  ///< of weights and environments
 };
