@@ -87,7 +87,8 @@ int check(const Options& options) {
 std::string write_results(const RunResult& result, const RunInfo& info,
                           const std::string& effective, const std::string& folder) {
   const std::string dir = folder + "/";
-  // If not all can be written, those there are of one run, and not of an earlier one too.
+  // If not all can be written, those there are of one run, and not of an earlier one too; nor are
+  // the pictures that tools/pictures.py makes.
   for (const char* name :
        {"summary.json", "config.toml", "run.csv", "run.html", "run.png", "strip.png"}) {
     std::error_code none_there;

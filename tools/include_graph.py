@@ -16,7 +16,7 @@ import sys
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
-    ["rt/dds", "rt/plot", "policy", "estimator", "drivers/can", "drivers/imu"],
+    ["rt/dds", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/drives"],
     ["drivers/drives/*"],
     ["drivers/robot", "drivers/unitree"],

@@ -13,15 +13,14 @@ for word; do
 done
 
 packages=(
-  # fonts-dejavu-core is what the pictures are lettered with
-  g++ cmake ninja-build pkg-config git fonts-dejavu-core
+  g++ cmake ninja-build pkg-config git
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
-  liburdfdom-dev libcairo2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
+  liburdfdom-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
   esbuild libjs-three libboost-dev
 )
 # Trainer, benches, tests and the Debian package with its man pages; the emulated machine of
 # tools/hil; a DDS peer that is not ours, and the generator of its code; the Python module; the page
-# of tools/study.
+# of tools/study and tools/pictures.py.
 [[ ${1:-all} == sandrunner ]] || packages+=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file help2man
   qemu-system-x86 busybox-static cpio xz-utils

@@ -17,7 +17,7 @@ struct RowField {
   std::size_t offset, count;
   /// Names of the numbers as columns of run.csv (run_csv.h); of a field that is in rows only.
   const char* columns = "";
-  bool on_page = true;  ///< a page gets it; else it is for the CSV, figures and pictures alone
+  bool on_page = true;  ///< a page gets it; else it is for the CSV and figures alone
 
   /// Of one of the numbers, bytes.
   constexpr std::size_t width() const noexcept {

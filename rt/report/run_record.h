@@ -10,7 +10,7 @@
 
 namespace sandrunner {
 
-/// What rows, figures, pages and pictures must know of the robot and of the ground that it runs on.
+/// What rows, figures and pages must know of the robot and of the ground that it runs on.
 struct RunScene {
   std::string terrain = {};  ///< name for titles; empty: not known
   std::string policy = {};   ///< name for titles, may be empty
@@ -18,8 +18,6 @@ struct RunScene {
   RobotDescription robot = {};
   double mass_kg = 0.0;
   LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
-  Vector3 base_box_size_m{};
-  Vector3 base_box_center_m{};  ///< body frame
   double foot_radius_m = 0.0;
   bool granular_ground = true;  ///< sand is drawn, else solid ground
   /// Height of the undisturbed surface at x, y, m; unset: flat at 0.

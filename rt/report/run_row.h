@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One row of a run, at the policy's rate, and the one table of its fields: the CSV, the page, the
-// live view, the figures and the pictures of a run are made from rows.
+// live view and the figures of a run are made from rows.
 #pragma once
 
 #include <array>

@@ -121,8 +121,7 @@ void add_file_options(CLI::App& app, Options& o) {
       ->always_capture_default(false);
   app.add_flag("--settings", o.settings,
                "prints every setting with its default, unit, range and meaning");
-  app.add_option("--out", o.out_dir,
-                 "folder for summary.json, config.toml, run.csv, run.html, run.png, strip.png")
+  app.add_option("--out", o.out_dir, "folder for summary.json, config.toml, run.csv, run.html")
       ->type_name("DIR");
   app.add_option(
          "--record", o.record_dir,

@@ -15,13 +15,10 @@ namespace sandrunner {
 template <typename Real>
 RunScene robot_scene(const sim::Robot& robot, sim::Terrain<Real> ground) {
   const sim::RobotModel<double>& model = robot.model;
-  const auto array = [](const sim::Vec3<double>& v) { return Vector3{v.x, v.y, v.z}; };
   RunScene scene;
   scene.robot = robot.description;
   scene.mass_kg = model.mass();
   scene.motor_constant = robot.motor_constant_nmpsqrtw;
-  scene.base_box_size_m = array(2.0 * model.base_box_half_m);
-  scene.base_box_center_m = array(model.base_box_centre_m);
   scene.foot_radius_m = model.foot_radius_m;
   scene.granular_ground = ground.ground[0].is_granular > Real(0.0);
   if (ground.highest > Real(0.0)) {

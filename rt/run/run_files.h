@@ -7,8 +7,8 @@
 
 namespace sandrunner {
 
-/// Writes run.csv, run.html, run.png and, with ground truth, strip.png into a folder that exists;
-/// returns their paths, separated by ", ". Throws InputError.
+/// Writes run.csv and run.html into a folder that exists; returns their paths, separated by ", ".
+/// Throws InputError.
 std::string write_run_files(const RunRecord& record, const std::string& folder);
 
 }  // namespace sandrunner

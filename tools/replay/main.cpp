@@ -53,8 +53,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
   app.add_option("FILE", a.file, "recording (run.mcap, black-box-TICK.mcap)")->required();
   app.add_option("--from", a.from_s, "first second to compare and draw")->type_name("S");
   app.add_option("--to", a.to_s, "last second")->type_name("S");
-  app.add_option("--plot", a.plot_dir, "folder for run.csv, run.html, run.png, strip.png")
-      ->type_name("DIR");
+  app.add_option("--plot", a.plot_dir, "folder for run.csv, run.html")->type_name("DIR");
   app.add_flag("--view", a.view,
                "shows the recording, of a long one the last 10 minutes, in a browser of this "
                "computer, at the address that is printed, until Ctrl-C");
@@ -169,7 +168,7 @@ RecordingVisitor visitor_of(const Arguments& arguments, std::optional<Player>& p
     if (player->observer) player->observer->add(recorded);
     if (player->feed) player->feed->add(recorded);
     if (found && !compared.difference) compared.difference = std::move(found);
-    // A picture wants the rest too.
+    // A page wants the rest too.
     return (!compared.difference && player->replay) || player->observer;
   };
   visitor.lost = [&](std::uint64_t first, std::optional<std::uint64_t> last, bool by_damage) {

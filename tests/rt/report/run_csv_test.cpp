@@ -5,17 +5,38 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "tests/rt/report/made_up_trot.h"
+#include "rt/base/errors.h"
+#include "tests/support/joint_names.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {
 
+/// A robot that stands up for a second and walks for another, without an estimate.
+RunRecord made_up_run() {
+  RunRecord record;
+  for (std::size_t j = 0; j < kNumJoints; ++j) record.scene.robot.joint_names[j] = kJointNames[j];
+  for (std::size_t l = 0; l < kNumLegs; ++l) record.scene.robot.leg_names[l] = kLegNames[l];
+  for (int i = 0; i < 2 * kPolicyHz; ++i) {
+    RunRow row;
+    row.t_s = static_cast<double>(i) / kPolicyHz;
+    const bool walks = i >= kPolicyHz;
+    row.mode = static_cast<std::uint32_t>(walks ? Mode::kWalk : Mode::kStandUp);
+    if (walks) row.given = {1.5f, 0.0f, 0.2f};
+    row.position_m = {0.0, 0.0, 0.46};
+    row.orientation_wxyz = {1.0f, 0.0f, 0.0f, 0.0f};
+    row.estimate.fill(std::numeric_limits<float>::quiet_NaN());
+    record.rows.push_back(row);
+  }
+  return record;
+}
+
 TEST(RunCsvTest, EveryRowHasAValueForEveryColumn) {
-  const RunRecord record = trot(1.0, flat, kSinkage_m);
+  const RunRecord record = made_up_run();
   const TemporaryFolder folder;
   write_csv(record, folder.path("run.csv"));
   EXPECT_EQ(folder.number_of_files(), 1u) << "no part of a file is left";
@@ -51,7 +72,7 @@ TEST(RunCsvTest, EveryRowHasAValueForEveryColumn) {
 }
 
 TEST(RunCsvTest, ColumnsHaveTheNamesThatUsersKnow) {
-  const std::vector<std::string> columns = csv_columns(trot(0.0, flat, 0.0).scene.robot);
+  const std::vector<std::string> columns = csv_columns(made_up_run().scene.robot);
   for (const char* name : {"t_s",
                            "mode",
                            "command_vx_mps",
@@ -76,6 +97,18 @@ TEST(RunCsvTest, ColumnsHaveTheNamesThatUsersKnow) {
                            "truth_velocity_z_mps",
                            "truth_LF_foot_height_m"}) {
     EXPECT_EQ(std::ranges::count(columns, name), 1) << name;
+  }
+}
+
+TEST(RunCsvTest, AnUnwritablePathIsNamed) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("no such folder/file");
+  try {
+    write_csv({}, path);
+    ADD_FAILURE() << "no InputError";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with(path + ": cannot be written ("))
+        << error.what();
   }
 }
 

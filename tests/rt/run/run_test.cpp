@@ -11,7 +11,6 @@
 #include <tuple>
 
 #include "rt/report/run_csv.h"
-#include "rt/report/run_pictures.h"
 #include "rt/report/summary.h"
 #include "tests/rt/support.h"
 #include "tests/support/child_process.h"
@@ -262,7 +261,6 @@ TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
   EXPECT_EQ(summary_table(result, info).find("sinkage"), std::string::npos);
   EXPECT_NE(summary_table(known, info).find("sinkage"), std::string::npos);
   const TemporaryFolder folder;
-  draw_run_plot(result.record, folder.path("run.png"));
   write_csv(result.record, folder.path("run.csv"));
 }
 

@@ -165,7 +165,7 @@ TEST_F(BlackBoxTest, FlippedBitOfTheStateIsFoundAtTheFirstTickThatItChanges) {
   expect_one_line("command_position_rad[4]: recorded");
 }
 
-TEST_F(BlackBoxTest, RangePicturesAndOtherSettingsWorkFromTheMiddle) {
+TEST_F(BlackBoxTest, RangePageAndOtherSettingsWorkFromTheMiddle) {
   open(dir());
   walk_to(24000, {20000});
   ticks_->end();
@@ -174,8 +174,7 @@ TEST_F(BlackBoxTest, RangePicturesAndOtherSettingsWorkFromTheMiddle) {
   EXPECT_NE(output().find("2001 ticks"), std::string::npos) << output();
   const std::string csv = read_file(folder_.path("plots/run.csv"));
   EXPECT_EQ(csv.substr(csv.find('\n') + 1, 7), "4,walk,");
-  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
-  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/strip.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.html")));
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --set controller.walk.kd_nmsprad=0.6"), 1);
   std::uint64_t last = 0;
   const std::uint64_t first = read(path(20000), last).info.first_tick;
@@ -276,9 +275,9 @@ TEST_F(BlackBoxTest, TicksLostBeforeTheWindowLeaveAFileThatCannotBeReplayed) {
   EXPECT_EQ(last, 23999u);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000)), 2);
   expect_one_line("it cannot be replayed");
-  // Its pictures can still be drawn.
+  // Its page can still be made.
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path(20000) + " --plot '" + folder_.path("plots") + "'"), 2);
-  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.html")));
 }
 
 TEST_F(BlackBoxTest, TicksLostWithinTheWindowAreReportedAsLostAndNotAsADifference) {

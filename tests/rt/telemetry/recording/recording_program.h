@@ -124,7 +124,7 @@ class RecordingProgramTest : public testing::Test {
           << text;
       EXPECT_NE(text.find("every bit agrees\n"), std::string::npos) << text;
       EXPECT_NE(text.find("sandrunner-replay: " + damaged), std::string::npos) << text;
-      EXPECT_TRUE(std::filesystem::exists(plots + "/run.png"));
+      EXPECT_TRUE(std::filesystem::exists(plots + "/run.html"));
       std::filesystem::remove_all(plots);
     }
   }

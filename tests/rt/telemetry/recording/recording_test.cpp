@@ -220,8 +220,6 @@ TEST_F(RecordingTest, RangeIsComparedAndDrawn) {
             0)
       << output();
   EXPECT_NE(output().find("801 ticks"), std::string::npos) << output();
-  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.png")));
-  EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/strip.png")));
   EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.csv")));
   EXPECT_TRUE(std::filesystem::exists(folder_.path("plots/run.html")));
 }
