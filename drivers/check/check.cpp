@@ -48,7 +48,10 @@ class Check {
     if (buses_are_ours()) {
       findings_.scanned = scan(config_, sockets_);
       add(scan_problems(config_, task_.robot, findings_.scanned));
-      if (task_.move) move_joints();
+      if (task_.move) {
+        move_joints();
+        lift_front();
+      }
       if (task_.nudge) nudge_joints();
       if (task_.zero_pose_rad) calibrate();
     } else {
@@ -139,6 +142,44 @@ class Check {
       findings_.moves.push_back(verdict);
       if (move.verdict != HandMove::Verdict::kGood) findings_.problems.push_back(verdict);
     }
+  }
+
+  /// The specific force over the exchanges of a look, without what came before.
+  static Vector3 specific_force(DriveLook& look, Imu& imu) {
+    while (imu.poll(clock_ns(CLOCK_MONOTONIC))) {
+    }
+    ImuLook seen;
+    for (int i = 0; i < kLookExchanges; ++i) {
+      look.exchange();
+      while (imu.poll(clock_ns(CLOCK_MONOTONIC))) seen.add(imu.sample());
+    }
+    return seen.figures(0, 0.0).acceleration_mps2;
+  }
+
+  void lift_front() {
+    std::unique_ptr<Imu> imu;
+    try {
+      imu = std::make_unique<Imu>(config_.imu);
+    } catch (const InputError&) {
+      return;  // measure() reports it
+    }
+    DriveLook look(config_, sockets_);
+    JointTrace ignored;
+    to_standard_error("\nIMU: stand the robot level and press Enter (s and Enter skips it)\n");
+    if (!watch(look, ignored).empty()) {
+      findings_.moves.push_back("IMU: skipped");
+      return;
+    }
+    const Vector3 level_mps2 = specific_force(look, *imu);
+    to_standard_error(fmt::format(
+        "IMU: lift the robot's front by about {:.0f} degrees; hold it there and press Enter\n",
+        kAskedTilt_deg));
+    watch(look, ignored);
+    const FrontLift lift = judge_front_lift(level_mps2, specific_force(look, *imu));
+    const std::string verdict = "IMU: " + lift.words;
+    to_standard_error(verdict + "\n");
+    findings_.moves.push_back(verdict);
+    if (!lift.good) findings_.problems.push_back(verdict);
   }
 
   /// False: the robot is not as it has to be before anything is powered.

@@ -29,7 +29,7 @@ struct HandMove {
     kNotMoved,    ///< no joint has moved
     kOtherJoint,  ///< another one moved most
     kWrongSign,
-    kWrongScale,  ///< by more than twice or less than half of the requested angle
+    kWrongScale,  ///< by another factor of the requested angle than 2/3 to 3/2
   };
   Verdict verdict = Verdict::kNotMoved;
   int joint = 0;           ///< that moved most

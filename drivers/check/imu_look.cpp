@@ -86,4 +86,27 @@ std::vector<std::string> imu_problems(const ImuFigures& f, double rate_hz) {
   return problems;
 }
 
+FrontLift judge_front_lift(const Vector3& level_mps2, const Vector3& lifted_mps2) {
+  constexpr double kLeastTilt_deg = 8.0, kMostTurn_deg = 30.0;
+  constexpr const char* kSides[] = {"front", "left side", "back", "right side"};
+  const double tilt_deg = angle(level_mps2, lifted_mps2) / kDegree_rad;
+  if (tilt_deg < kLeastTilt_deg) {
+    return {.words = fmt::format("front lifted by {:.0f} degrees where about {:.0f} were asked for",
+                                 tilt_deg, kAskedTilt_deg)};
+  }
+  // Up leans towards the side that was lifted.
+  const double turn_deg =
+      std::atan2(lifted_mps2[1] / length(lifted_mps2) - level_mps2[1] / length(level_mps2),
+                 lifted_mps2[0] / length(lifted_mps2) - level_mps2[0] / length(level_mps2)) /
+      kDegree_rad;
+  if (std::fabs(turn_deg) <= kMostTurn_deg) {
+    return {true, fmt::format("front lifted by {:.0f} degrees, as it should", tilt_deg)};
+  }
+  const auto side = static_cast<std::size_t>(std::lround(turn_deg / 90.0) + 4) % 4;
+  return {.words =
+              fmt::format("its readings show the {} lifted, not the front, {:.0f} degrees off: "
+                          "look at hardware.imu.mounting_rpy_deg, at its yaw first",
+                          kSides[side], std::fabs(turn_deg))};
+}
+
 }  // namespace sandrunner

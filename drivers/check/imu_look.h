@@ -34,4 +34,16 @@ class ImuLook {
 /// configured one.
 std::vector<std::string> imu_problems(const ImuFigures& figures, double rate_hz);
 
+/// The angle by which the person should lift the robot's front.
+inline constexpr double kAskedTilt_deg = 20.0;
+
+/// Judges the specific force, body frame, of a robot at rest: level, then with its front lifted by
+/// about kAskedTilt_deg. A level robot cannot show about which axis an IMU is turned in its
+/// mounting; this can. In words, with what to look at.
+struct FrontLift {
+  bool good = false;
+  std::string words;
+};
+FrontLift judge_front_lift(const Vector3& level_mps2, const Vector3& lifted_mps2);
+
 }  // namespace sandrunner

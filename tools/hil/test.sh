@@ -87,7 +87,7 @@ check)
       t=$((t + 14))
     done
     sandrunner-hil --hardware robot.toml "$@" &
-    { sleep 4; for joint in $joints; do echo; sleep 1.2; echo; sleep 0.2; done; } |
+    { sleep 4; for joint in $joints; do echo; sleep 1.2; echo; sleep 0.2; done; echo s; } |
       sandrunner check /tmp/check.toml --move >/out/check.txt 2>/out/asked.txt
     echo "exit code $?"
     cat /out/check.txt' | tee "$out/check.log"

@@ -54,6 +54,8 @@ TEST(HandMoveTest, WhatIsWrongIsTold) {
   EXPECT_EQ(judge_move(trace_of({0.0, -0.5}), 1).verdict, Verdict::kWrongSign);
   EXPECT_EQ(judge_move(trace_of({0.0, 0.5 * 9.0}), 1).verdict, Verdict::kWrongScale);
   EXPECT_EQ(judge_move(trace_of({0.0, 0.5 / 6.28}), 1).verdict, Verdict::kWrongScale);
+  EXPECT_EQ(judge_move(trace_of({0.0, 0.45 * 2.0}), 1).verdict, Verdict::kWrongScale);
+  EXPECT_EQ(judge_move(trace_of({0.0, 0.55 / 2.0}), 1).verdict, Verdict::kWrongScale);
   const HandMove swapped = judge_move(trace_of({0.0, 0.05, 0.0, 0.0, 0.5}), 1);
   EXPECT_EQ(swapped.verdict, Verdict::kOtherJoint);
   EXPECT_EQ(swapped.joint, 4);

@@ -61,5 +61,23 @@ TEST(ImuLookTest, WrongFiguresAreNamed) {
   EXPECT_THAT(problems_of(sample), ElementsAre(HasSubstr("differ by 17 degrees")));
 }
 
+TEST(FrontLiftTest, TellsAnImuThatIsTurnedInItsMounting) {
+  const double c = 9.81 * std::cos(0.35), s = 9.81 * std::sin(0.35);
+  const Vector3 level{0.3, -0.2, 9.8};
+  EXPECT_TRUE(judge_front_lift(level, {s, 0.0, c}).good);
+  EXPECT_THAT(judge_front_lift(level, {s, 0.0, c}).words, HasSubstr("as it should"));
+  const std::pair<Vector3, const char*> cases[] = {
+      {{0.0, s, c}, "the left side lifted"},
+      {{0.0, -s, c}, "the right side lifted"},
+      {{-s, 0.0, c}, "the back lifted"},
+      {{-s, -0.2, c}, "mounting_rpy_deg"},
+      {{0.5, 0.0, 9.8}, "lifted by 2 degrees where about 20"},
+  };
+  for (const auto& [lifted, words] : cases) {
+    EXPECT_FALSE(judge_front_lift(level, lifted).good);
+    EXPECT_THAT(judge_front_lift(level, lifted).words, HasSubstr(words));
+  }
+}
+
 }  // namespace
 }  // namespace sandrunner
