@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/hil/diagnosis.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <deque>
 #include <fstream>
 #include <sstream>
 #include <string_view>
 
 namespace sandrunner::hil {
+
+constexpr std::size_t kLastLines = 5;
 
 std::set<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
@@ -35,6 +41,16 @@ Diagnosis diagnosis(const std::string& printed) {
   std::replace(line.begin(), line.end(), ',', ' ');
   d.joints = words_of(line);
   return d;
+}
+
+std::string last_lines(const std::string& printed) {
+  std::istringstream in(printed);
+  std::deque<std::string> lines;
+  for (std::string line; std::getline(in, line);) {
+    lines.push_back("    " + line);
+    if (lines.size() > kLastLines) lines.pop_front();
+  }
+  return lines.empty() ? "    nothing" : fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 }  // namespace sandrunner::hil

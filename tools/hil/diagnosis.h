@@ -17,6 +17,9 @@ Diagnosis diagnosis(const std::string& printed);
 /// The words of a text with blanks between.
 std::set<std::string> words_of(const std::string& text);
 
+/// The last lines of what a process printed, indented, for a message.
+std::string last_lines(const std::string& printed);
+
 /// A whole file; empty: it cannot be read.
 std::string text_of(const std::string& path);
 

@@ -4,18 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "rt/base/errors.h"
-#include "tests/drivers/robot/example.h"
+#include "tests/tools/hil/bench_examples.h"
+#include "tools/hil/fault_clock.h"
 
 namespace sandrunner::hil {
 namespace {
 
-TimedFault fault(const std::string& text) {
-  return read_fault(text, example_hardware("moteus"), example_robot());
+TimedFault fault(const std::string& text, const std::string& example = "moteus") {
+  return read_faults(bench_example(example), {text}).at(0);
 }
 
-std::string refusal(const std::string& text) {
+std::string refusal(const std::string& text, const std::string& example = "moteus") {
   try {
-    fault(text);
+    fault(text, example);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -25,7 +26,8 @@ std::string refusal(const std::string& text) {
 TEST(FaultScriptTest, SaysWhenWhatAndWhere) {
   const TimedFault jump = fault("1.5 jumps RF_KFE -0.25");
   EXPECT_EQ(jump.at_s, 1.5);
-  EXPECT_EQ(jump.kind, BenchFault::kJumps);
+  EXPECT_FALSE(jump.from_start);
+  EXPECT_EQ(jump.kind, "jumps");
   EXPECT_EQ(jump.first, 5);
   EXPECT_EQ(jump.value, -0.25);
   EXPECT_EQ(fault("0 bus-off can2").first, 2);
@@ -37,7 +39,13 @@ TEST(FaultScriptTest, SaysWhenWhatAndWhere) {
   EXPECT_TRUE(turned.from_start);
   EXPECT_EQ(turned.at_s, 2.5);
   EXPECT_EQ(turned.value, -0.5);
-  EXPECT_EQ(fault("6 foreign RF_HFE 1000").kind, BenchFault::kForeign);
+  EXPECT_EQ(fault("6 kill").kind, "kill");
+  const TimedFault hot = fault("2.5 hot FL_calf_joint 90", "unitree");
+  EXPECT_EQ(hot.kind, "hot");
+  EXPECT_EQ(hot.first, 2);
+  EXPECT_EQ(hot.value, 90.0);
+  EXPECT_EQ(fault("1 gap 20", "unitree").value, 20.0);
+  EXPECT_EQ(fault("1 wire-kill", "unitree").kind, "wire-kill");
 }
 
 TEST(FaultScriptTest, WhatItDoesNotUnderstandIsNamed) {
@@ -48,12 +56,28 @@ TEST(FaultScriptTest, WhatItDoesNotUnderstandIsNamed) {
   EXPECT_EQ(refusal("1 jumps LF_KFE"),
             "--fault '1 jumps LF_KFE': found no more, expected a number");
   EXPECT_EQ(refusal("1 dead now"), "--fault '1 dead now': found 'now', expected no more");
-  EXPECT_NE(refusal("1 broken"), "");
-  EXPECT_NE(refusal("-1 dead"), "");
-  EXPECT_NE(refusal("start+ dead"), "");
-  EXPECT_NE(refusal("start5 dead"), "");
-  EXPECT_NE(refusal("starting dead"), "");
-  EXPECT_NE(refusal("1 silent LF_XYZ"), "");
+  EXPECT_EQ(refusal("1 gap", "unitree"), "--fault '1 gap': found no more, expected a number");
+  EXPECT_NE(refusal("1 explode", "unitree").find("found 'explode', expected one of gap, burst"),
+            std::string::npos);
+  EXPECT_NE(refusal("-1 dead").find("a negative time"), std::string::npos);
+  for (const char* const text :
+       {"1 broken", "start+ dead", "start5 dead", "starting dead", "1 silent LF_XYZ", "1 gap 20"}) {
+    EXPECT_NE(refusal(text), "") << text;
+  }
+}
+
+TEST(FaultClockTest, MakesFaultsInTheOrderOfTheirTimesOnce) {
+  FaultClock clock(
+      read_faults(bench_example("moteus"), {"2 dead", "1 imu-silent", "start+3 kill"}));
+  EXPECT_EQ(clock.due(2.9, {}), nullptr);
+  EXPECT_EQ(clock.due(3.0, {})->kind, "kill");
+  EXPECT_EQ(clock.due(9.0, {}), nullptr);  // nothing was enabled
+  EXPECT_EQ(clock.due(9.0, 7.5)->kind, "imu-silent");
+  EXPECT_EQ(clock.due(9.0, 7.5), nullptr);
+  EXPECT_FALSE(clock.all_made());
+  EXPECT_EQ(clock.due(9.5, 7.5)->kind, "dead");
+  EXPECT_TRUE(clock.all_made());
+  EXPECT_EQ(clock.due(99.0, 7.5), nullptr);
 }
 
 }  // namespace
