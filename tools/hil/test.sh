@@ -37,20 +37,30 @@ guest() { # NAME LIMIT COMMAND: files in $out/NAME
 }
 # Speed in the second half of a walk of $1 s in the program's own simulator.
 speed() {
-  "$bin/sandrunner" --command 1,0,0 --duration "$1" --out "$out/in-process" >/dev/null 2>&1 </dev/null
-  sed -n '/"mean_velocity_mps"/ { n; s/[ ,]//g; p; q }' "$out/in-process/summary.json"
+  rm -rf "$out/in-process" "$out/in-process.log"
+  "$bin/sandrunner" --command 1,0,0 --duration "$1" --out "$out/in-process" >"$out/in-process.log" 2>&1 </dev/null || {
+    echo "test.sh: the walk in the program's own simulator ended with exit code $?:" >&2
+    tail -n 5 "$out/in-process.log" >&2
+    return 1
+  }
+  sed -n '/"mean_velocity_mps"/ { n; s/[ ,]//g; p; q }' "$out/in-process/summary.json" | grep -x '[0-9.e-]*[0-9]' || {
+    echo "test.sh: $out/in-process/summary.json: found no number as mean_velocity_mps" >&2
+    return 1
+  }
 }
 # After a fault the robot is damped for 2 s; a quarter of that is enough to see it.
 faults='--walk 1 --set controller.damping.fault_s=0.5 --out /out'
 
 case $lane in
 short)
+  speed=$(speed 2)
   guest short 600 "can_test --gtest_brief=1 --gtest_filter='CanSocket*' &&
-    sandrunner-hil runs --only walks-mit,walks-moteus --walk 2 --speed $(speed 2) --out /out &&
+    sandrunner-hil runs --only walks-mit,walks-moteus --walk 2 --speed $speed --out /out &&
     sandrunner-hil runs --only drive-resets,damiao-reboots,wrong-mode,bus-off,imu-silent $faults"
   ;;
 walk)
-  walk="sandrunner-hil runs --only walks-mit,walks-damiao,walks-moteus --walk 10 --speed $(speed 10) --set hardware.rate_hz=1000"
+  speed=$(speed 10)
+  walk="sandrunner-hil runs --only walks-mit,walks-damiao,walks-moteus --walk 10 --speed $speed --set hardware.rate_hz=1000"
   guest walk 1800 "$walk --out /out && $walk --set hardware.mode=torque --out /out/torque"
   ;;
 faults) guest faults 3600 "sandrunner-hil runs $faults" ;;
