@@ -15,9 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/check/check.h"
-#include "drivers/check/unitree_check.h"
-#include "drivers/robot/bus_plan.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
@@ -45,42 +42,20 @@ namespace {
 
 constexpr int kLastWords_ms = 2000;
 
-int check_unitree(const Options& options, const ProcessConfig& config) {
-  const Options::Check& c = options.check;
-  if (c.plan || c.move || c.nudge || !c.zero.empty()) {
-    throw InputError(
-        fmt::format("check: {}: found hardware.kind \"unitree\", expected \"can\" with --plan, "
-                    "--move, --nudge or --zero",
-                    options.hardware_path));
-  }
-  return run_unitree_check(
-      *config.unitree, unitree::figures_of(config.robot.description, config.controller.gate, 0.0));
-}
-
 int check(const Options& options) {
   std::signal(SIGINT, SIG_DFL);  // which a script's & has it ignore
   const ProcessConfig config = read_config(options, nullptr);
-  if (config.unitree) return check_unitree(options, config);
-  if (options.check.plan) {
-    const std::vector<PlannedBus> plan = plan_buses(*config.hardware);
-    fmt::print("{}", plan_table(*config.hardware, plan));
-    const bool fits = std::ranges::none_of(plan, &PlannedBus::overloaded);
-    return fits ? kExitOk : kExitFailed;
-  }
-  CheckTask task{.path = options.hardware_path,
-                 .config = *config.hardware,
-                 .robot = config.robot.description,
-                 .gate = config.controller.gate,
-                 .nominal_rad = config.robot.nominal_rad,
-                 .move = options.check.move,
-                 .nudge = options.check.nudge,
-                 .zero_pose_rad = {},
-                 .read = [&](const std::string& text) {
-                   return *read_config(options, nullptr, &text).hardware;
-                 }};
+  CheckTask task{
+      .path = options.hardware_path,
+      .nominal_rad = config.robot.nominal_rad,
+      .plan = options.check.plan,
+      .move = options.check.move,
+      .nudge = options.check.nudge,
+      .zero_pose_rad = {},
+      .read = [&](const std::string& text) { return read_config(options, nullptr, &text).driver; }};
   if (options.check.zero == "lying") task.zero_pose_rad = config.robot.lying_rad;
   if (options.check.zero == "nominal") task.zero_pose_rad = config.robot.nominal_rad;
-  return run_check(task);
+  return config.driver->check(task);
 }
 
 // Writes the files of --out; returns the line that names them. Throws InputError.

@@ -12,15 +12,16 @@ import re
 import sys
 
 # From the bottom up. A folder may include those of the lines below its own, not its siblings;
-# "drivers/drives/*" are all folders in drivers/drives.
+# "drivers/drives/*" are all folders in drivers/drives that no line names.
 LAYERS = [
     ["rt/core"],
     ["rt/base"],
     ["rt/dds", "policy", "estimator", "drivers/can", "drivers/imu"],
     ["drivers/drives"],
     ["drivers/drives/*"],
-    ["drivers/robot", "drivers/unitree"],
-    ["drivers/check"],
+    ["drivers/robot"],
+    ["drivers/check", "drivers/*"],
+    ["drivers"],
     ["sim/lanes"],
     ["sim/robot"],
     ["sim/ground"],
@@ -62,8 +63,12 @@ def read_includes(root):
 
 def layers(includes):
     """LAYERS with each pattern replaced by the folders of the tree that it matches."""
-    folders = sorted({folder(file) for file in includes})
-    return [[f for name in layer for f in (fnmatch.filter(folders, name) if "*" in name else [name])] for layer in LAYERS]
+    named = {name for layer in LAYERS for name in layer}
+    folders = sorted({folder(file) for file in includes} - named)
+
+    def matches(pattern):
+        return [f for f in fnmatch.filter(folders, pattern) if f.count("/") == pattern.count("/")]
+    return [[f for name in layer for f in (matches(name) if "*" in name else [name])] for layer in LAYERS]
 
 
 def way_to(target, start, includes):

@@ -11,7 +11,6 @@
 #include "drivers/check/bus_scan.h"
 #include "drivers/check/check_report.h"
 #include "drivers/check/hand_move.h"
-#include "drivers/check/lines.h"
 #include "drivers/check/nudge.h"
 #include "drivers/check/zero.h"
 #include "drivers/robot/bring_up.h"
@@ -23,6 +22,7 @@
 #include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 #include "rt/base/standard_error.h"
+#include "rt/base/typed_lines.h"
 #include "rt/core/joint_pd.h"
 
 namespace sandrunner {
@@ -34,7 +34,12 @@ constexpr std::uint64_t kSilent_ticks = kControlHz / 50;
 
 class Check {
  public:
-  explicit Check(const CheckTask& task) : task_(task), config_(task.config) {}
+  explicit Check(const CanCheck& check)
+      : task_(check.task),
+        read_(check.read),
+        robot_(check.robot),
+        gate_(check.gate),
+        config_(check.config) {}
 
   int run() {
     if (task_.nudge && !config_.hanging) {
@@ -47,7 +52,7 @@ class Check {
     open_emergency_stop();
     if (buses_are_ours()) {
       findings_.scanned = scan(config_, sockets_);
-      add(scan_problems(config_, task_.robot, findings_.scanned));
+      add(scan_problems(config_, robot_, findings_.scanned));
       if (task_.move) {
         move_joints();
         lift_front();
@@ -59,7 +64,7 @@ class Check {
     }
     measure();
     judge_emergency_stop();
-    fmt::print("{}", check_report(config_, task_.robot, task_.gate, findings_));
+    fmt::print("{}", check_report(config_, robot_, gate_, findings_));
     return findings_.problems.empty() ? kExitOk : kExitFailed;
   }
 
@@ -91,7 +96,7 @@ class Check {
   /// Before anything is sent: a robot that runs would fall if its drives received an off command.
   bool buses_are_ours() {
     const std::vector<std::string> problems =
-        traffic_problems(config_, task_.robot, listen(config_, sockets_));
+        traffic_problems(config_, robot_, listen(config_, sockets_));
     add(problems);
     return problems.empty();
   }
@@ -115,12 +120,12 @@ class Check {
     DriveLook look(config_, sockets_);
     for (int i = 0; i < kLookExchanges; ++i) look.exchange();
     for (int j = 0; j < kNumJoints; ++j) {
-      const std::string& joint = task_.robot.joint_names[j];
+      const std::string& joint = robot_.joint_names[j];
       if (!answers(look, j)) {
         findings_.moves.push_back(joint + ": not asked for, it does not answer");
         continue;
       }
-      const std::string motion = positive_motion(task_.robot, task_.nominal_rad, j);
+      const std::string motion = positive_motion(robot_, task_.nominal_rad, j);
       to_standard_error(fmt::format(
           "\n{}: put it where it has room, and press Enter (s and Enter skips it)\n", joint));
       JointTrace ignored, trace;
@@ -137,7 +142,7 @@ class Check {
         continue;
       }
       const HandMove move = judge_move(trace, j);
-      const std::string verdict = move_words(move, j, config_, task_.robot);
+      const std::string verdict = move_words(move, j, config_, robot_);
       to_standard_error(verdict + "\n");
       findings_.moves.push_back(verdict);
       if (move.verdict != HandMove::Verdict::kGood) findings_.problems.push_back(verdict);
@@ -187,7 +192,7 @@ class Check {
     DriveLook look(config_, sockets_);
     for (int i = 0; i < kLookExchanges; ++i) look.exchange();
     std::vector<std::string> problems =
-        drive_problems(config_, task_.robot, task_.gate, sockets_, look.drives());
+        drive_problems(config_, robot_, gate_, sockets_, look.drives());
     if (emergency_stop_pressed()) problems.push_back(emergency_stop_words());
     const bool whole = std::ranges::all_of(sockets_, [](const auto& s) { return s != nullptr; });
     if (problems.empty() && whole) return true;
@@ -240,17 +245,17 @@ class Check {
     // Each leg from its foot up: what hangs on a joint that is pushed is damped by then.
     for (int i = 0; i < kNumJoints && !stopped; ++i) {
       const int j = i + kJointsPerLeg - 1 - 2 * (i % kJointsPerLeg);
-      const double most_nm = std::min(kNudge_nm, task_.gate.torque_limit_nm[j]);
+      const double most_nm = std::min(kNudge_nm, gate_.torque_limit_nm[j]);
       to_standard_error(fmt::format("{} moves now so that, seen in the standing pose, {}\n",
-                                    task_.robot.joint_names[j],
-                                    positive_motion(task_.robot, task_.nominal_rad, j)));
+                                    robot_.joint_names[j],
+                                    positive_motion(robot_, task_.nominal_rad, j)));
       Nudge result = nudge(j, most_nm, good, exchange);
       if (result.verdict == Nudge::Verdict::kNotMoved) {
-        to_standard_error(fmt::format("{} moves now the other way: a stop may be near\n",
-                                      task_.robot.joint_names[j]));
+        to_standard_error(
+            fmt::format("{} moves now the other way: a stop may be near\n", robot_.joint_names[j]));
         result = nudge(j, -most_nm, good, exchange);
       }
-      const std::string verdict = nudge_words(result, j, config_, task_.robot);
+      const std::string verdict = nudge_words(result, j, config_, robot_);
       to_standard_error(verdict + "\n");
       findings_.nudges.push_back(verdict);
       good[j] = result.verdict == Nudge::Verdict::kGood;
@@ -263,8 +268,8 @@ class Check {
   void calibrate() {
     std::string pose;
     for (int j = 0; j < kNumJoints; ++j) {
-      pose += fmt::format("  {:<14}{:8.4f} rad\n", task_.robot.joint_names[j],
-                          (*task_.zero_pose_rad)[j]);
+      pose +=
+          fmt::format("  {:<14}{:8.4f} rad\n", robot_.joint_names[j], (*task_.zero_pose_rad)[j]);
     }
     DriveLook look(config_, sockets_);
     JointTrace ignored, trace;
@@ -279,13 +284,13 @@ class Check {
     }
     for (int j = 0; j < kNumJoints; ++j) {
       if (answers(look, j)) continue;
-      throw InputError(fmt::format("--zero: {} does not answer: nothing is written",
-                                   task_.robot.joint_names[j]));
+      throw InputError(
+          fmt::format("--zero: {} does not answer: nothing is written", robot_.joint_names[j]));
     }
-    const JointArray<double> zeros = zeros_of(trace, *task_.zero_pose_rad, config_, task_.robot);
+    const JointArray<double> zeros = zeros_of(trace, *task_.zero_pose_rad, config_, robot_);
     const std::string text =
-        with_zeros(read_input_file(task_.path, "a TOML file"), task_.path, zeros, task_.robot);
-    HardwareConfig config = task_.read(text);
+        with_zeros(read_input_file(task_.path, "a TOML file"), task_.path, zeros, robot_);
+    HardwareConfig config = read_(text);
     write_file(task_.path, text);
     config_ = std::move(config);
     to_standard_error(
@@ -354,14 +359,14 @@ class Check {
       if (live && i % kExchangesPerPicture == 0) drawn_lines = draw(look, drawn_lines);
     }
     findings_.drives = look.drives();
-    add(drive_problems(config_, task_.robot, task_.gate, sockets_, look.drives()));
+    add(drive_problems(config_, robot_, gate_, sockets_, look.drives()));
     add(bus_problems(config_, look.buses()));
     if (findings_.imu) add(imu_problems(config_.imu, *findings_.imu));
   }
 
   /// The joints and the IMU as they are now, over what was drawn before; returns its lines.
   std::size_t draw(const DriveLook& look, std::size_t drawn_lines) const {
-    std::string picture = joint_table(config_, task_.robot, task_.gate, look.drives());
+    std::string picture = joint_table(config_, robot_, gate_, look.drives());
     if (findings_.imu) picture += imu_line(config_.imu, *findings_.imu);
     picture += emergency_stop_words() + "\nlive until Enter; nothing is powered\n";
     const std::string back = drawn_lines > 0 ? fmt::format("\x1b[{}A\x1b[J", drawn_lines) : "\n";
@@ -370,6 +375,9 @@ class Check {
   }
 
   const CheckTask& task_;
+  const std::function<HardwareConfig(const std::string& text)>& read_;
+  const RobotDescription& robot_;
+  const GateConfig& gate_;
   HardwareConfig config_;
   CanSockets sockets_;
   Lines lines_;
@@ -379,6 +387,6 @@ class Check {
 
 }  // namespace
 
-int run_check(const CheckTask& task) { return Check(task).run(); }
+int run_check(const CanCheck& check) { return Check(check).run(); }
 
 }  // namespace sandrunner

@@ -78,7 +78,7 @@ JointArray<double> zeros_of(const JointTrace& trace, const JointArray<double>& p
       most_rad = std::max(most_rad, positions[j]);
     }
     const std::string& name = robot.joint_names[j];
-    if (!(most_rad - least_rad <= kStill_rad)) {
+    if (!(most_rad - least_rad <= kHeldStill_rad)) {
       throw InputError(fmt::format("{} moved by {:.3f} rad while it was to be still", name,
                                    most_rad - least_rad));
     }

@@ -11,7 +11,7 @@
 namespace sandrunner {
 
 /// A joint that is held still stays within this.
-inline constexpr double kStill_rad = 0.01;
+inline constexpr double kHeldStill_rad = 0.01;
 
 /// The zero_rad of every drive for which the positions in `trace` (measured with the zeros of
 /// `config`) equal `pose_rad`. Throws InputError, one line: nothing was measured, a joint moved

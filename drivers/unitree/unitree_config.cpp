@@ -9,13 +9,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr const char* kKinds[] = {"can", "unitree"};
-
 using C = UnitreeConfig;
-constexpr Setting<C> kKind[] = {
-    {"kind", words<&C::is_unitree>(kKinds),
-     "can: drives on CAN buses and a serial IMU; unitree: a Go2 EDU (drivers/unitree/README.md)."},
-};
 /// Robots on CAN buses have these too, and list them.
 constexpr Setting<C> kShared[] = {
     {"temperature_limit_degc", &C::temperature_limit_degc, 0.0, 150.0, ""},
@@ -40,12 +34,6 @@ constexpr std::uint64_t kStateLate_ticks = 12, kStateLost_ticks = 40;
 
 }  // namespace
 
-bool is_unitree(ConfigTree& config) {
-  C c;
-  read_settings(config, "hardware", kKind, c);
-  return c.is_unitree;
-}
-
 UnitreeConfig read_unitree_config(ConfigTree& config) {
   UnitreeConfig c;
   read_settings(config, "hardware", kShared, c);
@@ -60,7 +48,6 @@ UnitreeConfig read_unitree_config(ConfigTree& config) {
 
 std::vector<SettingLine> unitree_settings() {
   std::vector<SettingLine> lines;
-  list_settings(lines, "hardware", kKind);
   list_settings(lines, "hardware.unitree", kUnitree);
   return lines;
 }

@@ -12,7 +12,6 @@ namespace sandrunner {
 
 /// The table [hardware] of a robot of kind "unitree", and its table [hardware.unitree].
 struct UnitreeConfig {
-  bool is_unitree = false;               ///< hardware.kind says so
   double temperature_limit_degc = 80.0;  ///< a hotter motor is a warning
   double torque_scale = 1.0;             ///< of every torque limit, for first walks
   bool hanging = false;  ///< the robot hangs in a frame: falls and tilts are not judged
@@ -26,9 +25,7 @@ struct UnitreeConfig {
   bool release_sport_mode = true;  ///< false: another program has switched it off
 };
 
-/// Whether the table [hardware] in `config` is of kind "unitree".
-bool is_unitree(ConfigTree& config);
-/// Reads it. Throws InputError.
+/// Reads them. Throws InputError.
 UnitreeConfig read_unitree_config(ConfigTree& config);
 /// The keys that no other kind of hardware has, for the reference.
 std::vector<SettingLine> unitree_settings();

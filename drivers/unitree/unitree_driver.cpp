@@ -6,14 +6,34 @@
 #include <algorithm>
 #include <utility>
 
+#include "drivers/unitree/unitree_check.h"
 #include "drivers/unitree/unitree_robot.h"
+#include "rt/base/errors.h"
 
 namespace sandrunner {
 
-UnitreeDriver::UnitreeDriver(const UnitreeConfig& config, const RobotDescription& robot,
-                             const ControllerConfig& controller)
-    : config_(config),
-      robot_(unitree::figures_of(robot, controller.gate, controller.damping.kd_nmsprad)) {}
+UnitreeDriver::UnitreeDriver(const UnitreeConfig& config, const RobotDescription& robot)
+    : config_(config), description_(robot) {}
+
+UnitreeDriver::UnitreeDriver(ConfigTree& config, const RobotDescription& robot,
+                             const GateConfig& /*limits*/)
+    : UnitreeDriver(read_unitree_config(config), robot) {}
+
+void UnitreeDriver::fit_gate(GateConfig& gate) const noexcept { fit_gate_to(config_, gate); }
+
+void UnitreeDriver::fit_to(const ControllerConfig& controller) {
+  robot_ = unitree::figures_of(description_, controller.gate, controller.damping.kd_nmsprad);
+}
+
+int UnitreeDriver::check(const CheckTask& task) const {
+  if (task.plan || task.move || task.nudge || task.zero_pose_rad) {
+    throw InputError(
+        fmt::format("check: {}: found hardware.kind \"unitree\", expected \"can\" with --plan, "
+                    "--move, --nudge or --zero",
+                    task.path));
+  }
+  return run_unitree_check(config_, robot_);
+}
 
 void UnitreeDriver::fork_processes() {
   wire_ = std::make_unique<unitree::WireProcess>(config_, robot_);

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <array>
 
-#include "drivers/robot/hardware_fit.h"
+#include "drivers/robot_drivers.h"
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
-#include "rt/run/robot_drivers.h"
 
 namespace sandrunner {
 namespace {
@@ -193,7 +192,7 @@ struct ControllerDefaults {
 
 ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec* spec,
                                        std::uint64_t operator_hold_ticks,
-                                       const ProcessConfig& process) {
+                                       const RobotDriver* driver) {
   ControllerConfig c = controller_config(robot);
   if (spec) {
     c.walk.kp_nmprad = spec->kp_nmprad;
@@ -202,8 +201,7 @@ ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec
     c.shaping.centripetal_limit_mps2 = spec->yaw_command_clip_mps2;
   }
   c.shaping.operator_hold_ticks = operator_hold_ticks;
-  if (process.hardware) fit_gate_to(*process.hardware, c.gate);
-  if (process.unitree) fit_gate_to(*process.unitree, c.gate);
+  if (driver) driver->fit_gate(c.gate);
   return {c};
 }
 
@@ -293,17 +291,13 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   if (spec) fit_robot_to(*spec, p.robot);
   p.dds = read_dds_config(config);
   read_settings(config, "view", kView, p);
-  if (config.has("hardware") && is_unitree(config)) {
-    p.unitree = read_unitree_config(config);
-  } else if (config.has("hardware")) {
-    p.hardware = read_hardware_config(config, p.robot.description, controller_config(p.robot).gate);
-  }
+  p.driver = make_robot_driver(config, p.robot.description, controller_config(p.robot).gate);
   // Who commands from afar may be lost on the way: the robot then slows down and stands.
   const std::uint64_t hold_ticks = p.dds.enabled || p.view_drive ? p.dds.stale_ticks() : 0;
-  const ControllerDefaults defaults = controller_defaults(p.robot, spec, hold_ticks, p);
+  const ControllerDefaults defaults =
+      controller_defaults(p.robot, spec, hold_ticks, p.driver.get());
   p.controller = read_controller(config, defaults, ranges_of(p.robot, robot != nullptr));
-  if (p.hardware) fit_drives_to(p.controller.gate, *p.hardware);
-  p.driver = make_robot_driver(p);
+  if (p.driver) p.driver->fit_to(p.controller);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
   read_settings(config, "recording", kRecording, p.recording);

@@ -2,12 +2,9 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "drivers/robot/hardware_config.h"
-#include "drivers/unitree/unitree_config.h"
 #include "policy/policy.h"
 #include "rt/base/config_tree.h"
 #include "rt/base/settings.h"
@@ -29,13 +26,11 @@ struct ProcessConfig {
   RealtimeConfig realtime;
   RecordingLimits recording;
   DdsConfig dds;
-  std::optional<HardwareConfig> hardware;  ///< if there is a table [hardware] of kind "can" ...
-  std::optional<UnitreeConfig> unitree;    ///< ... of kind "unitree"
-  std::shared_ptr<RobotDriver> driver;     ///< of a real robot; null: there is no such table
-  bool view_drive = false;                 ///< pages of --view that have the key may command
-  int view_port = 8765;                    ///< of --view; 0: one that is free
-  LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
-  std::string effective;               ///< TOML of every setting with the value in effect
+  std::shared_ptr<RobotDriver> driver;  ///< of a real robot; null: no table [hardware] is there
+  bool view_drive = false;              ///< pages of --view that have the key may command
+  int view_port = 8765;                 ///< of --view; 0: one that is free
+  LegJoints<double> motor_constant{};   ///< k_m of the cost of transport, N m/sqrt(W) at the joint
+  std::string effective;                ///< TOML of every setting with the value in effect
 };
 
 /// What the controller takes from a robot: posture, gains, limits. Walk's gains are the policy's.

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "drivers/robot/hardware_config.h"
+#include "drivers/robot_drivers.h"
 #include "rt/base/settings.h"
 #include "rt/realtime/setup.h"
 #include "rt/run/process_config.h"
@@ -50,9 +50,8 @@ constexpr Group kGroups[] = {
 
 std::vector<SettingLine> run_settings() {
   std::vector<SettingLine> all;
-  for (const auto& part :
-       {process_settings(), sim::terrain_settings(), sim::simulator_settings(), realtime_settings(),
-        dds_settings(), hardware_settings(), unitree_settings()}) {
+  for (const auto& part : {process_settings(), sim::terrain_settings(), sim::simulator_settings(),
+                           realtime_settings(), dds_settings(), robot_driver_settings()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

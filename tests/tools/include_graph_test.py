@@ -52,7 +52,11 @@ class IncludeGraphTest(unittest.TestCase):
         self.assertIn("rt/loop/a.h -> rt/base/b.h -> sim/c.h", said)
 
     def test_a_new_folder_needs_a_layer(self):
-        self.assertIn("drivers/new: a folder that is not among LAYERS", errors({"drivers/new/a.h": []}))
+        self.assertIn("rt/new: a folder that is not among LAYERS", errors({"rt/new/a.h": []}))
+
+    def test_a_new_driver_has_one(self):
+        self.assertEqual(errors({"drivers/new/a.h": ["rt/base/b.h"], "rt/base/b.h": [], "drivers/c.h": ["drivers/new/a.h"]}), "")
+        self.assertIn("drivers/new/a.h: includes drivers/c.h", errors({"drivers/new/a.h": ["drivers/c.h"], "drivers/c.h": []}))
 
 
 if __name__ == "__main__":

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "drivers/can_driver.h"
+#include "drivers/unitree/unitree_driver.h"
 #include "rt/base/clock_ns.h"
 #include "tools/hil/can_link.h"
 #include "tools/hil/controller_process.h"
@@ -19,11 +21,12 @@ constexpr std::int64_t kQuestion_ns = 10'000'000;
 
 std::unique_ptr<Link> make_link(const ProcessConfig& config, const EmulatedRobot& robot,
                                 const std::string& imu_device, std::span<const TimedFault> script) {
-  if (config.unitree) {
-    return std::make_unique<UnitreeLink>(*config.unitree, config.robot, config.simulator, script);
+  if (const auto* const can = dynamic_cast<const CanDriver*>(config.driver.get())) {
+    return std::make_unique<CanLink>(can->config(), config.robot.description, robot, imu_device,
+                                     script);
   }
-  return std::make_unique<CanLink>(*config.hardware, config.robot.description, robot, imu_device,
-                                   script);
+  return std::make_unique<UnitreeLink>(dynamic_cast<const UnitreeDriver&>(*config.driver).config(),
+                                       config.robot, config.simulator, script);
 }
 
 Place place_of(const EmulatedRobot& robot) {
@@ -74,11 +77,12 @@ std::string fault_kinds_help() {
 
 std::vector<TimedFault> read_faults(const ProcessConfig& config,
                                     const std::vector<std::string>& texts) {
-  FaultWords words{.kinds = config.unitree ? all_kinds<UnitreeLink>() : all_kinds<CanLink>(),
+  const auto* const can = dynamic_cast<const CanDriver*>(config.driver.get());
+  FaultWords words{.kinds = can ? all_kinds<CanLink>() : all_kinds<UnitreeLink>(),
                    .joints = config.robot.description.joint_names,
                    .buses = {}};
-  if (config.hardware) {
-    for (const BusConfig& bus : config.hardware->buses) words.buses.push_back(bus.interface);
+  if (can) {
+    for (const BusConfig& bus : can->config().buses) words.buses.push_back(bus.interface);
   }
   std::vector<TimedFault> faults;
   for (const std::string& text : texts) faults.push_back(read_fault(text, words));

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "drivers/unitree/unitree_driver.h"
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
@@ -194,7 +195,7 @@ RunVerdict run_unitree_fault(const FaultRun& run, const RunPlace& place, int dom
   own.assignments.push_back(fmt::format("hardware.unitree.domain={}", domain));
   if (!run.nothing_goes_wrong()) own.walk_s = kOthersWalk_s;
   const ProcessConfig config = read_bench_config(own.hardware, own.terrain, {}, own.assignments);
-  if (!config.unitree) {
+  if (!dynamic_cast<const UnitreeDriver*>(config.driver.get())) {
     throw InputError(
         fmt::format("{}: found another kind of hardware, expected unitree", own.hardware));
   }

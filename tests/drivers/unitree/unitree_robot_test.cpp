@@ -190,7 +190,8 @@ TEST(UnitreeDriverTest, DryRunSaysWhatWouldBeSent) {
   for (int j = 0; j < kNumJoints; ++j) robot.joint_names[j] = kJointNames[j];
   ControllerConfig controller;
   controller.damping.kd_nmsprad = 2.0;
-  const UnitreeDriver driver(config, robot, controller);
+  UnitreeDriver driver(config, robot);
+  driver.fit_to(controller);
   StandConfig stand;
   for (int j = 0; j < kNumJoints; ++j) {
     stand.nominal_rad[j] = std::array{0.0, 0.9, -1.8}[static_cast<std::size_t>(j % 3)];

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <thread>
 
+#include "drivers/can_driver.h"
+#include "drivers/unitree/unitree_driver.h"
 #include "rt/base/config_tree.h"
 #include "rt/run/process_config.h"
 #include "sim/ground/terrain_description.h"
@@ -134,7 +136,7 @@ TEST_F(HardwareTest, TheGateWaitsForStatesThatCome500TimesASecond) {
   tree.set("hardware.torque_scale=0.5");
   tree.set("hardware.hanging=true");
   const ProcessConfig config = read_process_config(tree, nullptr);
-  EXPECT_FALSE(config.hardware);
+  EXPECT_NE(dynamic_cast<const UnitreeDriver*>(config.driver.get()), nullptr);
   EXPECT_EQ(config.controller.gate.joints_fault_ticks, 40);
   EXPECT_EQ(config.controller.gate.imu_fault_ticks, 120);
   EXPECT_TRUE(config.controller.gate.hanging);
@@ -190,13 +192,17 @@ TEST_F(HardwareTest, CheckRefusesWhatDoesNotGoTogether) {
   expect_refused("check hardware.toml --arm", "expected no --hardware, --arm or --dry-run");
 }
 
+const HardwareConfig& hardware_of(const ProcessConfig& config) {
+  return dynamic_cast<const CanDriver&>(*config.driver).config();
+}
+
 HardwareConfig settings_of(const std::string& example,
                            const std::vector<std::string>& assignments) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, "dry-sand");
   tree.add_file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + example);
   for (const std::string& assignment : assignments) tree.set(assignment);
-  return *read_process_config(tree, nullptr).hardware;
+  return hardware_of(read_process_config(tree, nullptr));
 }
 
 TEST_F(HardwareTest, ADriveMayLetGoSoonWhereTheLoopMayMissLittle) {
@@ -228,7 +234,7 @@ TEST_F(HardwareTest, EffectiveSettingsReadBackToTheSame) {
     EXPECT_EQ(second.effective, first.effective);
     EXPECT_THAT(first.effective, HasSubstr("\nhardware.drive = [\n  {bus = \"can0\""));
     for (int j = 0; j < kNumJoints; ++j) {
-      EXPECT_EQ(second.hardware->drives[j].id(), first.hardware->drives[j].id());
+      EXPECT_EQ(hardware_of(second).drives[j].id(), hardware_of(first).drives[j].id());
       EXPECT_EQ(second.controller.gate.torque_limit_nm[j],
                 first.controller.gate.torque_limit_nm[j]);
     }

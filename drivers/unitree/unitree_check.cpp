@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/check/unitree_check.h"
+#include "drivers/unitree/unitree_check.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 
-#include "drivers/check/lines.h"
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
+#include "rt/base/typed_lines.h"
 
 namespace sandrunner {
 namespace {

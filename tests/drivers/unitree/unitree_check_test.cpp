@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/check/unitree_check.h"
+#include "drivers/unitree/unitree_check.h"
 
 #include <gmock/gmock.h>
 

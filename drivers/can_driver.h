@@ -13,11 +13,17 @@
 
 namespace sandrunner {
 
-/// The driver of robots whose drives are on CAN buses (can_robot.h).
+/// The driver of robots whose drives are on CAN buses (drivers/robot, drivers/check).
 class CanDriver final : public RobotDriver {
  public:
-  CanDriver(HardwareConfig config, RobotDescription robot, const GateConfig& gate);
+  /// Reads the settings (read_hardware_config).
+  CanDriver(ConfigTree& config, const RobotDescription& robot, const GateConfig& limits);
 
+  const HardwareConfig& config() const noexcept { return config_; }
+
+  void fit_gate(GateConfig& gate) const noexcept override;
+  void fit_to(const ControllerConfig& controller) override;
+  int check(const CheckTask& task) const override;
   /// The guard of drives whose time-out is not verified.
   void fork_processes() override;
   std::unique_ptr<RobotIo> connect() override;
@@ -26,9 +32,9 @@ class CanDriver final : public RobotDriver {
   std::string report(const RobotIo& robot) const override;
 
  private:
-  const HardwareConfig config_;
+  HardwareConfig config_;
   const RobotDescription robot_;
-  const GateConfig gate_;
+  GateConfig gate_;                  // of fit_to()
   std::unique_ptr<CanGuard> guard_;  // until connect(); null: none is needed
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/check/lines.h"
+#include "rt/base/typed_lines.h"
 
 #include <poll.h>
 #include <unistd.h>
