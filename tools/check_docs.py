@@ -170,14 +170,17 @@ def words(texts):
                 yield path, number, f'found "{found[0]}", expected {instead}'
 
 
-def doc_lines(tree, documents):
+def lines_of_prose(tree, documents):
     for document in documents:
         for number, line in document.outside_code():
             yield document.path, number, line
-    for header in tracked(tree, 'rt/core/*.h', 'sim/*.h', 'policy/*.h', 'drivers/*.h', 'rt/base/*.h',
-                          'estimator/*.h'):
-        for number, line in enumerate(header.read_text().splitlines(), 1):
-            yield header, number, line.partition('//')[2]
+    for file in tracked(tree, '*.h', '*.cpp', '*.py', '*.js', '*.mjs', '*.sh'):
+        if 'check_docs' in file.name:
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            comment = re.search(r'(?://|#|^\s*/?\*|""")(.*)', line)
+            if comment:
+                yield file, number, comment[1]
 
 
 def help_lines(programs):
@@ -239,7 +242,7 @@ def main():
     tree = options.tree.resolve()
     documents = [Document(path) for path in tracked(tree, '*.md')]
     findings = [*links(documents), *file_names(tree, documents), *sentences(documents),
-                *comments(tree), *words(doc_lines(tree, documents))]
+                *comments(tree), *words(lines_of_prose(tree, documents))]
     if options.run:
         programs = options.run.resolve()
         findings += [*words(help_lines(programs)), *run_blocks(tree, documents, programs)]

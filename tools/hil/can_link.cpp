@@ -67,7 +67,7 @@ std::string CanLink::greeting() const {
   return "twelve drives and the IMU are there; Ctrl-C ends them";
 }
 
-// Answers until the tick is over; whoever is late answers once and goes on.
+// Answers until the tick is over; a link that is late answers once and goes on.
 double CanLink::exchange(std::int64_t end_ns) {
   for (;;) {
     const std::int64_t left_ns = end_ns - clock_ns(CLOCK_MONOTONIC);

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMipBaseRate_hz = 1000, kXsensRate_hz = 400;
-constexpr unsigned kMipBaud = 115200;  // after power-up, until it is told another one
+constexpr unsigned kMipBaud = 115200;  // after power-up, until it receives another one
 
 /// Opens a pseudo-terminal whose other end is `link`.
 int open_terminal(const std::string& link) {

@@ -10,7 +10,7 @@ namespace sandrunner::hil {
 /// What is wrong with an emulated drive.
 struct DriveFaults {
   bool silent = false;      ///< hears nothing and says nothing
-  int lose_every = 0;       ///< of its replies one in so many is lost; 0: none
+  int lose_every = 0;       ///< of its replies one in this many is lost; 0: none
   std::uint8_t code = 0;    ///< its own fault: it gives no torque
   double offset_rad = 0.0;  ///< its encoder says so much more, at its output
   double temperature_degc = 35.0;
