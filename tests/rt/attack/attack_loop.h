@@ -105,7 +105,8 @@ class AttackedRobot final : public RobotIo {
 
   SafeCommand as_driven() const noexcept {
     const bool changed = drives_ == Drives::kTorque || drive_is_misled != 0 || limp != 0 ||
-                         inverted != 0 || torque_scale != all_joints(1.0);
+                         inverted != 0 || torque_scale != all_joints(1.0) ||
+                         sent_.blind_joints() != 0;
     if (!sent_.enabled() || !changed) return sent_;
     const sim::RigidState<double>& x = simulator_.state().robot.rigid;
     JointCommand c = sent_.joints();
@@ -120,7 +121,10 @@ class AttackedRobot final : public RobotIo {
                              c.kp_nmprad[j], c.kd_nmsprad[j], c.feedforward_nm[j]);
       const double sign = (inverted >> j & 1) != 0 ? -1.0 : 1.0;
       c.kp_nmprad[j] = c.kd_nmsprad[j] = 0.0;
-      c.feedforward_nm[j] = (limp >> j & 1) != 0 ? 0.0 : sign * torque_scale[j] * wanted_nm;
+      // A drive that answers gives a blind joint no torque in either mode (set_point in
+      // can_robot.h).
+      const bool no_torque = ((limp | sent_.blind_joints()) >> j & 1) != 0;
+      c.feedforward_nm[j] = no_torque ? 0.0 : sign * torque_scale[j] * wanted_nm;
     }
     return sim::pass_gate(c);
   }
