@@ -6,6 +6,8 @@
 
 #include "rt/base/config_tree.h"
 #include "rt/base/settings.h"
+#include "rt/core/gate_config.h"
+#include "rt/core/robot_description.h"
 #include "rt/core/robot_driver.h"
 
 namespace sandrunner {
