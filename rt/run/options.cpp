@@ -39,7 +39,10 @@ CLI::App* add_check(CLI::App& app, Options& o) {
       ->type_name("");
   CLI::Option* const plan =
       check->add_flag("--plan", o.check.plan, "print the load of the buses only; opens nothing");
-  check->add_flag("--move", o.check.move, "ask you to turn each joint by hand, and to lift the robot's front")->excludes(plan);
+  check
+      ->add_flag("--move", o.check.move,
+                 "ask you to turn each joint by hand, and to lift the robot's front")
+      ->excludes(plan);
   check
       ->add_flag(
           "--nudge", o.check.nudge,

@@ -25,7 +25,7 @@ struct BenchReport {
   double late_longest_s = 0.0;  ///< of the bench itself: end of a cycle after its slot
 };
 
-/// "was_enabled", "walk", "faults", ... A figure that is null has its reason beside it.
+/// "was_enabled", "walk", "faults", ... A figure that is null has its reason next to it.
 std::string report_json(const BenchReport& report);
 std::string report_lines(const BenchReport& report);
 

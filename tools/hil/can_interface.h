@@ -10,7 +10,7 @@ namespace sandrunner::hil {
 bool set_link(const std::string& interface, bool up) noexcept;
 
 /// Gives the interface a send queue for this many frames: with 0, senders get ENOBUFS, as from the
-/// full queue of a bus on which nobody acknowledges. The first time holds up the whole interface
+/// full queue of a bus on which no node acknowledges. The first time holds up the whole interface
 /// for some 10 ms, a change does not. False: no right to.
 bool set_queue(const std::string& interface, unsigned frames) noexcept;
 /// Takes it away again.
