@@ -101,7 +101,6 @@ void Packet::seal() noexcept {
 Packet ping() noexcept { return command(kBaseCommands, kPing); }
 Packet set_idle() noexcept { return command(kBaseCommands, kSetIdle); }
 Packet resume() noexcept { return command(kBaseCommands, kResume); }
-Packet ask_imu_base_rate() noexcept { return command(k3dmCommands, kImuBaseRate); }
 
 Packet ask_base_rate(std::uint8_t data_set) noexcept {
   return command(k3dmCommands, kBaseRate, Writer().put(data_set).data());

@@ -31,9 +31,8 @@ inline constexpr std::uint8_t kSensorData = 0x80, kFilterData = 0x82;
 
 /// Fields of kBaseCommands.
 inline constexpr std::uint8_t kPing = 0x01, kSetIdle = 0x02, kResume = 0x06, kUartSpeed = 0x09;
-/// Fields of k3dmCommands. kImuBaseRate is the older form, of which the manual gives an example.
-inline constexpr std::uint8_t kImuBaseRate = 0x06, kBaseRate = 0x0E, kMessageFormat = 0x0F,
-                              kStreamControl = 0x11;
+/// Fields of k3dmCommands.
+inline constexpr std::uint8_t kBaseRate = 0x0E, kMessageFormat = 0x0F, kStreamControl = 0x11;
 /// First byte of a setting: use the new one.
 inline constexpr std::uint8_t kApply = 0x01;
 /// Fields of replies: what each command is answered with, and what kBaseRate brings besides.
@@ -86,7 +85,6 @@ Packet set_idle() noexcept;
 Packet resume() noexcept;
 /// Asks the rate that decimations of `data_set` divide.
 Packet ask_base_rate(std::uint8_t data_set) noexcept;
-Packet ask_imu_base_rate() noexcept;
 struct DecimatedField {
   std::uint8_t descriptor = 0;
   std::uint16_t decimation = 1;  ///< base rate / wanted rate

@@ -54,7 +54,6 @@ TEST(MipCommandTest, CommandsAreTheManualsBytes) {
   EXPECT_EQ(bytes_of(ping()), (ByteVector{0x75, 0x65, 1, 2, 2, 1, 0xe0, 0xc6}));
   EXPECT_EQ(bytes_of(set_idle()), (ByteVector{0x75, 0x65, 1, 2, 2, 2, 0xe1, 0xc7}));
   EXPECT_EQ(bytes_of(resume()), (ByteVector{0x75, 0x65, 1, 2, 2, 6, 0xe5, 0xcb}));
-  EXPECT_EQ(bytes_of(ask_imu_base_rate()), (ByteVector{0x75, 0x65, 0x0c, 2, 2, 6, 0xf0, 0xf7}));
   const std::array<DecimatedField, 3> fields{{{kAccel, 1}, {kGyro, 1}, {kQuaternion, 2}}};
   EXPECT_EQ(bytes_of(message_format(kSensorData, fields)),
             (ByteVector{0x75, 0x65, 0x0c, 0x0e, 0x0e, 0x0f, 1, 0x80, 3,    4,
@@ -287,7 +286,6 @@ TEST(MipDeviceTest, RefusesWhatItDoesNotKnow) {
   const std::array<DecimatedField, 1> magnetometer{{{0x06, 1}}};
   EXPECT_EQ(code(message_format(kSensorData, magnetometer)), kNackParameter);
   EXPECT_EQ(code(stream_control(kFilterData, true)), kNackParameter);
-  EXPECT_EQ(code(ask_imu_base_rate()), kNackUnknown);
 }
 
 }  // namespace

@@ -288,7 +288,6 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
     stats.estimate_rms[k] += total.estimate_square[k] / total.samples;
   }
   stats.kl += kl;
-  stats.clip_fraction += total.clipped / total.samples;
   if (symmetry_) stats.asymmetry += 2.0 * total.asymmetry / total.samples / kActionSize;
   stats.imitation_rms += total.imitation / total.samples;
   stats.encoding_rms += total.encoding / total.samples;
@@ -339,7 +338,6 @@ UpdateStats Learner::update() {
   }
   for (double& square : stats.estimate_rms) square = std::sqrt(square / done);
   stats.kl /= done;
-  stats.clip_fraction /= done;
   stats.asymmetry = std::sqrt(stats.asymmetry / done);
   stats.imitation_rms = std::sqrt(stats.imitation_rms / done);
   stats.encoding_rms = std::sqrt(stats.encoding_rms / done);

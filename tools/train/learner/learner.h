@@ -56,7 +56,6 @@ struct UpdateStats {
   bool finite = true;  ///< false: a loss or gradient was not finite and nothing was learned
   std::array<double, kEstimateSize> estimate_rms{};  ///< error, units of estimate_target
   double kl = 0.0;
-  double clip_fraction = 0.0;
   double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
   double learning_rate = 0.0;       ///< after the update
   double action_std = 0.0;          ///< geometric mean, after the update
