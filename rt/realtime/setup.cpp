@@ -53,6 +53,13 @@ std::string grant_capabilities() {
                      unknown ? "sandrunner" : program);
 }
 
+/// The heap keeps what it has once had, and takes it from one piece; or as the C library has it.
+void keep_heap(bool keep) {
+  mallopt(M_TRIM_THRESHOLD, keep ? -1 : 128 * 1024);
+  mallopt(M_MMAP_MAX, keep ? 0 : 65536);
+  if (!keep) malloc_trim(0);
+}
+
 }  // namespace
 
 RealtimeConfig read_realtime_config(ConfigTree& config) {
@@ -96,9 +103,7 @@ RealtimeSetup::RealtimeSetup(const RealtimeConfig& config) : config_(config) {
   if (config_.policy_cpu < 0) config_.policy_cpu = free_cpu(config_.control_cpu);
   if (config_.affinity != Need::kOff) keep_others_off_control_cpu();
   if (config_.lock_memory != Need::kOff) {
-    // The heap keeps what it has once had, and takes it from one piece.
-    mallopt(M_TRIM_THRESHOLD, -1);
-    mallopt(M_MMAP_MAX, 0);
+    keep_heap(true);
     const int error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
     locked_ = error == 0;
     note(config_.lock_memory, "memory", error, "all pages locked", grant_capabilities());
@@ -116,6 +121,7 @@ RealtimeSetup::~RealtimeSetup() {
   for (const auto& [thread, cpus] : moved_) sched_setaffinity(thread, sizeof cpus, &cpus);
   if (dma_latency_ >= 0) close(dma_latency_);
   if (locked_) munlockall();
+  if (config_.lock_memory != Need::kOff) keep_heap(false);
 }
 
 void RealtimeSetup::note(Need need, const std::string& name, int error, const std::string& got,

@@ -4,34 +4,61 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
-#include <limits>
 #include <new>
 
 namespace sandrunner {
+namespace {
 
-std::string gzip(std::string_view bytes) {
-  constexpr int kLevel = 6, kGzip = 15 + 16, kMemory = 8;
-  z_stream stream{};
-  if (deflateInit2(&stream, kLevel, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) {
-    throw std::bad_alloc();
+/// Whoever adds bytes gets them appended to a text, as gzip and base64, a piece at a time.
+class PackedText {
+ public:
+  explicit PackedText(std::string& text) : text_(text) {
+    constexpr int kLevel = 6, kGzip = 15 + 16, kMemory = 8;
+    if (deflateInit2(&stream_, kLevel, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) {
+      throw std::bad_alloc();
+    }
+    empty();
   }
-  std::string packed(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  deflate(&stream, Z_FINISH);  // into the bound: all of it
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
-}
+  PackedText(const PackedText&) = delete;
+  PackedText& operator=(const PackedText&) = delete;
+  ~PackedText() { deflateEnd(&stream_); }
 
-std::string base64(std::string_view bytes) {
+  void add(std::string_view bytes) {
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream_.avail_in = static_cast<uInt>(bytes.size());
+    while (stream_.avail_in > 0) {
+      deflate(&stream_, Z_NO_FLUSH);
+      if (stream_.avail_out == 0) append();
+    }
+  }
+
+  void end() {
+    while (deflate(&stream_, Z_FINISH) != Z_STREAM_END) append();
+    append();
+  }
+
+ private:
+  void append() {
+    append_base64(text_, {packed_.data(), packed_.size() - stream_.avail_out});
+    empty();
+  }
+  void empty() {
+    stream_.next_out = reinterpret_cast<Bytef*>(packed_.data());
+    stream_.avail_out = static_cast<uInt>(packed_.size());
+  }
+
+  z_stream stream_{};
+  std::string& text_;
+  std::array<char, 3 * 16384> packed_;  ///< full ones need no padding in base64
+};
+
+}  // namespace
+
+void append_base64(std::string& text, std::string_view bytes) {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
     std::uint32_t group = 0;
@@ -42,24 +69,29 @@ std::string base64(std::string_view bytes) {
       text += k <= here ? kDigits[group >> (18 - 6 * k) & 63] : '=';
     }
   }
-  return text;
 }
 
-std::string pack_rows(std::span<const RowField> fields, std::span<const std::byte> rows,
-                      std::size_t row_bytes) {
-  std::string planes;
-  planes.reserve(rows.size());
+void append_gzip(std::string& text, std::string_view bytes) {
+  PackedText packed(text);
+  packed.add(bytes);
+  packed.end();
+}
+
+void append_rows(std::string& text, std::span<const RowField> fields,
+                 std::span<const std::byte* const> rows) {
+  PackedText packed(text);
+  std::string plane(rows.size(), '\0');
   for (const RowField& field : fields) {
     for (std::size_t k = 0; k < field.count; ++k) {
       for (std::size_t byte = 0; byte < field.width(); ++byte) {
         const std::size_t at = field.offset + field.width() * k + byte;
-        for (std::size_t row = 0; row < rows.size(); row += row_bytes) {
-          planes += static_cast<char>(rows[row + at]);
-        }
+        std::ranges::transform(rows, plane.begin(),
+                               [&](const std::byte* row) { return static_cast<char>(row[at]); });
+        packed.add(plane);
       }
     }
   }
-  return base64(gzip(planes));
+  packed.end();
 }
 
 }  // namespace sandrunner

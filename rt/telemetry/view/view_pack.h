@@ -11,20 +11,24 @@
 
 namespace sandrunner {
 
-/// gzip, without name or time: the same bytes for the same bytes.
-std::string gzip(std::string_view bytes);
+/// Appends `bytes` as base64.
+void append_base64(std::string& text, std::string_view bytes);
 
-std::string base64(std::string_view bytes);
+/// Appends `bytes` as gzip, without name or time, as base64: the same text for the same bytes.
+void append_gzip(std::string& text, std::string_view bytes);
 
-/// Rows as a page takes them: number by number, all rows of one before the next, each in planes
-/// (the first bytes of all rows, then the second ones, ...), since bytes of one significance are
-/// alike; then gzip and base64. `rows` is a whole number of rows of `row_bytes`.
-std::string pack_rows(std::span<const RowField> fields, std::span<const std::byte> rows,
-                      std::size_t row_bytes);
+/// Appends rows as a page takes them: number by number, all rows of one before the next, each in
+/// planes (the first bytes of all rows, then the second ones, ...), since bytes of one significance
+/// are alike; then gzip and base64. Needs little memory besides `text`.
+void append_rows(std::string& text, std::span<const RowField> fields,
+                 std::span<const std::byte* const> rows);
 
-template <typename Row>
-std::string pack_rows(std::span<const RowField> fields, const std::vector<Row>& rows) {
-  return pack_rows(fields, std::as_bytes(std::span(rows)), sizeof(Row));
+template <typename Rows>
+void append_rows(std::string& text, std::span<const RowField> fields, const Rows& rows) {
+  std::vector<const std::byte*> starts;
+  starts.reserve(rows.size());
+  for (const auto& row : rows) starts.push_back(std::as_bytes(std::span(&row, 1)).data());
+  append_rows(text, fields, std::span<const std::byte* const>(starts));
 }
 
 }  // namespace sandrunner

@@ -19,17 +19,23 @@ namespace {
 
 constexpr std::size_t kMostTiles = 1024;
 
-// Throws std::logic_error if page.html has no such line.
-void replace(std::string& text, std::string_view what, std::string_view by) {
-  const std::size_t at = text.find(what);
-  if (at == std::string::npos) {
-    throw std::logic_error(fmt::format("page.html: found no line '{}'", what));
+/// Appends what is before `line` in `html`, and takes both away from it. Throws std::logic_error if
+/// page.html has no such line.
+void append_until(std::string& page, std::string_view& html, std::string_view line) {
+  const std::size_t at = html.find(line);
+  if (at == std::string_view::npos) {
+    throw std::logic_error(fmt::format("page.html: found no line '{}'", line));
   }
-  text.replace(at, what.size(), by);
+  page += html.substr(0, at);
+  html.remove_prefix(at + line.size());
 }
 
-std::string data(std::string_view id, std::string_view content) {
-  return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, content);
+/// Appends an element with what `append_content` appends.
+template <typename AppendContent>
+void append_data(std::string& page, std::string_view id, const AppendContent& append_content) {
+  page += fmt::format("<script type=\"text/plain\" id=\"{}\">", id);
+  append_content();
+  page += "</script>\n";
 }
 
 std::string note_of(const RunRecord& record) {
@@ -48,21 +54,23 @@ std::string note_of(const RunRecord& record) {
 }
 
 std::string page_of(const RunRecord& record, std::string_view curve) {
-  const std::vector<RunRow> rows(record.rows.begin(), record.rows.end());
-  const std::vector<ViewTile> tiles = view_tiles(record.scene, rows, kMostTiles);
   std::vector<Footprint> footprints;
   std::ranges::copy_if(record.footprints, std::back_inserter(footprints), &Footprint::shows);
-  std::string page(embedded_page_file("page.html"));
-  replace(page, "<link rel=\"stylesheet\" href=\"page.css\">",
-          fmt::format("<style>\n{}</style>", embedded_page_file("page.css")));
-  replace(page, "<script src=\"page.js\"></script>",
-          data("hello", view_hello(record.scene, note_of(record))) +
-              data("frames", pack_rows(page_fields(), rows)) +
-              data("footprints", pack_rows(kFootprintFields, footprints)) +
-              data("tiles", pack_rows(kViewTileFields, tiles)) +
-              (curve.empty() ? "" : data("curve-data", base64(gzip(curve)))) +
-              data("program", base64(embedded_page_file("page.js.gz"))) +
-              fmt::format("<script>\n{}</script>", embedded_page_file("unpack.js")));
+  std::string page;
+  std::string_view html = embedded_page_file("page.html");
+  append_until(page, html, "<link rel=\"stylesheet\" href=\"page.css\">");
+  page += fmt::format("<style>\n{}</style>", embedded_page_file("page.css"));
+  append_until(page, html, "<script src=\"page.js\"></script>");
+  append_data(page, "hello", [&] { page += view_hello(record.scene, note_of(record)); });
+  append_data(page, "frames", [&] { append_rows(page, page_fields(), record.rows); });
+  append_data(page, "footprints", [&] { append_rows(page, kFootprintFields, footprints); });
+  append_data(page, "tiles", [&] {
+    append_rows(page, kViewTileFields, view_tiles(record.scene, record.rows, kMostTiles));
+  });
+  if (!curve.empty()) append_data(page, "curve-data", [&] { append_gzip(page, curve); });
+  append_data(page, "program", [&] { append_base64(page, embedded_page_file("page.js.gz")); });
+  page += fmt::format("<script>\n{}</script>", embedded_page_file("unpack.js"));
+  page += html;
   return page;
 }
 
@@ -70,11 +78,17 @@ std::string page_of(const RunRecord& record, std::string_view curve) {
 
 std::string run_page(const RunRecord& record, std::size_t most_bytes, std::string_view curve) {
   std::string page = page_of(record, curve);
-  if (page.size() <= most_bytes || record.rows.size() < 8) return page;
-  page = {};
+  const auto fits = [&](const RunRecord& r) {
+    return page.size() <= most_bytes || r.rows.size() < 8;
+  };
+  if (fits(record)) return page;
   RunRecord thinned = record;
-  thinned.thin();
-  return run_page(thinned, most_bytes, curve);
+  do {
+    page = {};
+    thinned.thin();
+    page = page_of(thinned, curve);
+  } while (!fits(thinned));
+  return page;
 }
 
 }  // namespace sandrunner

@@ -42,7 +42,7 @@ std::vector<ViewTile> new_view_tiles(const RunScene& scene, const RunRow& row,
   return tiles;
 }
 
-std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const RunRow> way,
+std::vector<ViewTile> view_tiles(const RunScene& scene, const std::deque<RunRow>& way,
                                  std::size_t most) {
   std::vector<ViewTile> tiles;
   std::set<std::pair<std::int32_t, std::int32_t>> seen;

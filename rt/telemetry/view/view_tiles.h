@@ -3,8 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <set>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -37,7 +37,7 @@ std::vector<ViewTile> new_view_tiles(const RunScene& scene, const RunRow& row,
 
 /// The ground within sight of a robot on its way, at most `most` tiles, the last ones; none if the
 /// ground is flat.
-std::vector<ViewTile> view_tiles(const RunScene& scene, std::span<const RunRow> way,
+std::vector<ViewTile> view_tiles(const RunScene& scene, const std::deque<RunRow>& way,
                                  std::size_t most);
 
 }  // namespace sandrunner

@@ -70,7 +70,9 @@ std::string packed(const std::vector<const Row*>& rows) {
   for (const Row* row : rows) {
     bytes.append(reinterpret_cast<const char*>(row->data()), row->size() * sizeof(float));
   }
-  return base64(bytes);
+  std::string text;
+  append_base64(text, bytes);
+  return text;
 }
 
 }  // namespace
