@@ -114,8 +114,8 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kEmergencyStop, "emergency_stop", "the emergency stop is pressed", "its input", kAlways,
      "1 tick"},
     {Fault::kDrivesCut, "drives_cut",
-     "the watchdog cut the drives: the control thread had not run for 100 ms", "watchdog", kAlways,
-     "1 tick"},
+     "the watchdog cut the drives, until a restart: the control thread had not run for 100 ms",
+     "watchdog", kAlways, "1 tick"},
     {Fault::kTime, "time", "time stood still or went back", "clock", kAlways, "1 tick"},
     {Fault::kLoopStalled, "loop_stalled",
      "the control loop itself missed 30 ms, in one stall or in many without as long between them: "

@@ -69,15 +69,17 @@ double cos_of_degrees(double angle_deg) noexcept {
   return cosine;
 }
 
-/// Adds `found` and the joints it is about to the latch, and remembers what began it: a stall of
-/// the loop, if there was one, as whatever else is found after it may be its doing.
+/// Adds `found` and the joints it is about to the latch, and remembers what began it: drives that
+/// the watchdog cut, which only a restart ends, or a stall of the loop, as whatever else is found
+/// after one of these may be its doing.
 void latch(std::uint64_t found, std::uint64_t joints, GateState& state) noexcept {
   if (found == 0) return;
   if (state.faults == 0) {
     state.fault_joints = state.blind_joints = 0;
-    const std::uint64_t stall = found & bit(Fault::kLoopStalled);
-    state.first_fault =
-        static_cast<Fault>(std::uint64_t{1} << std::countr_zero(stall != 0 ? stall : found));
+    std::uint64_t began = found & bit(Fault::kDrivesCut);
+    if (began == 0) began = found & bit(Fault::kLoopStalled);
+    if (began == 0) began = found;
+    state.first_fault = static_cast<Fault>(std::uint64_t{1} << std::countr_zero(began));
     state.first_fault_tick = state.tick;
   }
   state.faults |= found;

@@ -11,6 +11,7 @@ constexpr const char* fault_remedy(Fault fault) noexcept {
   if (fault == Fault::kJointMisplaced) {
     return "fold all legs by hand, reset_fault, arm again; if they are folded: sandrunner check";
   }
+  if (fault == Fault::kDrivesCut) return "restart the program";
   return nullptr;
 }
 

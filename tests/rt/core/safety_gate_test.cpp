@@ -183,6 +183,16 @@ TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
   EXPECT_EQ(state.first_fault, Fault::kLoopStalled);
 }
 
+// No reset ends it, so an operator is to read its name.
+TEST_F(SafetyGateTest, DrivesThatWereCutComeBeforeTheStallThatLedToIt) {
+  judge(Mode::kWalk);
+  stall(config.stall_fault_ticks + 1);
+  sensors.drives_cut = 1;
+  EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kLoopStalled) |
+                                    static_cast<std::uint64_t>(Fault::kDrivesCut));
+  EXPECT_EQ(state.first_fault, Fault::kDrivesCut);
+}
+
 double torque_of(const SafeCommand& command, const JointState& joints, int j) {
   const JointCommand& c = command.joints();
   return joint_torque(joints.position_rad[j], joints.velocity_radps[j], c.position_rad[j],
