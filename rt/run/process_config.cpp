@@ -36,7 +36,7 @@ constexpr Setting<ProcessConfig> kSummary[] = {
 constexpr const char* kFromPolicy = "from the policy file";
 
 /// Ends of ranges that the robot's file gives: no setting gives a drive more than that.
-struct Ranges {
+struct RobotRanges {
   double kp_nmprad, kd_nmsprad;
   LegJoints<double> speed_fault_radps;
   double power_w;
@@ -49,7 +49,7 @@ constexpr const char* kKpRange = "0 to gains.kp_limit_nmprad of the robot file";
 constexpr const char* kKdRange = "0 to gains.kd_limit_nmsprad of the robot file";
 
 using W = WalkConfig;
-auto walk_settings(const Ranges& r) {
+auto walk_settings(const RobotRanges& r) {
   return std::to_array<Setting<W>>({
       {"kp_nmprad", &W::kp_nmprad, 0.0, r.kp_nmprad, "Position gain of a joint in Walk.",
        kFromPolicy, kKpRange},
@@ -74,7 +74,7 @@ constexpr Setting<W> kPolicy[] = {
 };
 
 using S = StandConfig;
-auto stand_settings(const Ranges& r) {
+auto stand_settings(const RobotRanges& r) {
   return std::to_array<Setting<S>>({
       {"kp_nmprad", &S::kp_nmprad, 0.0, r.kp_nmprad, "Position gain of StandUp and Stand.",
        kFromRobotFile, kKpRange},
@@ -96,11 +96,11 @@ auto stand_settings(const Ranges& r) {
 }
 
 using D = DampingConfig;
-auto damping_settings(const Ranges& r) {
+auto damping_settings(const RobotRanges& r) {
   return std::to_array<Setting<D>>({
       // With none a robot that is let down falls.
-      {"kd_nmsprad", &D::kd_nmsprad, r.least(kLeastDamping * r.kd_nmsprad), r.kd_nmsprad,
-       "Velocity gain of Damping and after a fault.", kFromRobotFile,
+      {"kd_nmsprad", &D::kd_nmsprad, r.least(kLeastDamping * r.kd_nmsprad),
+       r.kd_nmsprad, "Velocity gain of Damping and after a fault.", kFromRobotFile,
        "0.1 to 1 times gains.kd_limit_nmsprad of the robot file"},
       // With less it is dropped.
       {"fault_s", &D::fault_s, r.least(0.5), 60.0, "Damping after a fault, before drives go off."},
@@ -144,7 +144,7 @@ constexpr Setting<LoweredLimits> kLowered[] = {
 };
 
 /// The thresholds of the gate. Those of the robot's file may be lowered, too.
-std::vector<Setting<GateConfig>> gate_settings(const Ranges& r) {
+std::vector<Setting<GateConfig>> gate_settings(const RobotRanges& r) {
   std::vector<Setting<GateConfig>> rows;
   const auto add = [&](const auto& t) {
     if (t.key == nullptr) return;
@@ -172,7 +172,8 @@ std::vector<Setting<GateConfig>> gate_settings(const Ranges& r) {
   return rows;
 }
 
-Ranges ranges_of(const sim::Robot& robot, bool recorded) {
+RobotRanges ranges_of(const sim::Robot& robot, Ranges ranges) {
+  const bool recorded = ranges == Ranges::kRecorded;
   // A recording's thresholds are held to what is compiled in alone.
   LegJoints<double> speed_fault_radps = robot.speed_fault_radps;
   if (recorded) speed_fault_radps.fill(gate_threshold(&GateConfig::speed_fault_radps).ceiling);
@@ -186,13 +187,8 @@ Ranges ranges_of(const sim::Robot& robot, bool recorded) {
 
 /// What the controller has before its own settings are read: from robot, policy, hardware and
 /// operators.
-struct ControllerDefaults {
-  ControllerConfig config;
-};
-
-ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec* spec,
-                                       std::uint64_t operator_hold_ticks,
-                                       const RobotDriver* driver) {
+ControllerConfig controller_defaults(const sim::Robot& robot, const PolicySpec* spec,
+                                     std::uint64_t operator_hold_ticks, const RobotDriver* driver) {
   ControllerConfig c = controller_config(robot);
   if (spec) {
     c.walk.kp_nmprad = spec->kp_nmprad;
@@ -202,12 +198,12 @@ ControllerDefaults controller_defaults(const sim::Robot& robot, const PolicySpec
   }
   c.shaping.operator_hold_ticks = operator_hold_ticks;
   if (driver) driver->fit_gate(c.gate);
-  return {c};
+  return c;
 }
 
-ControllerConfig read_controller(ConfigTree& config, const ControllerDefaults& defaults,
-                                 const Ranges& ranges) {
-  ControllerConfig c = defaults.config;
+ControllerConfig read_controller(ConfigTree& config, ControllerConfig c,
+                                 const RobotRanges& ranges) {
+  const CommandEnvelope trained = c.shaping.envelope;
   read_settings(config, "controller.walk", walk_settings(ranges), c.walk);
   read_settings(config, "policy", kPolicy, c.walk);
   read_settings(config, "controller.stand", stand_settings(ranges), c.stand);
@@ -228,7 +224,7 @@ ControllerConfig read_controller(ConfigTree& config, const ControllerDefaults& d
     fault_radps = std::min(fault_radps, ranges.speed_fault_radps[j]);
   }
   // A stop is not gentler for a robot that is to be driven gently, nor harder than it was trained.
-  const CommandEnvelope &trained = defaults.config.shaping.envelope, &set = c.shaping.envelope;
+  const CommandEnvelope& set = c.shaping.envelope;
   const auto at_most = [](double& value, double a, double b) {
     value = std::min(value, std::max(a, b));
   };
@@ -285,7 +281,7 @@ ControllerConfig controller_config(const sim::Robot& robot) {
 }
 
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
-                                  const sim::Robot* robot) {
+                                  const sim::Robot* robot, Ranges ranges) {
   ProcessConfig p;
   p.robot = read_robot(config, robot);
   if (spec) fit_robot_to(*spec, p.robot);
@@ -294,9 +290,9 @@ ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
   p.driver = make_robot_driver(config, p.robot.description, controller_config(p.robot).gate);
   // Who commands from afar may be lost on the way: the robot then slows down and stands.
   const std::uint64_t hold_ticks = p.dds.enabled || p.view_drive ? p.dds.stale_ticks() : 0;
-  const ControllerDefaults defaults =
-      controller_defaults(p.robot, spec, hold_ticks, p.driver.get());
-  p.controller = read_controller(config, defaults, ranges_of(p.robot, robot != nullptr));
+  p.controller =
+      read_controller(config, controller_defaults(p.robot, spec, hold_ticks, p.driver.get()),
+                      ranges_of(p.robot, ranges));
   if (p.driver) p.driver->fit_to(p.controller);
   p.simulator = sim::read_simulator_config(config, p.robot);
   p.realtime = read_realtime_config(config);
@@ -314,7 +310,7 @@ std::string shipped_policy_for(ConfigTree& config) {
 }
 
 std::vector<SettingLine> process_settings() {
-  const Ranges in_words{};
+  const RobotRanges in_words{};
   std::vector<SettingLine> lines;
   list_settings(lines, "", kRobot);
   list_settings(lines, "policy", kPolicy);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,12 +37,15 @@ struct ProcessConfig {
 /// What the controller takes from a robot: posture, gains, limits. Walk's gains are the policy's.
 ControllerConfig controller_config(const sim::Robot& robot);
 
+/// What settings may be: what a run may have, or also what no run may have any more, but a
+/// recording has.
+enum class Ranges : std::uint8_t { kRun, kRecorded };
+
 /// Reads everything and rejects what is unknown. The robot's figures and the policy's gains (`spec`
 /// may be null) are the defaults of the controller's. `robot`, if given, replaces the one that the
-/// key "robot" names: that of a recording, whose settings are then taken as they were, even those
-/// that no run may have any more. Throws InputError.
+/// key "robot" names. Throws InputError.
 ProcessConfig read_process_config(ConfigTree& config, const PolicySpec* spec,
-                                  const sim::Robot* robot = nullptr);
+                                  const sim::Robot* robot = nullptr, Ranges ranges = Ranges::kRun);
 
 /// Name of the robot whose shipped policy a run with these settings takes: the robot that the key
 /// "robot" names, or Raibo for one that no policy ships for. Throws InputError.

@@ -99,7 +99,8 @@ struct Player {
     }
     const sim::Robot robot = recorded_robot(info, arguments.file);
     const bool another = tree.text("robot", "") != robot_name;  // by --set
-    config = read_process_config(tree, policy.spec(), another ? nullptr : &robot);
+    config = another ? read_process_config(tree, policy.spec())
+                     : read_process_config(tree, policy.spec(), &robot, Ranges::kRecorded);
     if (info.first_tick == 0 || !info.state.empty()) {
       replay.emplace(config.controller, start_mode_of(info), policy);
       if (info.first_tick > 0) {

@@ -221,7 +221,13 @@ TEST(ProcessConfigTest, ARecordingMayHaveSettingsThatNoRunMayHaveAnyMore) {
     ConfigTree tree;
     sim::add_terrain_layer(tree, "rigid");
     tree.set(setting);
-    EXPECT_EQ(value_of(read_process_config(tree, nullptr, &raibo).controller), 0.5) << setting;
+    EXPECT_EQ(value_of(read_process_config(tree, nullptr, &raibo, Ranges::kRecorded).controller),
+              0.5)
+        << setting;
+    ConfigTree run;
+    sim::add_terrain_layer(run, "rigid");
+    run.set(setting);
+    EXPECT_THROW(read_process_config(run, nullptr, &raibo), InputError) << setting;
   }
 }
 
