@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every fault that judges sensors, at the corners of every legal rate of drives and IMU: none is
-// off, and a good robot has none.
+// Every fault that judges sensors, in every mode in which it is judged, with both kinds of drives,
+// on three grounds, at the corners of every legal rate of drives and IMU: none is off, and a good
+// robot has none.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstdio>
 #include <functional>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -82,11 +84,11 @@ std::vector<RateCorner> every_corner() {
 }
 
 /// The robot of a corner, with the gate that the program would give it.
-World world_at(const RateCorner& corner) {
+World world_at(const RateCorner& corner, const std::string& terrain) {
   const std::string robot = corner.file == SANDRUNNER_UNITREE_EXAMPLE ? "go2" : "raibo";
-  World world(robot, "rigid");
+  World world(robot, terrain);
   ConfigTree tree;
-  sim::add_terrain_layer(tree, "rigid");
+  sim::add_terrain_layer(tree, terrain);
   tree.add_file(corner.file);
   for (const std::string& setting : corner.settings) tree.set(setting);
   world.config = read_process_config(tree, &world.policy.spec());
@@ -96,7 +98,7 @@ World world_at(const RateCorner& corner) {
 struct SensorCase {
   Fault fault;
   const char* what;
-  Mode mode;
+  ModeSet modes;    ///< in which the robot does what shows it; those of the fault table at most
   double within_s;  ///< a generous limit at any rate
   std::function<void(AttackLoop&)> begin;
 };
@@ -118,31 +120,31 @@ std::vector<SensorCase> every_sensor_case() {
   using F = SensorFrame&;
   using H = const SensorFrame&;
   using N = std::uint64_t;
-  const Mode walk = Mode::kWalk, stand = Mode::kStand;
+  const ModeSet walk = kWalkOnly, stand = mode_set(Mode::kStand), all = kAlways;
   const auto held_joint = [](F f, H held, int j) {
     f.joints.position_rad[j] = held.joints.position_rad[j];
     f.joints.velocity_radps[j] = held.joints.velocity_radps[j];
   };
   return {
-      {Fault::kNonFiniteJoint, "NaN", walk, 0.02,
+      {Fault::kNonFiniteJoint, "NaN", all, 0.02,
        sensor([](F f, H, N) { f.joints.position_rad[4] = kNan; })},
-      {Fault::kNonFiniteImu, "NaN", walk, 0.02,
+      {Fault::kNonFiniteImu, "NaN", all, 0.02,
        sensor([](F f, H, N) { f.imu.angular_velocity_radps[1] = kNan; })},
-      {Fault::kJointsStale, "silent", walk, 0.02,
+      {Fault::kJointsStale, "silent", all, 0.02,
        sensor([](F f, H held, N) { f.joints = held.joints; })},
-      {Fault::kImuStale, "silent", walk, 0.06, sensor([](F f, H held, N) { f.imu = held.imu; })},
-      {Fault::kJointPosition, "0.4 rad past a stop", walk, 0.02,
+      {Fault::kImuStale, "silent", all, 0.06, sensor([](F f, H held, N) { f.imu = held.imu; })},
+      {Fault::kJointPosition, "0.4 rad past a stop", all, 0.02,
        sensor([](F f, H, N) { f.joints.position_rad[2] = 0.4; })},
-      {Fault::kJointSpeed, "70 rad/s", walk, 0.02,
+      {Fault::kJointSpeed, "70 rad/s", all, 0.02,
        sensor([](F f, H, N) { f.joints.velocity_radps[1] = 70.0; })},
-      {Fault::kJointTorque, "1.3 of the limit", walk, 0.02,
+      {Fault::kJointTorque, "1.3 of the limit", all, 0.02,
        sensor([](F f, H, N) { f.joints.torque_nm[7] = 83.0; })},
-      {Fault::kTilt, "61 degrees", walk, 0.02, sensor([](F f, H, N) {
+      {Fault::kTilt, "61 degrees", all, 0.02, sensor([](F f, H, N) {
          f.imu.orientation_wxyz = turned(f.imu.orientation_wxyz, {1.0, 0.0, 0.0}, 1.2);
        })},
-      {Fault::kDriveFault, "a code", walk, 0.02,
+      {Fault::kDriveFault, "a code", all, 0.02,
        sensor([](F f, H, N) { f.joints.drive_fault[11] = 1; })},
-      {Fault::kEncoderJump, "0.45 rad", walk, 0.02,
+      {Fault::kEncoderJump, "0.45 rad", all, 0.02,
        sensor([](F f, H, N) { f.joints.position_rad[0] += 0.45; })},
       {Fault::kEncoderFrozen, "one, in motion", walk, 1.5,
        sensor([held_joint](F f, H held, N) { held_joint(f, held, 1); })},
@@ -153,36 +155,36 @@ std::vector<SensorCase> every_sensor_case() {
       {Fault::kOverload, "1.9 of what it gives for ever", stand, 30.0, sensor([](F f, H, N n) {
          if (n % 160 < 150) f.joints.torque_nm[7] = n % 2 == 0 ? 52.0 : 52.1;
        })},
-      {Fault::kFreeFall, "no weight", walk, 0.4, sensor([](F f, H, N n) {
+      {Fault::kFreeFall, "no weight", all, 0.4, sensor([](F f, H, N n) {
          f.imu.linear_acceleration_mps2 = {0.5, 0.5, 0.1 + 1e-6 * static_cast<double>(n)};
        })},
-      {Fault::kImuFrozen, "all of it", walk, 0.2, sensor([](F f, H held, N) {
+      {Fault::kImuFrozen, "all of it", all, 0.2, sensor([](F f, H held, N) {
          const std::uint64_t fresh = f.imu.tick;
          f.imu = held.imu;
          f.imu.tick = fresh;
        })},
-      {Fault::kImuRange, "41 rad/s", walk, 0.02,
+      {Fault::kImuRange, "41 rad/s", all, 0.02,
        sensor([](F f, H, N) { f.imu.angular_velocity_radps[1] = 41.0; })},
-      {Fault::kImuAttitude, "accelerometer off by 46 degrees", walk, 3.0, sensor([](F f, H, N) {
+      {Fault::kImuAttitude, "accelerometer off by 46 degrees", all, 3.0, sensor([](F f, H, N) {
          Vector3& felt = f.imu.linear_acceleration_mps2;
          felt = rotated(turned({1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, 0.8), felt);
        })},
-      {Fault::kImuGyro, "3 rad/s too much", walk, 0.5,
+      {Fault::kImuGyro, "3 rad/s too much", all, 0.5,
        sensor([](F f, H, N) { f.imu.angular_velocity_radps[2] += 3.0; })},
       {Fault::kImuGyro, "gyroscope reversed", walk, 3.0, sensor([](F f, H, N) {
          for (double& w : f.imu.angular_velocity_radps) w = -w;
        })},
-      {Fault::kTorqueMissing, "0.3 of the limit too much", walk, 0.2,
+      {Fault::kTorqueMissing, "0.3 of the limit too much", all, 0.2,
        sensor([](F f, H, N) { f.joints.torque_nm[4] += 20.0; })},
       {Fault::kTorqueMissing, "a knee without torque", walk, 1.5,
        [](AttackLoop& loop) { loop.robot.limp = 1u << 5; }},
-      {Fault::kSpeedMismatch, "2 rad/s too much", walk, 1.0,
+      {Fault::kSpeedMismatch, "2 rad/s too much", all, 1.0,
        sensor([](F f, H, N) { f.joints.velocity_radps[1] += 2.0; })},
       {Fault::kSpeedMismatch, "a knee's speed reversed", walk, 3.0,
        sensor([](F f, H, N) { f.joints.velocity_radps[2] *= -1.0; })},
       {Fault::kSpeedMismatch, "a knee's speed stays 0", walk, 3.0,
        sensor([](F f, H, N) { f.joints.velocity_radps[2] = 0.0; })},
-      {Fault::kForeignTraffic, "a frame", walk, 0.02,
+      {Fault::kForeignTraffic, "a frame", all, 0.02,
        sensor([](F f, H, N) { f.foreign_traffic = 1u << 4; })},
   };
 }
@@ -193,9 +195,9 @@ struct CornerResult {
 };
 
 /// Runs until a fault or `within_s`.
-CornerResult run_case(const World& world, const SampleRates& rates, const Snapshot& at,
-                      const SensorCase& c) {
-  AttackLoop loop(world, Drives::kGains, at);
+CornerResult run_case(const World& world, Drives drives, const SampleRates& rates,
+                      const Snapshot& at, const SensorCase& c) {
+  AttackLoop loop(world, drives, at);
   loop.robot.rates = rates;
   loop.command.velocity.vx_mps = 1.0;
   loop.run(0.05);
@@ -214,41 +216,73 @@ CornerResult run_case(const World& world, const SampleRates& rates, const Snapsh
   return result;
 }
 
-/// The cases of one corner; what was not found, or found under a wrong name.
-int run_corner(const RateCorner& corner, const std::vector<SensorCase>& cases) {
-  const World world = world_at(corner);
+struct Corner {
+  RateCorner at;
+  std::string terrain = "rigid";
+  Drives drives = Drives::kGains;
+
+  std::string name() const {
+    return at.name + ", " + terrain + (drives == Drives::kGains ? ", gains" : ", torques");
+  }
+};
+
+/// The robot in every mode that judges, or none if a good robot has a fault on the way.
+std::map<Mode, Snapshot> snapshots_of(const Corner& corner, const World& world) {
   std::map<Mode, Snapshot> snapshots;
-  {
-    AttackLoop loop(world, Drives::kGains);
-    loop.robot.rates = corner.rates;
-    loop.stand_up();
-    snapshots.emplace(Mode::kStand, loop.snapshot());
-    loop.walk({.vx_mps = 1.0}, 4.0);
-    snapshots.emplace(Mode::kWalk, loop.snapshot());
-    loop.run(10.0);
-    EXPECT_EQ(loop.fault(), Fault::kNone)
-        << corner.name << ", control: " << fault_name(loop.fault());
-    std::printf("| %s | control, 14 s of Walk | %s |\n", corner.name.c_str(),
-                loop.fault() == Fault::kNone ? "no fault" : fault_name(loop.fault()));
-    if (loop.fault() != Fault::kNone) return 1;
-  }
-  int missed = 0;
+  AttackLoop loop(world, corner.drives);
+  loop.robot.rates = corner.at.rates;
+  const auto keep = [&](Mode mode) {
+    EXPECT_EQ(loop.mode(), mode) << corner.name();
+    snapshots.emplace(mode, loop.snapshot());
+  };
+  loop.run(0.1);
+  keep(Mode::kPassive);
+  loop.ask(ModeRequest::kArm);
+  loop.run(0.1);
+  keep(Mode::kDamping);
+  loop.ask(ModeRequest::kStand);
+  loop.run(1.5);
+  keep(Mode::kStandUp);
+  loop.run(2.5);
+  keep(Mode::kStand);
+  loop.walk({.vx_mps = 1.0}, 4.0);
+  keep(Mode::kWalk);
+  loop.run(10.0);
+  const bool sound = loop.fault() == Fault::kNone;
+  EXPECT_TRUE(sound) << corner.name() << ", control: " << fault_name(loop.fault());
+  std::printf("| %s | control, 14 s of Walk | %s |\n", corner.name().c_str(),
+              sound ? "no fault" : fault_name(loop.fault()));
+  if (!sound) snapshots.clear();
+  return snapshots;
+}
+
+struct Tally {
+  int runs = 0, other = 0, missed = 0;
+};
+
+/// The cases of one corner, each in its modes.
+void run_corner(const Corner& corner, const std::vector<SensorCase>& cases, Tally& tally) {
+  const World world = world_at(corner.at, corner.terrain);
+  const std::map<Mode, Snapshot> snapshots = snapshots_of(corner, world);
   for (const SensorCase& c : cases) {
-    const CornerResult seen = run_case(world, corner.rates, snapshots.at(c.mode), c);
-    std::printf("| %s | `%s`: %s | ", corner.name.c_str(), fault_name(c.fault), c.what);
-    if (seen.found == c.fault) {
-      std::printf("%.2f ms |\n", 1e3 * seen.after_s);
-    } else if (seen.found != Fault::kNone) {
-      std::printf("other: `%s` after %.2f ms |\n", fault_name(seen.found), 1e3 * seen.after_s);
-    } else {
-      ++missed;
-      std::printf("**NOT detected** in %.2f s |\n", c.within_s);
+    const FaultRow& row = kFaultTable[std::countr_zero(fault_bit(c.fault))];
+    for (const auto& [mode, at] : snapshots) {
+      if ((row.modes & c.modes & mode_set(mode)) == 0) continue;
+      const CornerResult seen = run_case(world, corner.drives, corner.at.rates, at, c);
+      ++tally.runs;
+      tally.other += seen.found != Fault::kNone && seen.found != c.fault;
+      tally.missed += seen.found == Fault::kNone;
+      if (seen.found != c.fault || seen.after_s > 0.1) {
+        std::printf("| %s | `%s`: %s, in %s | %s after %.2f ms |\n", corner.name().c_str(),
+                    row.name, c.what, mode_name(mode),
+                    seen.found == Fault::kNone ? "**nothing**" : fault_name(seen.found),
+                    1e3 * seen.after_s);
+        std::fflush(stdout);
+      }
+      EXPECT_NE(seen.found, Fault::kNone) << corner.name() << ", " << row.name << ", " << c.what
+                                          << ", in " << mode_name(mode) << ": not detected";
     }
-    EXPECT_NE(seen.found, Fault::kNone) << corner.name << ", " << fault_name(c.fault) << ", "
-                                        << c.what << ": not detected in " << c.within_s << " s";
-    std::fflush(stdout);
   }
-  return missed;
 }
 
 TEST(SampleRatesTest, NoSpeedCheckIsOffWhereDrivesAnswerSeldom) {
@@ -256,23 +290,32 @@ TEST(SampleRatesTest, NoSpeedCheckIsOffWhereDrivesAnswerSeldom) {
   for (const SensorCase& c : every_sensor_case()) {
     if (c.fault == Fault::kSpeedMismatch) cases.push_back(c);
   }
-  for (const RateCorner& corner : every_corner()) {
-    if (corner.is_default || corner.name == "drives 400 Hz, jitter 0") run_corner(corner, cases);
+  Tally tally;
+  for (const RateCorner& at : every_corner()) {
+    if (at.is_default || at.name == "drives 400 Hz, jitter 0") run_corner({at}, cases, tally);
   }
 }
 
-TEST(SampleRatesTest, CampaignOverEveryRowAndRate) {
-  std::printf("| rate | row | detected within |\n|---|---|---|\n");
-  for (const RateCorner& corner : every_corner()) {
-    if (is_selected(corner.name)) run_corner(corner, every_sensor_case());
+TEST(SampleRatesTest, CampaignOverEveryRowModeDriveRateAndGround) {
+  std::printf("| corner | row | detected |\n|---|---|---|\n");
+  Tally tally;
+  for (const RateCorner& at : every_corner()) {
+    for (const char* terrain : {"rigid", "dry-sand", "grass"}) {
+      for (const Drives drives : {Drives::kGains, Drives::kTorque}) {
+        const Corner corner{at, terrain, drives};
+        if (is_selected(corner.name())) run_corner(corner, every_sensor_case(), tally);
+      }
+    }
   }
+  std::printf("%d runs, %d found under another name, %d not found\n", tally.runs, tally.other,
+              tally.missed);
 }
 
 /// One attitude that is lost is no frozen IMU.
 TEST(SampleRatesTest, OneLostAttitudeIsNoFault) {
   for (const RateCorner& corner : every_corner()) {
     if (corner.rates.attitude_ticks <= corner.rates.imu_ticks) continue;
-    const World world = world_at(corner);
+    const World world = world_at(corner, "rigid");
     AttackLoop loop(world, Drives::kGains);
     loop.robot.rates = corner.rates;
     loop.stand_up();
