@@ -88,7 +88,7 @@ void release_sport_mode(RobotLink& link, const RobotFigures& robot,
 }  // namespace
 
 RobotFigures figures_of(const RobotDescription& robot, const GateConfig& gate,
-                        double damping_kd_nmsprad) {
+                        const LegJoints<double>& damping_kd_nmsprad) {
   return {.joint_names = robot.joint_names,
           .lower_rad = gate.joint_lower_rad,
           .upper_rad = gate.joint_upper_rad,

@@ -18,11 +18,11 @@ struct RobotFigures {
   JointArray<std::string> joint_names;
   JointArray<double> lower_rad{}, upper_rad{};  ///< stops
   JointArray<double> lying_rad{};
-  double damping_kd_nmsprad = 0.0;  ///< of the wire's own damping
+  LegJoints<double> damping_kd_nmsprad{};  ///< of the wire's own damping
 };
 
 RobotFigures figures_of(const RobotDescription& robot, const GateConfig& gate,
-                        double damping_kd_nmsprad);
+                        const LegJoints<double>& damping_kd_nmsprad);
 
 /// What the states themselves say.
 struct StateFigures {

@@ -86,11 +86,13 @@ void encode_off(LowCmd& out) noexcept {
   out.crc = crc_of(out);
 }
 
-void encode_damping(std::uint8_t motor_mode, double kd_nmsprad, LowCmd& out) noexcept {
+void encode_damping(std::uint8_t motor_mode, const LegJoints<double>& kd_nmsprad,
+                    LowCmd& out) noexcept {
   begin(out);
   for (int j = 0; j < kNumJoints; ++j) {
-    out.motor_cmd[j].mode = motor_mode;
-    out.motor_cmd[j].kd = static_cast<float>(kd_nmsprad);
+    unitree_go_msg_dds__MotorCmd_& motor = out.motor_cmd[motor_of(j)];
+    motor.mode = motor_mode;
+    motor.kd = static_cast<float>(kd_nmsprad[j % kJointsPerLeg]);
   }
   out.crc = crc_of(out);
 }

@@ -36,7 +36,8 @@ std::uint32_t crc_of(const LowState& state) noexcept;
 /// All motors off.
 void encode_off(LowCmd& out) noexcept;
 /// All joints damped.
-void encode_damping(std::uint8_t motor_mode, double kd_nmsprad, LowCmd& out) noexcept;
+void encode_damping(std::uint8_t motor_mode, const LegJoints<double>& kd_nmsprad,
+                    LowCmd& out) noexcept;
 /// The commands of all joints; those in `blind_joints` (bit j for joint j) get no torque. False,
 /// and `out` is encode_off's, if a number does not fit into a float.
 bool encode_joints(std::uint8_t motor_mode, const JointCommand& joints, std::uint64_t blind_joints,

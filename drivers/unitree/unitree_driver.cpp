@@ -63,7 +63,7 @@ std::string UnitreeDriver::dry_run(const StandConfig& stand) const {
   text += fmt::format("off: all motors in mode 0, CRC {:08X}\n", command.crc);
   unitree::encode_damping(mode, robot_.damping_kd_nmsprad, command);
   text += fmt::format("damping: mode {}, kd {:.3f}, CRC {:08X}\n", config_.motor_mode,
-                      robot_.damping_kd_nmsprad, command.crc);
+                      fmt::join(robot_.damping_kd_nmsprad, ", "), command.crc);
   JointCommand joints;
   joints.position_rad = stand.nominal_rad;
   joints.kp_nmprad.fill(stand.kp_nmprad);

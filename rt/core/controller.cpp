@@ -90,7 +90,7 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) no
       enabled = false;
       break;
     case Mode::kDamping:
-      wanted.kd_nmsprad.fill(config_.damping.kd_nmsprad);
+      wanted.kd_nmsprad = every_leg(config_.damping.kd_nmsprad);
       break;
     case Mode::kStandUp:
       wanted = motion_command(tick);

@@ -66,8 +66,8 @@ struct StandConfig {
 
 /// Damping and the damping after a fault.
 struct DampingConfig {
-  double kd_nmsprad = 0.0;  ///< from the robot's file
-  double fault_s = 2.0;     ///< after a fault: damping for this long, then drives off
+  LegJoints<double> kd_nmsprad{};  ///< from the robot's file
+  double fault_s = 2.0;            ///< after a fault: damping for this long, then drives off
 };
 
 /// Shaping of the velocity command, and what becomes of a robot whose operator is lost.

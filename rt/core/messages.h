@@ -52,6 +52,12 @@ inline constexpr std::uint64_t kAllJoints = (std::uint64_t{1} << kNumJoints) - 1
 /// element `j % kJointsPerLeg`.
 template <typename T>
 using LegJoints = std::array<T, kJointsPerLeg>;
+template <typename T>
+constexpr JointArray<T> every_leg(const LegJoints<T>& leg) noexcept {
+  JointArray<T> joints{};
+  for (int j = 0; j < kNumJoints; ++j) joints[j] = leg[j % kJointsPerLeg];
+  return joints;
+}
 using Vector3 = std::array<double, 3>;
 
 inline double length(const Vector3& v) noexcept { return std::hypot(v[0], v[1], v[2]); }

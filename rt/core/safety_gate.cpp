@@ -104,7 +104,7 @@ constexpr double kWarmShare = 0.9;
 
 }  // namespace
 
-SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
+SafetyGate::SafetyGate(const GateConfig& config, const LegJoints<double>& damping_kd_nmsprad)
     : config_(below_ceilings(config)),
       bounds_(config_),
       torque_fault_ticks_(std::max<std::uint64_t>(1, ticks_from_s(config_.torque_fault_s))),
@@ -113,7 +113,7 @@ SafetyGate::SafetyGate(const GateConfig& config, double damping_kd_nmsprad)
       heat_per_tick_(kControlPeriod_s / std::max(config_.thermal_time_s, kControlPeriod_s)),
       tilt_limit_cos_(cos_of_degrees(config_.tilt_limit_deg)),
       tilt_fault_cos_(cos_of_degrees(config_.tilt_fault_deg)) {
-  damping_.kd_nmsprad.fill(damping_kd_nmsprad);
+  damping_.kd_nmsprad = every_leg(damping_kd_nmsprad);
   for (int j = 0; j < kNumJoints; ++j) {
     torque_fault_nm_[j] = config_.torque_fault_ratio * config_.torque_limit_nm[j];
     const double continuous_nm = config_.continuous_torque_nm[j % kJointsPerLeg];

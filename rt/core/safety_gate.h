@@ -36,8 +36,8 @@ struct GateVerdict {
 
 class SafetyGate {
  public:
-  /// `damping_kd_nmsprad`: gain of the command that passes while a fault is latched.
-  SafetyGate(const GateConfig& config, double damping_kd_nmsprad);
+  /// `damping_kd_nmsprad`: gains of the command that passes while a fault is latched.
+  SafetyGate(const GateConfig& config, const LegJoints<double>& damping_kd_nmsprad);
 
   /// Counts excesses over limits, latches faults, returns the faults and warnings that hold in this
   /// tick. kFaultTable says which fault is judged in which mode.

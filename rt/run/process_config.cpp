@@ -99,7 +99,7 @@ using D = DampingConfig;
 auto damping_settings(const RobotRanges& r) {
   return std::to_array<Setting<D>>({
       // With none a robot that is let down falls.
-      {"kd_nmsprad", &D::kd_nmsprad, r.least(kLeastDamping * r.kd_nmsprad),
+      {"kd_nmsprad", repeated<1>(&D::kd_nmsprad), r.least(kLeastDamping * r.kd_nmsprad),
        r.kd_nmsprad, "Velocity gain of Damping and after a fault.", kFromRobotFile,
        "0.1 to 1 times gains.kd_limit_nmsprad of the robot file"},
       // With less it is dropped.

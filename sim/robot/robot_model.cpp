@@ -98,7 +98,7 @@ constexpr Setting<R> kGains[] = {
 // With less than the range a robot that is let down falls.
 constexpr Setting<R> damping(double kd_limit_nmsprad) {
   return {"damping_kd_nmsprad",
-          &R::damping_kd_nmsprad,
+          repeated<1>(&R::damping_kd_nmsprad),
           kLeastDamping * kd_limit_nmsprad,
           kd_limit_nmsprad,
           "Velocity gain of damping, also after a fault.",

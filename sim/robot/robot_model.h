@@ -88,8 +88,8 @@ struct Robot {
   LegJoints<double> fold_rad{};
   double stand_kp_nmprad = 0.0;  ///< gains of StandUp and Stand
   double stand_kd_nmsprad = 0.0;
-  double damping_kd_nmsprad = 0.0;  ///< gain of Damping, and of the damping after a fault
-  double kp_limit_nmprad = 0.0;     ///< largest gains that the drives are to be given
+  LegJoints<double> damping_kd_nmsprad{};  ///< gain of Damping, and of the damping after a fault
+  double kp_limit_nmprad = 0.0;            ///< largest gains that the drives are to be given
   double kd_limit_nmsprad = 0.0;
   LegJoints<double> speed_fault_radps{};  ///< a joint measured above it is a fault
   double power_limit_w = 0.0;             ///< mechanical power of all joints together

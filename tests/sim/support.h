@@ -132,7 +132,7 @@ inline SafeCommand pass_gate(const JointCommand& command) {
                                 .torque_limit_nm = all_joints(1e9),
                                 .kp_limit_nmprad = 1e3,
                                 .kd_limit_nmsprad = 50.0},
-                               1.0};
+                               {1.0, 1.0, 1.0}};
   GateState state;
   return gate.pass(command, true, {}, state);
 }

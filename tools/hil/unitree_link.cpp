@@ -174,7 +174,7 @@ const JointArray<DriveMoment>& UnitreeLink::step(double now_s, EmulatedRobot& ro
 void UnitreeLink::send_foreign() {
   if (foreign_left_ == 0 && !sport_) return;
   unitree::LowCmd foreign;
-  unitree::encode_damping(static_cast<std::uint8_t>(config_.motor_mode), 9.0, foreign);
+  unitree::encode_damping(static_cast<std::uint8_t>(config_.motor_mode), {9.0, 9.0, 9.0}, foreign);
   peer_.send_foreign(foreign);
   if (foreign_left_ > 0) --foreign_left_;
 }

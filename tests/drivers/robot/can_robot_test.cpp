@@ -49,7 +49,7 @@ SafeCommand after_encoder_jump() {
   config.torque_limit_nm.fill(50.0);
   config.continuous_torque_nm.fill(50.0);
   config.speed_fault_radps.fill(50.0);
-  const SafetyGate gate(config, 2.0);
+  const SafetyGate gate(config, {2.0, 2.0, 2.0});
   GateState state;
   SensorFrame sensors;
   VelocityCommand command;

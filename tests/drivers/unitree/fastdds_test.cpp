@@ -19,7 +19,7 @@ RobotFigures robot_of_test() {
   for (int j = 0; j < kNumJoints; ++j) robot.joint_names[j] = kJointNames[j];
   robot.lower_rad.fill(-3.0);
   robot.upper_rad.fill(3.0);
-  robot.damping_kd_nmsprad = 2.0;
+  robot.damping_kd_nmsprad.fill(2.0);
   return robot;
 }
 

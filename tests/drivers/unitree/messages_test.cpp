@@ -62,7 +62,7 @@ TEST(UnitreeCrcTest, IsThatOfTheRobotsOwnLibrary) {
   EXPECT_EQ(command.crc, 0x190C4FD7);
   for (int i = kNumJoints; i < kMotorSlots; ++i) free_motor(command, i);
   EXPECT_EQ(crc_of(command), 0x2C6959E8);
-  encode_damping(1, 2.0, command);
+  encode_damping(1, {2.0, 2.0, 2.0}, command);
   EXPECT_EQ(command.crc, 0x2E5B6080);
   encode_off(command);
   EXPECT_EQ(command.crc, 0x322AC991);

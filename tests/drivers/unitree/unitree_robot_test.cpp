@@ -111,7 +111,7 @@ TEST_F(UnitreeRobotTest, AHotMotorAndALowBatteryAreWarningsAndLaterDriveFaults) 
 
 SafeCommand damping() {
   const ControllerConfig robot = test_robot();
-  const SafetyGate gate(robot.gate, 2.0);
+  const SafetyGate gate(robot.gate, {2.0, 2.0, 2.0});
   GateState state;
   JointCommand command;
   command.kd_nmsprad.fill(2.0);
@@ -189,7 +189,7 @@ TEST(UnitreeDriverTest, DryRunSaysWhatWouldBeSent) {
   RobotDescription robot;
   for (int j = 0; j < kNumJoints; ++j) robot.joint_names[j] = kJointNames[j];
   ControllerConfig controller;
-  controller.damping.kd_nmsprad = 2.0;
+  controller.damping.kd_nmsprad.fill(2.0);
   UnitreeDriver driver(config, robot);
   driver.fit_to(controller);
   StandConfig stand;
@@ -199,10 +199,10 @@ TEST(UnitreeDriverTest, DryRunSaysWhatWouldBeSent) {
   stand.kp_nmprad = 20.0;
   stand.kd_nmsprad = 0.5;
   const std::string text = driver.dry_run(stand);
-  for (const char* line :
-       {"off: all motors in mode 0, CRC 322AC991\n", "damping: mode 1, kd 2.000, CRC 2E5B6080\n",
-        "stand: mode 1, kp 20.000, kd 0.500, CRC 190C4FD7\n",
-        "  motor_cmd[ 5]  LF_KFE         q  -1.8000\n"}) {
+  for (const char* line : {"off: all motors in mode 0, CRC 322AC991\n",
+                           "damping: mode 1, kd 2.000, 2.000, 2.000, CRC 2E5B6080\n",
+                           "stand: mode 1, kp 20.000, kd 0.500, CRC 190C4FD7\n",
+                           "  motor_cmd[ 5]  LF_KFE         q  -1.8000\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line << "in\n" << text;
   }
 }

@@ -50,7 +50,7 @@ RobotFigures robot_of_test() {
   for (int j = 0; j < kNumJoints; ++j) robot.joint_names[j] = kJointNames[j];
   robot.lower_rad.fill(-3.0);
   robot.upper_rad.fill(3.0);
-  robot.damping_kd_nmsprad = kDampingKd;
+  robot.damping_kd_nmsprad.fill(kDampingKd);
   return robot;
 }
 
@@ -291,7 +291,7 @@ TEST_F(WireProcessTest, AnotherProgramsCommandEndsInAMomentOfDampingAndNoMore) {
   ASSERT_TRUE(ready());
   play_for(0.2);
   LowCmd foreign;
-  encode_damping(1, 9.0, foreign);
+  encode_damping(1, {9.0, 9.0, 9.0}, foreign);
   const double fault_s = now_s();
   robot_->send_foreign(foreign);
   play_for(0.5);

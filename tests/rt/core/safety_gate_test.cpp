@@ -66,7 +66,7 @@ class SafetyGateTest : public testing::Test {
   }
 
   GateConfig config = test_robot().gate;
-  SafetyGate gate{config, 2.0};
+  SafetyGate gate{config, {2.0, 2.0, 2.0}};
   GateState state;
   SensorFrame sensors;
   std::uint64_t warnings = 0;
@@ -162,7 +162,7 @@ TEST_F(SafetyGateTest, OneJointMayRestWhileTheOthersAndTheBodyMove) {
 TEST_F(SafetyGateTest, AnAttitudeThatIsSentWithEveryTenthSampleMayBeLostOnce) {
   trembles = false;
   config.imu_attitude_samples = 10;
-  const SafetyGate rare(config, 2.0);
+  const SafetyGate rare(config, {2.0, 2.0, 2.0});
   const auto stand = [&] {
     sensors.imu.angular_velocity_radps[2] = sensors.tick % 2 == 0 ? 1e-6 : -1e-6;
     sensors.imu.linear_acceleration_mps2[2] = kGravity_mps2 + sensors.imu.angular_velocity_radps[2];
@@ -225,7 +225,7 @@ TEST_F(SafetyGateTest, TheDampingOfAFaultGivesAtMostTheJointsLimit) {
   sensors.joints.velocity_radps[3] = -0.9 * config.speed_fault_radps[0];
   sensors.joints.velocity_radps[4] = 1.0;
   config.torque_limit_nm.fill(5.0);
-  gate = SafetyGate(config, 2.0);
+  gate = SafetyGate(config, {2.0, 2.0, 2.0});
   judge(Mode::kStand);
   const SafeCommand passed = pass(wanted);
   EXPECT_NEAR(torque_of(passed, sensors.joints, 3), 5.0, 1e-9);
@@ -361,7 +361,7 @@ TEST_F(SafetyGateTest, EachJointOfALegHasItsOwnSpeedAndItsOwnContinuousTorque) {
   config.speed_fault_radps = {60.0, 60.0, 30.0};
   config.continuous_torque_nm = {10.0, 10.0, 20.0};
   config.thermal_time_s = 0.001;
-  gate = SafetyGate(config, 2.0);
+  gate = SafetyGate(config, {2.0, 2.0, 2.0});
   sensors.joints.velocity_radps[4] = sensors.joints.velocity_radps[5] = 35.0;
   sensors.joints.torque_nm[8] = 15.0;
   EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kJointSpeed));

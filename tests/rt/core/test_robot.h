@@ -17,7 +17,7 @@ inline ControllerConfig test_robot() {
   c.stand.kp_nmprad = 100.0;
   c.stand.kd_nmsprad = 1.0;
   c.stand.fold_rad = {0.0, 1.2, -2.4};
-  c.damping.kd_nmsprad = 2.0;
+  c.damping.kd_nmsprad.fill(2.0);
   for (int j = 0; j < kNumJoints; j += kJointsPerLeg) {
     const auto set = [&](int joint, double nominal_rad, double lower_rad, double upper_rad) {
       c.stand.nominal_rad[joint] = nominal_rad;

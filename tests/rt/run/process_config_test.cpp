@@ -54,7 +54,7 @@ TEST(ProcessConfigTest, SettingsReachSimulatorControllerAndGate) {
   EXPECT_EQ(config.simulator.torque_speed_line.no_load_speed_radps[2], 28.1);
   EXPECT_EQ(config.controller.walk.latency_ticks, 20u);
   EXPECT_EQ(config.controller.walk.kd_nmsprad, 0.7);
-  EXPECT_EQ(config.controller.damping.kd_nmsprad, 3.0);
+  EXPECT_EQ(config.controller.damping.kd_nmsprad, (LegJoints<double>{3.0, 3.0, 3.0}));
   EXPECT_EQ(config.controller.gate.tilt_fault_deg, 50.0);
   EXPECT_EQ(config.controller.gate.joints_fault_ticks, 9u);
   EXPECT_EQ(config.motor_constant[2], 2.5);
@@ -215,7 +215,7 @@ TEST(ProcessConfigTest, ARecordingMayHaveSettingsThatNoRunMayHaveAnyMore) {
         std::pair{"controller.walk.stop_calm_s=0.05",
                   +[](const ControllerConfig& c) { return 10.0 * c.walk.stop_calm_s; }},
         std::pair{"controller.damping.kd_nmsprad=0.25",
-                  +[](const ControllerConfig& c) { return 2.0 * c.damping.kd_nmsprad; }},
+                  +[](const ControllerConfig& c) { return 2.0 * c.damping.kd_nmsprad[0]; }},
         std::pair{"controller.damping.fault_s=0.25",
                   +[](const ControllerConfig& c) { return 2.0 * c.damping.fault_s; }}}) {
     ConfigTree tree;

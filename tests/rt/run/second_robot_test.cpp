@@ -50,7 +50,7 @@ TEST_F(SecondRobotTest, GivesSimulatorControllerAndGateTheirFigures) {
   EXPECT_EQ(stand.kp_nmprad, 45.0);
   EXPECT_EQ(stand.kd_nmsprad, 0.7);
   EXPECT_EQ(stand.fold_rad, (std::array<double, 3>{0.0, 1.1, -2.2}));
-  EXPECT_EQ(c.controller.damping.kd_nmsprad, 1.1);
+  EXPECT_EQ(c.controller.damping.kd_nmsprad, (LegJoints<double>{1.1, 1.1, 1.1}));
   const GateConfig& gate = c.controller.gate;
   EXPECT_EQ(gate.speed_fault_radps[0], 44.0);
   for (int j = 0; j < kNumJoints; j += kJointsPerLeg) {

@@ -65,7 +65,7 @@ inline TickRecord example_tick(std::uint64_t tick) {
   r.output.command =
       SafetyGate(
           {.torque_limit_nm = all_joints(1e9), .kp_limit_nmprad = 1e3, .kd_limit_nmsprad = 50.0},
-          2.0)
+          {2.0, 2.0, 2.0})
           .pass(wanted, true, {}, gate);
   r.output.mode = Mode::kWalk;
   r.output.policy_input.episode = 1;

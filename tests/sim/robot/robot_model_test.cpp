@@ -67,7 +67,7 @@ TEST(RobotModelTest, ShippedRobotHasTheReferenceFigures) {
   EXPECT_EQ(robot.fold_rad, (std::array<double, 3>{0.0, 1.2, -2.4}));
   EXPECT_EQ(robot.stand_kp_nmprad, 100.0);
   EXPECT_EQ(robot.stand_kd_nmsprad, 1.0);
-  EXPECT_EQ(robot.damping_kd_nmsprad, 2.0);
+  EXPECT_EQ(robot.damping_kd_nmsprad, (LegJoints<double>{2.0, 2.0, 2.0}));
   EXPECT_EQ(robot.speed_fault_radps, (LegJoints<double>{60.0, 60.0, 60.0}));
   EXPECT_EQ(robot.torque_speed_line.stall_torque_nm, (LegJoints<double>{256.0, 256.0, 256.0}));
   EXPECT_EQ(robot.torque_speed_line.no_load_speed_radps[2], 28.1);
