@@ -53,7 +53,7 @@ std::unique_ptr<RobotIo> CanDriver::connect() {
 std::vector<std::string> CanDriver::warnings() const { return unguarded(config_); }
 
 std::string CanDriver::dry_run(const StandConfig& stand) const {
-  JointArray<JointSetPoint> points;
+  JointArray<SetPoint> points;
   for (int j = 0; j < kNumJoints; ++j) {
     points[j] = {.position_rad = stand.nominal_rad[j],
                  .kp_nmprad = stand.kp_nmprad,

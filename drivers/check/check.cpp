@@ -207,10 +207,10 @@ class Check {
     for (int j = 0; j < kNumJoints && config_.mode == DriveMode::kTorque; ++j) {
       const Drive& d = look.drive(j);
       if (!sent[j]) continue;
-      const JointSetPoint& p = *sent[j];  // which the host evaluates
-      sent[j] = JointSetPoint{.torque_nm = joint_torque(d.position_rad(), d.velocity_radps(),
-                                                        p.position_rad, p.velocity_radps,
-                                                        p.kp_nmprad, p.kd_nmsprad, p.torque_nm)};
+      const SetPoint& p = *sent[j];  // which the host evaluates
+      sent[j] = SetPoint{.torque_nm = joint_torque(d.position_rad(), d.velocity_radps(),
+                                                   p.position_rad, p.velocity_radps, p.kp_nmprad,
+                                                   p.kd_nmsprad, p.torque_nm)};
     }
     look.exchange_powered(sent);
     NudgeState state;

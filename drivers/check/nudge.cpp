@@ -43,10 +43,10 @@ class Pusher {
   }
 
  private:
-  NudgePoints points(const std::optional<JointSetPoint>& pushed) const {
+  NudgePoints points(const std::optional<SetPoint>& pushed) const {
     NudgePoints points;
     for (int j = 0; j < kNumJoints; ++j) {
-      if (damped_[j]) points[j] = JointSetPoint{.kd_nmsprad = kDamping_nmsprad};
+      if (damped_[j]) points[j] = SetPoint{.kd_nmsprad = kDamping_nmsprad};
     }
     points[joint_] = pushed;
     return points;
@@ -105,7 +105,7 @@ class Pusher {
     double torque_sum_nm = 0.0;
     int torques = 0;
     for (bool enough = false; !enough && last_.time_s < start_s + most_s;) {
-      const NudgeState state = exchange_(points(JointSetPoint{.torque_nm = torque_nm}));
+      const NudgeState state = exchange_(points(SetPoint{.torque_nm = torque_nm}));
       if (!may_go_on(state)) return false;
       result_.travelled_rad += 0.5 * (state.time_s - last_.time_s) *
                                (last_.velocity_radps[joint_] + state.velocity_radps[joint_]);
@@ -134,7 +134,7 @@ class Pusher {
     const double start_s = last_.time_s;
     NudgeState state = last_;
     while (state.time_s < start_s + kBrake_s) {
-      state = exchange_(points(JointSetPoint{.kd_nmsprad = kDamping_nmsprad}));
+      state = exchange_(points(SetPoint{.kd_nmsprad = kDamping_nmsprad}));
       if (!may_go_on(state)) return;
       const double far_rad = state.position_rad[joint_] - first_.position_rad[joint_];
       if (std::fabs(far_rad) > kNudgeFarthest_rad) return;

@@ -24,7 +24,7 @@ struct NudgeState {
 };
 
 /// The setpoints of one exchange; a drive without one gets an off frame.
-using NudgePoints = JointArray<std::optional<JointSetPoint>>;
+using NudgePoints = JointArray<std::optional<SetPoint>>;
 /// Makes one exchange, every few milliseconds.
 using NudgeExchange = std::function<NudgeState(const NudgePoints&)>;
 

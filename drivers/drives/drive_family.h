@@ -21,8 +21,9 @@
 
 namespace sandrunner {
 
-/// A set-point. The drive's law: torque = kp (position - q) + kd (velocity - qd) + torque.
-struct DriveCommand {
+/// The command of one exchange, of a drive at its output or of its joint. The drive's law:
+/// torque = kp (position - q) + kd (velocity - qd) + torque.
+struct SetPoint {
   double position_rad = 0.0;
   double velocity_radps = 0.0;
   double kp_nmprad = 0.0;
@@ -30,7 +31,7 @@ struct DriveCommand {
   double torque_nm = 0.0;
 };
 /// Its numbers as text.
-std::string describe(const DriveCommand& command);
+std::string describe(const SetPoint& command);
 
 /// Limits of every command to one drive. A family whose frames lack such a field ignores it.
 struct DriveTerms {
@@ -114,7 +115,7 @@ concept DriveFamily = std::is_trivially_copyable_v<Drive> &&
   noexcept;
   { encode_enable(drive, DriveTerms{}, frame) }
   noexcept;
-  { encode_command(drive, DriveCommand{}, DriveTerms{}, frame) }
+  { encode_command(drive, SetPoint{}, DriveTerms{}, frame) }
   noexcept;
   /// Queries the state and enables nothing. Only the address has to be set.
   { encode_probe(drive, frame) }

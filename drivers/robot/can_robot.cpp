@@ -38,8 +38,8 @@ const HardwareConfig& within_capacity(const HardwareConfig& config) {
 
 }  // namespace
 
-JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
-                        bool answers) noexcept {
+SetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
+                   bool answers) noexcept {
   const JointCommand& c = command.joints();
   const bool blind = (command.blind_joints() >> j & 1) != 0;
   if (blind && (answers || mode == DriveMode::kTorque)) return {};
@@ -163,7 +163,7 @@ void CanRobot::exchange(const SafeCommand* command) noexcept {
     std::size_t count = 0;
     for (int j = 0; j < kNumJoints; ++j) {
       if (config_.drives[j].bus != static_cast<int>(b)) continue;
-      JointSetPoint point;
+      SetPoint point;
       if (command != nullptr) {
         const Drive& d = drives_[j];
         const bool answers = tick_ - d.tick() <= 2 * std::uint64_t(config_.ticks_per_exchange());

@@ -102,8 +102,8 @@ class CanRobot final : public RobotIo {
 /// The command to the drive of joint `j`: in kGains the joint's command as it is, in kTorque its
 /// torque at the newest values of `drive`. A blind joint gets no torque. A silent drive in kGains
 /// (`answers` is false) continues with its own encoder: it may still receive.
-JointSetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
-                        bool answers) noexcept;
+SetPoint set_point(const SafeCommand& command, int j, const Drive& drive, DriveMode mode,
+                   bool answers) noexcept;
 
 /// The counters of buses, drives and IMU as text.
 std::string hardware_report(const CanRobot& robot, const HardwareConfig& config,

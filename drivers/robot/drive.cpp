@@ -35,20 +35,19 @@ void Drive::off_frame(CanFrame& frame) noexcept {
   std::visit([&](const auto& drive) { encode_off(drive, cleared_, frame); }, config_.drive);
 }
 
-void Drive::command_frame(const JointSetPoint& joint, CanFrame& frame) const noexcept {
+void Drive::command_frame(const SetPoint& joint, CanFrame& frame) const noexcept {
   const double turn = config_.sign * config_.gear;  // of the drive for one of the joint
   const double gear2 = config_.gear * config_.gear;
-  const DriveCommand command{.position_rad = turn * (joint.position_rad - config_.zero_rad),
-                             .velocity_radps = turn * joint.velocity_radps,
-                             .kp_nmprad = joint.kp_nmprad / gear2,
-                             .kd_nmsprad = joint.kd_nmsprad / gear2,
-                             .torque_nm = joint.torque_nm / turn};
+  const SetPoint command{.position_rad = turn * (joint.position_rad - config_.zero_rad),
+                         .velocity_radps = turn * joint.velocity_radps,
+                         .kp_nmprad = joint.kp_nmprad / gear2,
+                         .kd_nmsprad = joint.kd_nmsprad / gear2,
+                         .torque_nm = joint.torque_nm / turn};
   std::visit([&](const auto& drive) { encode_command(drive, command, terms_, frame); },
              config_.drive);
 }
 
-bool Drive::next_frame(const JointSetPoint* set_point, std::uint64_t tick,
-                       CanFrame& frame) noexcept {
+bool Drive::next_frame(const SetPoint* set_point, std::uint64_t tick, CanFrame& frame) noexcept {
   if (set_point == nullptr || has(DriveTrouble::kForgotTimeout)) {
     if (phase_ != Phase::kOff) replies_off_ = 0;
     phase_ = Phase::kOff;

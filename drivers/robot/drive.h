@@ -24,15 +24,6 @@ enum class DriveTrouble : std::uint64_t {
 };
 inline constexpr double kEnable_s = 0.1;
 
-/// The command of one exchange to a drive, at the joint.
-struct JointSetPoint {
-  double position_rad = 0.0;
-  double velocity_radps = 0.0;
-  double kp_nmprad = 0.0;
-  double kd_nmsprad = 0.0;
-  double torque_nm = 0.0;
-};
-
 /// The drive of one joint: makes its frames and reads its replies. Only a setpoint after a time in
 /// which the robot was commanded off enables the drive: a drive that comes back by itself (reboot,
 /// bus-off and restart) stays off until then. Real-time safe. Example: drive_test.cpp.
@@ -44,10 +35,10 @@ class Drive {
   /// The frame that keeps the drive off; it answers with its state.
   void off_frame(CanFrame& frame) noexcept;
   /// The frame for a drive that is on.
-  void command_frame(const JointSetPoint& set_point, CanFrame& frame) const noexcept;
+  void command_frame(const SetPoint& set_point, CanFrame& frame) const noexcept;
   /// The frame of this exchange. `set_point` null: switch the drive off. False: send nothing, as
   /// its bus was off.
-  bool next_frame(const JointSetPoint* set_point, std::uint64_t tick, CanFrame& frame) noexcept;
+  bool next_frame(const SetPoint* set_point, std::uint64_t tick, CanFrame& frame) noexcept;
 
   /// Reads `frame`, received in control tick `tick`, if it is a reply of this drive. False: it is
   /// not, or it is invalid (then it counts as bad()).

@@ -32,7 +32,7 @@ void DriveLook::exchange() {
   receive(kExchange_s);
 }
 
-void DriveLook::exchange_powered(const JointArray<std::optional<JointSetPoint>>& points) {
+void DriveLook::exchange_powered(const JointArray<std::optional<SetPoint>>& points) {
   const std::uint64_t now = tick();
   for (int j = 0; j < kNumJoints; ++j) {
     CanFrame frame;

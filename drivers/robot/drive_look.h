@@ -47,7 +47,7 @@ class DriveLook {
 
   /// The same, but drives with a set-point are enabled, and then get it; after an exchange of the
   /// robot's own rate. For the nudge alone (drivers/check/nudge.h).
-  void exchange_powered(const JointArray<std::optional<JointSetPoint>>& points);
+  void exchange_powered(const JointArray<std::optional<SetPoint>>& points);
 
   const JointArray<FoundDrive>& drives() const noexcept { return found_; }
   const Drive& drive(int j) const noexcept { return drives_[j]; }

@@ -19,7 +19,7 @@ std::string candump_line(const std::string& interface, const CanFrame& frame) {
 }
 
 std::string dry_run(const HardwareConfig& config, const RobotDescription& robot,
-                    const JointArray<JointSetPoint>& stand) {
+                    const JointArray<SetPoint>& stand) {
   std::string text = plan_table(config, plan_buses(config));
   const bool gains = config.mode == DriveMode::kGains;
   if (!gains)
@@ -27,7 +27,7 @@ std::string dry_run(const HardwareConfig& config, const RobotDescription& robot,
   text += "each drive: off, enable, stand\n";
   for (int j = 0; j < kNumJoints; ++j) {
     const DriveConfig& drive = config.drives[j];
-    const JointSetPoint point = gains ? stand[j] : JointSetPoint{};
+    const SetPoint point = gains ? stand[j] : SetPoint{};
     text += fmt::format("\n{} at {:.4f} rad\n", robot.joint_names[j], stand[j].position_rad);
     Drive sender(drive, config);
     std::array<CanFrame, 3> frames;

@@ -15,6 +15,6 @@ std::string candump_line(const std::string& interface, const CanFrame& frame);
 /// frame, its enable frame, and its command at `stand`, with their meanings at the drive's output,
 /// decoded from the bytes.
 std::string dry_run(const HardwareConfig& config, const RobotDescription& robot,
-                    const JointArray<JointSetPoint>& stand);
+                    const JointArray<SetPoint>& stand);
 
 }  // namespace sandrunner

@@ -128,7 +128,7 @@ const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept {
   }
 }
 
-MitStatus encode_mit_command(const MitDrive& drive, const DriveCommand& command,
+MitStatus encode_mit_command(const MitDrive& drive, const SetPoint& command,
                              CanFrame& frame) noexcept {
   if (!is_possible(drive)) return MitStatus::kBadDrive;
   for (const double value : {command.position_rad, command.velocity_radps, command.kp_nmprad,
@@ -219,7 +219,7 @@ MitStatus decode_mit_request(const MitDrive& drive, const CanFrame& frame,
     return MitStatus::kOk;
   }
   const MitLimits& limits = drive.limits;
-  DriveCommand& command = request.command;
+  SetPoint& command = request.command;
   command.position_rad =
       value_of(Code{data[0]} << 8 | data[1], -limits.position_rad, limits.position_rad, kMaxCode16);
   command.velocity_radps = value_of(Code{data[2]} << 4 | data[3] >> 4, -limits.velocity_radps,

@@ -101,7 +101,7 @@ const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept;
 /// Values beyond the limits are clamped. With anything not finite `frame` is left as it is.
 /// The torque code stops five short of the highest, so that no command, however saturated, can be
 /// a special frame.
-MitStatus encode_mit_command(const MitDrive& drive, const DriveCommand& command,
+MitStatus encode_mit_command(const MitDrive& drive, const SetPoint& command,
                              CanFrame& frame) noexcept;
 MitStatus encode_mit_special(const MitDrive& drive, MitSpecial special, CanFrame& frame) noexcept;
 
@@ -115,7 +115,7 @@ MitStatus decode_mit_reply(const MitDrive& drive, const CanFrame& frame, MitRepl
 struct MitRequest {
   bool is_special = false;
   MitSpecial special = MitSpecial::kDisable;  ///< if is_special
-  DriveCommand command;                       ///< else
+  SetPoint command;                           ///< else
 };
 MitStatus decode_mit_request(const MitDrive& drive, const CanFrame& frame,
                              MitRequest& request) noexcept;

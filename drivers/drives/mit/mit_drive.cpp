@@ -152,7 +152,7 @@ void encode_enable(const MitDrive& drive, const DriveTerms&, CanFrame& frame) no
   encode_mit_special(drive, MitSpecial::kEnable, frame);
 }
 
-void encode_command(const MitDrive& drive, const DriveCommand& command, const DriveTerms&,
+void encode_command(const MitDrive& drive, const SetPoint& command, const DriveTerms&,
                     CanFrame& frame) noexcept {
   encode_mit_command(drive, command, frame);
 }

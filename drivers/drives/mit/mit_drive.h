@@ -24,7 +24,7 @@ std::vector<DriveQuestion> drive_questions(const MitDrive& drive, double timeout
 
 void encode_off(const MitDrive& drive, bool clear_fault, CanFrame& frame) noexcept;
 void encode_enable(const MitDrive& drive, const DriveTerms& terms, CanFrame& frame) noexcept;
-void encode_command(const MitDrive& drive, const DriveCommand& command, const DriveTerms& terms,
+void encode_command(const MitDrive& drive, const SetPoint& command, const DriveTerms& terms,
                     CanFrame& frame) noexcept;
 /// The frame that switches it off: no other has an answer and enables nothing.
 void encode_probe(const MitDrive& drive, CanFrame& frame) noexcept;

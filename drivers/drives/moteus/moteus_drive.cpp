@@ -72,7 +72,7 @@ void encode_enable(const MoteusDrive& drive, const DriveTerms& terms, CanFrame& 
   encode_command(drive, {}, terms, frame);
 }
 
-void encode_command(const MoteusDrive& drive, const DriveCommand& command, const DriveTerms& terms,
+void encode_command(const MoteusDrive& drive, const SetPoint& command, const DriveTerms& terms,
                     CanFrame& frame) noexcept {
   if (terms.torque_only) {
     encode_moteus_torque(drive, command.torque_nm, terms.timeout_s, kMoteusState, frame);
@@ -130,9 +130,8 @@ std::string describe(const MoteusDrive& drive, const CanFrame& frame) {
   MoteusRequest r;
   if (decode_moteus_request(drive, frame, r) != MoteusStatus::kOk) return "no frame of this drive";
   if (r.mode == MoteusMode::kStopped) return "off";
-  const DriveCommand command{r.position_rad, r.velocity_radps,
-                             r.kp_scale * drive.kp_nmprev / kTurn_rad,
-                             r.kd_scale * drive.kd_nmsprev / kTurn_rad, r.torque_nm};
+  const SetPoint command{r.position_rad, r.velocity_radps, r.kp_scale * drive.kp_nmprev / kTurn_rad,
+                         r.kd_scale * drive.kd_nmsprev / kTurn_rad, r.torque_nm};
   return fmt::format("{}, at most {:.1f} N m, times out after {:g} s", describe(command),
                      r.max_torque_nm, r.watchdog_s);
 }

@@ -24,7 +24,7 @@ std::vector<DriveQuestion> drive_questions(const MoteusDrive& drive, double time
 void encode_off(const MoteusDrive& drive, bool clear_fault, CanFrame& frame) noexcept;
 /// The first command enables it: here one of no torque.
 void encode_enable(const MoteusDrive& drive, const DriveTerms& terms, CanFrame& frame) noexcept;
-void encode_command(const MoteusDrive& drive, const DriveCommand& command, const DriveTerms& terms,
+void encode_command(const MoteusDrive& drive, const SetPoint& command, const DriveTerms& terms,
                     CanFrame& frame) noexcept;
 void encode_probe(const MoteusDrive& drive, CanFrame& frame) noexcept;
 bool is_probe_reply(const MoteusDrive& drive, const CanFrame& frame) noexcept;

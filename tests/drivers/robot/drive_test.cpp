@@ -12,7 +12,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr JointSetPoint kPoint{0.5, 0.0, 50.0, 0.5, 0.0};
+constexpr SetPoint kPoint{0.5, 0.0, 50.0, 0.5, 0.0};
 
 /// A drive of MIT's protocol with the drive itself at its other end.
 class MitPair {
@@ -30,7 +30,7 @@ class MitPair {
   void apply() { drive = Drive(config_.drives[0], config_); }
 
   /// One exchange; what the drive was sent.
-  MitRequest exchange(const JointSetPoint* point, bool answered = true) {
+  MitRequest exchange(const SetPoint* point, bool answered = true) {
     CanFrame frame;
     MitRequest request;
     if (!drive.next_frame(point, tick_, frame)) {
@@ -232,12 +232,12 @@ TEST(DriveTest, SignGearAndZeroTurnTheJointIntoTheDrive) {
   pair.state.position_rad = 1.0;
   pair.state.velocity_radps = 2.0;
   pair.state.torque_nm = 4.0;
-  const JointSetPoint point{0.8, 1.0, 40.0, 2.0, 6.0};
+  const SetPoint point{0.8, 1.0, 40.0, 2.0, 6.0};
   for (int i = 0; i < 4; ++i) pair.exchange(&point);
   EXPECT_NEAR(pair.drive.position_rad(), 0.3 - 0.5, 2e-4);
   EXPECT_NEAR(pair.drive.velocity_radps(), -1.0, 7e-3);
   EXPECT_NEAR(pair.drive.torque_nm(), -8.0, 0.04);
-  const DriveCommand told = pair.exchange(&point).command;
+  const SetPoint told = pair.exchange(&point).command;
   EXPECT_NEAR(told.position_rad, -2.0 * 0.5, 4e-4);
   EXPECT_NEAR(told.velocity_radps, -2.0, 0.02);
   EXPECT_NEAR(told.kp_nmprad, 10.0, 0.13);
@@ -365,7 +365,7 @@ class MoteusPair {
       : config_(example_hardware("moteus", assignments)), drive(config_.drives[0], config_) {
     state.position_rad = state.velocity_radps = state.torque_nm = 0.0;
   }
-  MoteusRequest exchange(const JointSetPoint* point) {
+  MoteusRequest exchange(const SetPoint* point) {
     CanFrame frame, reply;
     MoteusRequest request;
     EXPECT_TRUE(drive.next_frame(point, tick_, frame));
@@ -414,7 +414,7 @@ TEST(DriveTest, MoteusHoldsTheScaledTorqueLimitItself) {
 TEST(DriveTest, MoteusDampsByItsOwnGainAloneWithoutAPosition) {
   MoteusPair pair;
   pair.state.mode = MoteusMode::kPosition;
-  const JointSetPoint damping{0.0, 0.0, 0.0, 2.0, 0.0};
+  const SetPoint damping{0.0, 0.0, 0.0, 2.0, 0.0};
   for (int i = 0; i < 3; ++i) pair.exchange(&damping);
   const MoteusRequest request = pair.exchange(&damping);
   EXPECT_TRUE(std::isnan(request.position_rad));
@@ -450,7 +450,7 @@ TEST(DriveTest, MoteusThatRebootedIsNotEnabledAgainUntilTheRobotWasOff) {
 TEST(DriveTest, MoteusGetsTorqueAndATimeOutAloneWhereTheHostClosesTheLoop) {
   MoteusPair pair({"hardware.mode=torque"});
   pair.state.mode = MoteusMode::kPosition;
-  const JointSetPoint point{.torque_nm = 12.0};
+  const SetPoint point{.torque_nm = 12.0};
   for (int i = 0; i < 3; ++i) pair.exchange(&point);
   const MoteusRequest request = pair.exchange(&point);
   EXPECT_NEAR(request.torque_nm, 12.0, 0.01);

@@ -11,8 +11,8 @@ namespace {
 
 using testing::HasSubstr;
 
-JointArray<JointSetPoint> stand() {
-  JointArray<JointSetPoint> points;
+JointArray<SetPoint> stand() {
+  JointArray<SetPoint> points;
   points.fill({.position_rad = 0.5, .kp_nmprad = 100.0, .kd_nmsprad = 1.0});
   return points;
 }

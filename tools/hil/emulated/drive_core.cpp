@@ -5,7 +5,7 @@
 
 namespace sandrunner::hil {
 
-void DriveCore::command(const DriveCommand& wanted, double most_nm, double wanted_timeout_s,
+void DriveCore::command(const SetPoint& wanted, double most_nm, double wanted_timeout_s,
                         double now_s) noexcept {
   if (state == State::kOn) longest_gap_s = std::max(longest_gap_s, now_s - commanded_s);
   state = State::kOn;

@@ -29,7 +29,7 @@ struct DriveCore {
   double max_torque_nm = 0.0;  ///< that it can give
 
   State state = State::kOff;
-  DriveCommand commanded;
+  SetPoint commanded;
   double commanded_most_nm = 0.0;  ///< of the whole law
   double commanded_s = 0.0;        ///< when
   double timeout_s = 0.0;          ///< of that command; 0: none
@@ -40,7 +40,7 @@ struct DriveCore {
 
   double measured_rad() const noexcept { return position_rad + faults.offset_rad; }
   /// A command that is in force from now on.
-  void command(const DriveCommand& wanted, double most_nm, double wanted_timeout_s,
+  void command(const SetPoint& wanted, double most_nm, double wanted_timeout_s,
                double now_s) noexcept;
   /// Its fault and its time-out take effect.
   void look_at_clock(double now_s) noexcept;

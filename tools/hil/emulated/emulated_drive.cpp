@@ -35,7 +35,7 @@ double EmulatedDrive::torque_nm(double now_s) noexcept {
   core_.look_at_clock(now_s);
   core_.torque_nm = 0.0;
   if (core_.state == State::kOn) {
-    const DriveCommand& c = core_.commanded;
+    const SetPoint& c = core_.commanded;
     const bool moves_on = std::visit([](const auto& drive) { return drive.kMovesOn; }, family_);
     const double moved_rad =
         moves_on ? c.velocity_radps * std::max(now_s - core_.commanded_s, 0.0) : 0.0;

@@ -34,7 +34,7 @@ MitDrive drive_of(MitVariant variant) {
 constexpr std::array kVariants = {MitVariant::kOriginal, MitVariant::kBusVoltage,
                                   MitVariant::kCubeMars, MitVariant::kDamiao};
 
-CanFrame encoded(const MitDrive& drive, const DriveCommand& command) {
+CanFrame encoded(const MitDrive& drive, const SetPoint& command) {
   CanFrame frame;
   EXPECT_EQ(encode_mit_command(drive, command, frame), MitStatus::kOk);
   return frame;
@@ -44,7 +44,7 @@ CanFrame encoded(const MitDrive& drive, const DriveCommand& command) {
 TEST(MitTest, CommandHasItsFieldsInOrderMostSignificantBitsFirst) {
   const MitDrive drive = drive_of("AK80-9 V2");
   const MitLimits& limits = drive.limits;
-  DriveCommand command;
+  SetPoint command;
   command.position_rad = limits.position_rad * (2.0 * 0x8000 / 65535.0 - 1.0);
   command.velocity_radps = limits.velocity_radps * (2.0 * 0x555 / 4095.0 - 1.0);
   command.kp_nmprad = limits.kp_nmprad * 0x199 / 4095.0;
@@ -110,7 +110,7 @@ TEST(MitTest, ZeroIsSentHalfAStepBelow) {
 }
 
 TEST(MitTest, GainsOfThePaperFitWithin012Percent) {
-  DriveCommand command;
+  SetPoint command;
   command.kp_nmprad = 50.0;
   command.kd_nmsprad = 0.5;
   MitRequest request;
@@ -204,8 +204,8 @@ TEST(MitTest, NoCommandIsASpecialFrame) {
         const int choice = mask >> bit & 3;
         return std::array{low, limit, high, limit * (1.0 - 1e-6)}[choice];
       };
-      DriveCommand command{pick(0, limits.position_rad), pick(2, limits.velocity_radps),
-                           pick(4, limits.kp_nmprad), pick(6, limits.kd_nmsprad), 0.0};
+      SetPoint command{pick(0, limits.position_rad), pick(2, limits.velocity_radps),
+                       pick(4, limits.kp_nmprad), pick(6, limits.kd_nmsprad), 0.0};
       for (int step = -20; step <= 20; ++step) {
         command.torque_nm =
             step == 20 ? high : limits.torque_nm * (1.0 - step / 4.0 * 2.0 / 4095.0);
@@ -363,7 +363,7 @@ TEST(MitTest, DamiaosFdVariantHasTheSameBytesInFdFrames) {
   MitDrive classic = drive_of("DM8009", 4, 0x14);
   MitDrive fd = classic;
   fd.format = CanFormat::kFdWithBitRateSwitch;
-  const DriveCommand command{0.5, -1.0, 50.0, 0.5, 3.0};
+  const SetPoint command{0.5, -1.0, 50.0, 0.5, 3.0};
   const CanFrame frame = encoded(fd, command);
   EXPECT_TRUE(frame.fd && frame.brs);
   EXPECT_EQ(hex(frame), hex(encoded(classic, command)));

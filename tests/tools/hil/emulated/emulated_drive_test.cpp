@@ -10,7 +10,7 @@ namespace sandrunner::hil {
 namespace {
 
 using State = EmulatedDrive::State;
-constexpr JointSetPoint kPoint{0.5, 0.0, 50.0, 0.5, 0.0};
+constexpr SetPoint kPoint{0.5, 0.0, 50.0, 0.5, 0.0};
 
 /// The controller's end of a drive and the drive itself, a millisecond an exchange.
 class Pair {
@@ -22,7 +22,7 @@ class Pair {
   }
 
   /// False: not answered.
-  bool exchange(const JointSetPoint* point) {
+  bool exchange(const SetPoint* point) {
     CanFrame frame;
     EXPECT_TRUE(host.next_frame(point, tick_, frame));
     return deliver(frame);
