@@ -18,6 +18,8 @@ constexpr double kLongestPush_s = 0.3;
 constexpr double kLeast_rad = 0.01;
 /// Ranges that are mixed up between models of one maker differ by as little as 1.3.
 constexpr double kMostSpeedFactor = 1.2;
+/// A torque that is reported within this factor of the one asked for is as it should be.
+constexpr double kExactTorque = 1.1;
 /// After the push, for what is on its way.
 constexpr double kCoast_s = 0.01, kBrake_s = 0.3;
 /// The first answers after the torque was asked for may be to the command before.
@@ -184,11 +186,19 @@ std::string nudge_words(const Nudge& n, int joint, const HardwareConfig& config,
   const auto name_of = [&](int j) { return drive_name(config, robot, j); };
   const std::string name = name_of(joint);
   switch (n.verdict) {
-    case Verdict::kGood:
+    case Verdict::kGood: {
+      const double ratio = n.reported_nm / n.asked_nm;
+      const double reported_torque = config.drives[joint].reported_torque * ratio;
+      const bool exact = ratio > 1.0 / kExactTorque && ratio < kExactTorque;
       return fmt::format(
           "{}: {:+.1f} N m moved it by {:+.3f} rad in {:.2f} s, as they should; reported are "
-          "{:+.1f} N m",
-          name, n.asked_nm, n.moved_rad, n.pushed_s, n.reported_nm);
+          "{:+.1f} N m{}",
+          name, n.asked_nm, n.moved_rad, n.pushed_s, n.reported_nm,
+          exact ? ""
+                : fmt::format("; if it is so with other --nudge torques: reported_torque = {:.2f} "
+                              "for its drive",
+                              reported_torque));
+    }
     case Verdict::kNotMoved:
       return fmt::format(
           "{}: {:+.1f} N m moved nothing, reported are {:+.1f} N m; is its motor connected, is "

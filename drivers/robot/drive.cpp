@@ -124,7 +124,7 @@ bool Drive::take(const CanFrame& frame, std::uint64_t tick) noexcept {
   const double turn = config_.sign * config_.gear;
   position_rad_ = state_.position_rad / turn + config_.zero_rad;
   velocity_radps_ = state_.velocity_radps / turn;
-  torque_nm_ = state_.torque_nm * turn;
+  torque_nm_ = state_.torque_nm * turn / config_.reported_torque;
   ++replies_;
   judge_power(was_silent);
   judge_surplus(tick);

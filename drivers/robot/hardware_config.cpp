@@ -92,6 +92,8 @@ constexpr Setting<DriveConfig> kJoint[] = {
     {"gear", &DriveConfig::gear, 0.01, 100.0, "Turns of the drive's output for one of the joint."},
     {"zero_rad", &DriveConfig::zero_rad, -10.0, 10.0,
      "The joint's position where the drive's is zero; check --zero writes it."},
+    {"reported_torque", &DriveConfig::reported_torque, 0.5, 2.0,
+     "Torque that the drive reports over the one that it gives; check --nudge measures it."},
 };
 
 using I = ImuConfig;

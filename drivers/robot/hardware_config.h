@@ -40,8 +40,9 @@ struct DriveConfig {
   AnyDrive drive;
   double max_torque_nm = 0.0;  ///< largest torque of a command, at its output
   int sign = 1;
-  double gear = 1.0;      ///< turns of the drive's output for one of the joint
-  double zero_rad = 0.0;  ///< joint's position where the drive's is zero
+  double gear = 1.0;             ///< turns of the drive's output for one of the joint
+  double zero_rad = 0.0;         ///< joint's position where the drive's is zero
+  double reported_torque = 1.0;  ///< the torque that it reports over the one that it gives
 
   int id() const noexcept {
     return std::visit([](const auto& d) { return drive_id(d); }, drive);

@@ -107,6 +107,15 @@ TEST_P(NudgeTest, AJointThatGoesTheWayOfTheTorqueIsGoodAndEndsBraked) {
   EXPECT_LT(std::fabs(robot.velocity_radps[kKfe]), 0.2);
   EXPECT_TRUE(robot.all_off());
   EXPECT_THAT(robot.words(good, kKfe), testing::StartsWith("LF_KFE (can0 id 3): +2.0 N m moved"));
+  EXPECT_THAT(robot.words(good, kKfe), testing::EndsWith("+2.0 N m"));
+}
+
+TEST_P(NudgeTest, ATorqueReportedInAnotherScaleIsSaidWithItsSetting) {
+  HangingRobot robot(GetParam());
+  robot.told_torque_scale[kKfe] = 1.25;
+  const Nudge good = nudge(kKfe, 2.0, {}, robot.exchange());
+  EXPECT_EQ(good.verdict, Found::kGood);
+  EXPECT_THAT(robot.words(good, kKfe), testing::HasSubstr("reported_torque = 1.2"));
 }
 
 TEST_P(NudgeTest, ADriveWhoseTorqueHasTheWrongSignIsFoundAndNeverDamps) {

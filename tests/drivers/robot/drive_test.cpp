@@ -245,6 +245,17 @@ TEST(DriveTest, SignGearAndZeroTurnTheJointIntoTheDrive) {
   EXPECT_NEAR(told.torque_nm, -3.0, 0.04);
 }
 
+TEST(DriveTest, ATorqueThatIsReportedInAnotherScaleIsReadInItsOwn) {
+  MitPair pair;
+  pair.config().reported_torque = 1.25;
+  pair.apply();
+  pair.state.torque_nm = 5.0;
+  const SetPoint point{0.0, 0.0, 0.0, 0.0, 4.0};
+  for (int i = 0; i < 4; ++i) pair.exchange(&point);
+  EXPECT_NEAR(pair.drive.torque_nm(), 4.0, 0.04);
+  EXPECT_NEAR(pair.exchange(&point).command.torque_nm, 4.0, 0.04);  // not what it is asked for
+}
+
 TEST(DriveTest, AJointAtRestHasNoSpeed) {
   MitPair pair;
   pair.state.velocity_radps = 0.0;  // which no code of the protocol means

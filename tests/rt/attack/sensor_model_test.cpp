@@ -28,10 +28,11 @@ MakeSpoil low_pass(JointArray<double> JointState::*values, double time_s) {
     };
   };
 }
-MakeSpoil torque_times(double scale) {
+/// `known` is what hardware.drive[].reported_torque says.
+MakeSpoil torque_times(double scale, double known = 1.0) {
   return [=] {
     return [=](SensorFrame& fresh, std::uint64_t) {
-      for (double& nm : fresh.joints.torque_nm) nm *= scale;
+      for (double& nm : fresh.joints.torque_nm) nm *= scale / known;
     };
   };
 }
@@ -94,7 +95,11 @@ std::vector<SensorModel> every_model() {
                       low_pass(&JointState::torque_nm, 1e-3 * ms)});
   }
   for (const int percent : {60, 70, 75, 80, 85, 120, 125, 130}) {
-    models.push_back({"torque x " + std::to_string(percent) + " %", torque_times(0.01 * percent)});
+    const std::string name = "torque x " + std::to_string(percent) + " %";
+    models.push_back({name, torque_times(0.01 * percent)});
+    // check --nudge finds it within a twentieth.
+    models.push_back(
+        {name + ", known but for 5 %", torque_times(0.01 * percent, 0.0105 * percent)});
   }
   return models;
 }
