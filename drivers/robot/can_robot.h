@@ -67,7 +67,6 @@ class CanRobot final : public RobotIo {
 
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
   void write(const SafeCommand& command) noexcept override;
-  void skip(std::uint64_t, const SafeCommand&) noexcept override {}  // it went on without us
   void cut_drives() noexcept override;
   void shut_down() noexcept override;
 

@@ -33,7 +33,6 @@ class UnitreeRobot final : public RobotIo {
 
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
   void write(const SafeCommand& command) noexcept override;
-  void skip(std::uint64_t, const SafeCommand&) noexcept override {}  // it went on without us
   /// The wire damps the robot from its next message on, for 2 s, and switches it off.
   void cut_drives() noexcept override;
   void shut_down() noexcept override;

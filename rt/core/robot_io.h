@@ -50,8 +50,10 @@ class RobotIo {
   /// Sends the command. It holds until the next one.
   virtual void write(const SafeCommand& command) noexcept = 0;
 
-  /// The loop missed `ticks` ticks, through which `held`, the last command, has been in force.
-  virtual void skip(std::uint64_t ticks, const SafeCommand& held) noexcept = 0;
+  /// The loop missed `ticks` ticks, through which `held`, the last command, has been in force. A
+  /// real robot has moved meanwhile; a simulated one moves now.
+  virtual void skip([[maybe_unused]] std::uint64_t ticks,
+                    [[maybe_unused]] const SafeCommand& held) noexcept {}
 
   /// The last line: drives off now and for good, `drives_cut` in every frame from now on. From any
   /// thread, also while another call hangs, and from a signal handler: async-signal-safe.

@@ -24,7 +24,6 @@ class SimulatorBeside final : public RobotIo {
 
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
   void write(const SafeCommand& command) noexcept override { commands_.write(command); }
-  void skip(std::uint64_t, const SafeCommand&) noexcept override {}
   void cut_drives() noexcept override { cut_ = true; }
   void shut_down() noexcept override {}
 

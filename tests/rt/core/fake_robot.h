@@ -55,7 +55,6 @@ class FakeRobot : public RobotIo {
     }
   }
 
-  void skip(std::uint64_t, const SafeCommand&) noexcept override {}
   void cut_drives() noexcept override { now.drives_cut = 1; }
   void shut_down() noexcept override {}
 

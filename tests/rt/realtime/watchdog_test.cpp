@@ -12,7 +12,6 @@ class CutRobot final : public RobotIo {
  public:
   void read(std::uint64_t, SensorFrame&) noexcept override {}
   void write(const SafeCommand&) noexcept override {}
-  void skip(std::uint64_t, const SafeCommand&) noexcept override {}
   void cut_drives() noexcept override { ++cuts; }
   void shut_down() noexcept override {}
   int cuts = 0;

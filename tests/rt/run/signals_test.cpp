@@ -107,7 +107,6 @@ class LoudRobot final : public RobotIo {
  public:
   void read(std::uint64_t, SensorFrame&) noexcept override {}
   void write(const SafeCommand&) noexcept override {}
-  void skip(std::uint64_t, const SafeCommand&) noexcept override {}
   void cut_drives() noexcept override {
     constexpr char kText[] = "drives cut";
     if (::write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(3);
