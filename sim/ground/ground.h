@@ -115,6 +115,13 @@ template <typename S>
 inline S quasistatic_force(const Ground<S>& g, const Cone<S>& c) noexcept {
   return fma(g.sigma_flat, c.flat_integral, g.sigma_cone * c.cone_integral);
 }
+/// The same at depth z >= 0 of a foot.
+template <typename S>
+inline S quasistatic_force(const Ground<S>& g, const FootProfile<S>& foot, S z) noexcept {
+  S p0, p1;
+  foot.integrals(z, p0, p1);
+  return quasistatic_force(g, cone_integrals(g, z, p0, p1));
+}
 
 /// Derives the constants for a foot. `foot_radius_m` is the r_f of the HSR model.
 Ground<double> derive_ground(const GroundParameters& parameters, const FootProfile<double>& foot,

@@ -42,11 +42,7 @@ struct Foot {
     }
     return f;
   }
-  double quasistatic(double z) const {
-    double p0, p1;
-    profile.integrals(z, p0, p1);
-    return quasistatic_force(ground, cone_integrals(ground, z, p0, p1));
-  }
+  double quasistatic(double z) const { return quasistatic_force(ground, profile, z); }
 
   FootProfile<double> profile = tyre();
   Ground<double> ground;

@@ -96,10 +96,7 @@ TEST(DropTest, WithoutInertiaTheQuasistaticForceTakesAllOfTheFall) {
       const Ground<double> ground = derive_ground(parameters, foot, kFootRadius_m);
       double depth_m = 0.0, work_j = 0.0;
       do {
-        double p0, p1;
-        foot.integrals(depth_m + 0.5e-6, p0, p1);
-        work_j +=
-            1e-6 * quasistatic_force(ground, cone_integrals(ground, depth_m + 0.5e-6, p0, p1));
+        work_j += 1e-6 * quasistatic_force(ground, foot, depth_m + 0.5e-6);
         depth_m += 1e-6;
       } while (work_j < kMass_kg * kGravity_mps2 * (height_m + depth_m));
       DropSettings settings{flat, cone, kFootRadius_m + height_m, true, false, 0.05e-3};

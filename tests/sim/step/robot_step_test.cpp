@@ -69,11 +69,7 @@ TEST(StandingTest, DrySandCarriesTheWeight) {
   const GroundParameters sand;
   Bench bench(sand);
   const Ground<double>& ground = bench.terrain.ground[0];
-  const auto force = [&](double z) {
-    double p0, p1;
-    bench.foot.integrals(z, p0, p1);
-    return quasistatic_force(ground, cone_integrals(ground, z, p0, p1));
-  };
+  const auto force = [&](double z) { return quasistatic_force(ground, bench.foot, z); };
   double sudden_m = 0.0, work = 0.0;
   do {
     work += force(sudden_m + 0.5e-5) * 1e-5;

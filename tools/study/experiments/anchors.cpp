@@ -181,9 +181,7 @@ double disc_stress_per_depth(const sim::GroundParameters& parameters, double dep
   const sim::FootProfile<double> disc =
       sim::fit_foot_profile(sim::FootShape::kDisc, kFootRadius_m, 0.0, 2.0);
   const sim::Ground<double> ground = sim::derive_ground(parameters, disc, kFootRadius_m);
-  double p0 = 0.0, p1 = 0.0;
-  disc.integrals(depth_m, p0, p1);
-  const double force = sim::quasistatic_force(ground, sim::cone_integrals(ground, depth_m, p0, p1));
+  const double force = sim::quasistatic_force(ground, disc, depth_m);
   return force / (std::numbers::pi * kFootRadius_m * kFootRadius_m * depth_m);
 }
 

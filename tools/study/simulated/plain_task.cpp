@@ -49,11 +49,7 @@ double static_depth_m(const sim::Robot& robot, const GridCell& cell) {
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 60; ++i) {  // halved until a double has no more digits
     const double middle = 0.5 * (low + high);
-    double p0 = 0.0, p1 = 0.0;
-    foot.integrals(middle, p0, p1);
-    const double force_n =
-        sim::quasistatic_force(ground, sim::cone_integrals(ground, middle, p0, p1));
-    (force_n < load_n ? low : high) = middle;
+    (sim::quasistatic_force(ground, foot, middle) < load_n ? low : high) = middle;
   }
   return high;
 }
