@@ -165,9 +165,7 @@ void RowMaker::set_truth(const TickRecord& tick, RunRow& row) const {
   row.truth = floats(tick.before.state);
   for (std::size_t l = 0; l < kNumLegs; ++l) {
     const auto& foot_m = row.foot_m[l];
-    row.ground_height_m[l] = scene_.ground_height_m
-                                 ? static_cast<float>(scene_.ground_height_m(foot_m[0], foot_m[1]))
-                                 : 0.0f;
+    row.ground_height_m[l] = static_cast<float>(scene_.ground_height_m(foot_m[0], foot_m[1]));
     row.contact[l] = tick.truth.foot_penetration_m[l] >= 0.0 ? 1.0f : 0.0f;
     row.foot_force_n[l] = floats(tick.truth.foot_force_n[l]);
     row.stance_m[l] = floats(stances_.stances()[l].deepest_m);

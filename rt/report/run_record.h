@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <deque>
 #include <functional>
 #include <string>
@@ -19,9 +20,15 @@ struct RunScene {
   double mass_kg = 0.0;
   LegJoints<double> motor_constant{};  ///< k_m of the cost of transport, N m/sqrt(W) at the joint
   double foot_radius_m = 0.0;
-  bool granular_ground = true;  ///< sand is drawn, else solid ground
-  /// Height of the undisturbed surface at x, y, m; unset: flat at 0.
-  std::function<double(double x_m, double y_m)> ground_height_m = {};
+  bool granular_ground = true;       ///< sand is drawn, else solid ground
+  std::array<double, 2> slope = {};  ///< gradient of the ground's plane, which goes through 0
+  /// Height of the ground's waves over its plane at x, y, m; unset: none.
+  std::function<double(double x_m, double y_m)> waves_m = {};
+
+  /// Height of the undisturbed surface at x, y, m.
+  double ground_height_m(double x_m, double y_m) const {
+    return slope[0] * x_m + slope[1] * y_m + (waves_m ? waves_m(x_m, y_m) : 0.0);
+  }
 };
 
 /// All of a run in bounded memory. Of a run of more than 11 minutes only every second row is kept,

@@ -23,7 +23,7 @@ RunScene robot_scene(const sim::Robot& robot, sim::Terrain<Real> ground) {
   scene.granular_ground = ground.ground[0].is_granular > Real(0.0);
   if (ground.highest > Real(0.0)) {
     const auto shared = std::make_shared<const sim::Terrain<Real>>(std::move(ground));
-    scene.ground_height_m = [shared](double x_m, double y_m) -> double {
+    scene.waves_m = [shared](double x_m, double y_m) -> double {
       return sim::surface_at(*shared, static_cast<Real>(x_m), static_cast<Real>(y_m)).height;
     };
   }

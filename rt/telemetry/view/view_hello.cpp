@@ -55,6 +55,7 @@ std::string view_hello(const RunScene& scene, const std::string& note) {
       {"build", build_name()},
       {"note", note},
       {"granular", scene.granular_ground},
+      {"slope", scene.slope},
       {"foot_radius_m", scene.foot_radius_m},
       {"legs", robot.leg_names},
       {"joints", robot.joint_names},

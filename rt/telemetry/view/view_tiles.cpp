@@ -14,8 +14,8 @@ ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y
   ViewTile tile{.tile_x = tile_x, .tile_y = tile_y};
   for (std::int32_t j = 0; j < kViewTileSide; ++j) {
     for (std::int32_t i = 0; i < kViewTileSide; ++i) {
-      const double height_m = scene.ground_height_m(kViewTileStep_m * (kViewTileSide * tile_x + i),
-                                                    kViewTileStep_m * (kViewTileSide * tile_y + j));
+      const double height_m = scene.waves_m(kViewTileStep_m * (kViewTileSide * tile_x + i),
+                                            kViewTileStep_m * (kViewTileSide * tile_y + j));
       tile.height_tenth_mm[static_cast<std::size_t>(kViewTileSide * j + i)] =
           static_cast<std::int16_t>(std::lround(1e4 * std::clamp(height_m, -3.0, 3.0)));
     }
@@ -28,7 +28,7 @@ ViewTile tile_at(const RunScene& scene, std::int32_t tile_x, std::int32_t tile_y
 std::vector<ViewTile> new_view_tiles(const RunScene& scene, const RunRow& row,
                                      std::set<std::pair<std::int32_t, std::int32_t>>& seen) {
   std::vector<ViewTile> tiles;
-  if (!scene.ground_height_m) return tiles;
+  if (!scene.waves_m) return tiles;
   const Vector3& p = row.position_m;
   constexpr double kFarthest_m = 1e6;
   if (!(std::abs(p[0]) < kFarthest_m && std::abs(p[1]) < kFarthest_m)) return tiles;

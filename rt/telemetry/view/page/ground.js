@@ -46,6 +46,7 @@ uniform sampler2D heights;
 uniform sampler2D grains;
 uniform vec2 middle;
 uniform float soft;
+uniform vec2 plane;
 varying vec2 vWorld;
 float heightAt(vec2 p) { return texture2D(heights, p / ${kWindow_m.toFixed(4)}).r; }
 float within(float from, float to) { vec2 d = abs(vWorld - middle); return 1.0 - smoothstep(from, to, max(d.x, d.y)); }
@@ -69,7 +70,7 @@ diffuseColor.rgb *= 1.0 - 0.13 * max(mark.x, mark.y) * min(1.0, 0.012 / max(wide
 `;
 const kNormal = `
 const float e = 0.006;
-vec2 slope = seen * vec2(heightAt(vWorld + vec2(e, 0.0)) - heightAt(vWorld - vec2(e, 0.0)),
+vec2 slope = plane + seen * vec2(heightAt(vWorld + vec2(e, 0.0)) - heightAt(vWorld - vec2(e, 0.0)),
                          heightAt(vWorld + vec2(0.0, e)) - heightAt(vWorld - vec2(0.0, e))) / (2.0 * e);
 if (soft > 0.5) slope += 0.30 * (coarse.xy - 0.5) + 0.22 * (fine.xy - 0.5) + 0.20 * (grain.xy - 0.5);
 else slope += 0.03 * (grain.xy - 0.5);
@@ -87,14 +88,14 @@ export class Ground {
     this.middle = new THREE.Vector2();
     const material = new THREE.MeshPhongMaterial({ shininess: 0, specular: 0 });
     this.grains = noise();
-    const uniforms = { heights: { value: this.texture }, grains: { value: this.grains }, middle: { value: this.middle }, soft: { value: 1 } };
+    const uniforms = { heights: { value: this.texture }, grains: { value: this.grains }, middle: { value: this.middle }, soft: { value: 1 }, plane: { value: new THREE.Vector2(...heights.surface.slope) } };
     // A flat sheet that only looks uneven beyond the fine part; rough hard ground is displaced as far as it is known.
     const displaced = '(soft > 0.5 ? within(1.2, 1.6) : within(4.2, 4.9))';
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, uniforms);
       shader.vertexShader = kDeclare + shader.vertexShader.replace('#include <begin_vertex>', `#include <begin_vertex>
         vWorld = (modelMatrix * vec4(transformed, 1.0)).xy;
-        transformed.z += ${displaced} * heightAt(vWorld);`);
+        transformed.z += dot(plane, vWorld) + ${displaced} * heightAt(vWorld);`);
       shader.fragmentShader = kDeclare + shader.fragmentShader
         .replace('#include <normal_fragment_begin>', kNormal).replace('#include <color_fragment>', kColor);
     };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Heights of the ground around the robot: a square window on the world that wraps around, into which footprints are
-// pressed. What it holds depends on the time and the place alone, not on the way there: looking back shows the same.
+// Heights of the ground over its plane, around the robot: a square window on the world that wraps around, into which
+// footprints are pressed. What it holds depends on time and place alone, not on the way there: looking back shows the same.
 
 export const kCell_m = 0.005, kSide = 2048, kWindow_m = kCell_m * kSide;
 const kBlock = 64;  // cells; the window moves by whole blocks
@@ -142,7 +142,7 @@ export class Heights {
   }
 
   #surfaceOfCell(gx, gy) {
-    return this.surface.flat ? 0 : this.surface.at((gx + 0.5) * kCell_m, (gy + 0.5) * kCell_m);
+    return this.surface.flat ? 0 : this.surface.waves((gx + 0.5) * kCell_m, (gy + 0.5) * kCell_m);
   }
 
   #publish(rect) {

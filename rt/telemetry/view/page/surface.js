@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The undisturbed ground: flat at 0, or tiles of heights (view_tiles.h).
+// The undisturbed ground: a plane, and the waves on it in tiles of heights (view_tiles.h).
 
 export class Surface {
   /** @param {object} run {hello, tiles} */
   constructor({ hello, tiles }) {
     this.step = hello.tile_step_m;
     this.side = hello.tile_side;
+    this.slope = hello.slope;
     this.table = tiles;
     this.takeNew();
   }
@@ -23,8 +24,11 @@ export class Surface {
     return squares;
   }
 
-  /** Its height at x, y, m; 0 where nothing is known. */
-  at(x, y) {
+  /** Its height at x, y, m; that of the plane where no tile is known. */
+  at(x, y) { return this.slope[0] * x + this.slope[1] * y + this.waves(x, y); }
+
+  /** Height over the plane, m. */
+  waves(x, y) {
     if (this.flat) return 0;
     const u = x / this.step, v = y / this.step, i = Math.floor(u), j = Math.floor(v);
     const a = this.#corner(i, j), b = this.#corner(i + 1, j), c = this.#corner(i, j + 1), d = this.#corner(i + 1, j + 1);

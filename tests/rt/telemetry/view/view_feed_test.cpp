@@ -68,7 +68,7 @@ TEST(ViewFeedTest, ThePastIsBounded) {
 
 TEST(ViewFeedTest, RoughGroundComesBeforeTheFramesOnIt) {
   RunScene scene;
-  scene.ground_height_m = [](double x_m, double) { return 0.01 * x_m; };
+  scene.waves_m = [](double x_m, double) { return 0.01 * x_m; };
   ViewFeed feed(scene);
   add_frames(feed, 0, 3);
   ViewFeed::Place place = feed.join();
@@ -82,7 +82,7 @@ TEST(ViewFeedTest, RoughGroundComesBeforeTheFramesOnIt) {
 
 TEST(ViewFeedTest, GroundThatWasForgottenIsThereAgainForARobotThatComesBack) {
   RunScene scene;
-  scene.ground_height_m = [](double x_m, double) { return 0.01 * x_m; };
+  scene.waves_m = [](double x_m, double) { return 0.01 * x_m; };
   ViewFeed feed(scene, {.frames = 10, .footprints = 10, .tiles = 200});
   for (const double x_m : {0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 0.0}) {
     RunRow row;

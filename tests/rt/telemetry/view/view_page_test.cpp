@@ -159,7 +159,7 @@ TEST(ViewTilesTest, RoughGroundIsThereWhereTheRobotWas) {
   std::deque<RunRow> way(2);
   way[1].position_m = {20.0, -3.0, 0.5};
   EXPECT_TRUE(view_tiles(scene, way, 1000).empty());
-  scene.ground_height_m = [](double x, double y) { return 0.01 * x - 0.02 * y; };
+  scene.waves_m = [](double x, double y) { return 0.01 * x - 0.02 * y; };
   const auto tiles = view_tiles(scene, way, 1000);
   EXPECT_EQ(tiles.size(), 98u);
   const double side_m = kViewTileSide * kViewTileStep_m;
@@ -169,6 +169,16 @@ TEST(ViewTilesTest, RoughGroundIsThereWhereTheRobotWas) {
     EXPECT_NEAR(1e-4 * tile.height_tenth_mm[7 * kViewTileSide + 5], 0.01 * x - 0.02 * y, 6e-5);
   }
   EXPECT_EQ(view_tiles(scene, way, 10).size(), 10u);
+}
+
+TEST(ViewTilesTest, ASlopeIsInTheHelloAndUnderTheWaves) {
+  RunScene scene = example_scene();
+  scene.slope = {0.1, -0.2};
+  EXPECT_EQ(Json::parse(view_hello(scene, "")).at("slope"), (Json{0.1, -0.2}));
+  EXPECT_NEAR(scene.ground_height_m(3.0, 1.0), 0.1, 1e-12);
+  EXPECT_TRUE(view_tiles(scene, std::vector<RunRow>(2), 1000).empty());
+  scene.waves_m = [](double, double) { return 0.01; };
+  EXPECT_NEAR(scene.ground_height_m(3.0, 1.0), 0.11, 1e-12);
 }
 
 TEST(ViewPackTest, WhatIsNotANumberStaysInItsOwnPlace) {
