@@ -9,7 +9,7 @@ namespace sim = sandrunner::sim;
 
 // A ball foot of 3 cm on dry sand, and what the contact of each foot remembers.
 const auto foot = sim::fit_foot_profile(sim::FootShape::kSphere, 0.03, 0.0, 3.24);
-const auto sand = sim::derive_ground(sim::GroundParameters{}, foot, 0.03);
+const auto sand = sim::derive_law(sim::GranularParameters{}, foot, 0.03);
 sim::FootContact<double> contacts[4];
 
 // MuJoCo calls this in each step of 0.25 ms. The friction is full from 0.05 m/s on.
@@ -18,8 +18,8 @@ void add_sand(const mjModel* m, mjData* d) {
     const mjtNum* at = d->site_xpos + 3 * i;
     mjtNum v[6];  // angular, then linear velocity
     mj_objectVelocity(m, d, mjOBJ_SITE, i, v, 0);
-    const auto f = granular_step(sand, foot, at[0], at[1], 0.03 - at[2], -v[5], v[3], v[4], 4000.0,
-                                 contacts[i]);
+    const sim::FootMotion<double> motion{at[0], at[1], 0.03 - at[2], -v[5], v[3], v[4]};
+    const auto f = sand.step(foot, 0.8, motion, 4000.0, contacts[i]);
     const double friction = f.friction_bound / mju_max(mju_norm(v + 3, 2), 0.05);
     const mjtNum force[6] = {-friction * v[3] - f.stroke * f.direction_x,
                              -friction * v[4] - f.stroke * f.direction_y, f.normal};

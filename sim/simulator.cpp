@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <vector>
 
 #include "sim/lanes/random.h"
@@ -74,7 +73,7 @@ void Simulator::disturb(double height_above_m) {
     x.angular_velocity = {draw(), draw(), draw()};
   }
   // An undisturbed robot on level ground stands at its nominal height.
-  if (config_.seed > 0 || height_above_m == 0.0 || terrain_.highest > 0.0) {
+  if (config_.seed > 0 || height_above_m == 0.0 || terrain_.shape.uneven > 0.0) {
     const double lowest = lowest_clearance(
         robot_.model, x.q, [this](double x_m, double y_m) { return surface_height(x_m, y_m); });
     x.position.z = height_above_m - lowest;
@@ -112,17 +111,21 @@ bool Simulator::carry_to_stand() noexcept {
     there = there && std::abs(way) < kThere;
     x.qd[j] = towards(way, kTurn_radps);
   }
-  const Vec3<double> up = transposed_times(rotation_matrix(x.orientation), {0.0, 0.0, 1.0});
+  const Mat3<double> r = rotation_matrix(x.orientation);
+  const Vec3<double> up = transposed_times(r, {0.0, 0.0, 1.0});
   const double sine = std::hypot(up.x, up.y), tilt = std::atan2(sine, up.z);
   there = there && tilt < kThere;
   const double rate = towards(tilt, kTurn_radps);
   // About the axis that brings the body's z to the vertical; on its back any will do.
   x.angular_velocity = sine > 1e-9 ? Vec3<double>{-rate * up.y / sine, rate * up.x / sine, 0.0}
                                    : Vec3<double>{rate, 0.0, 0.0};
-  const double lift =
-      kAbove_m + surface_height(x.position.x, x.position.y) -
-      lowest_clearance(robot_.model, robot_.nominal_rad, [](double, double) { return 0.0; }) -
-      x.position.z;
+  const double heading = std::atan2(r.r1.x, r.r0.x), c = std::cos(heading), s = std::sin(heading);
+  const double lowest =
+      lowest_clearance(robot_.model, robot_.nominal_rad, [&](double ahead_m, double left_m) {
+        return surface_height(x.position.x + c * ahead_m - s * left_m,
+                              x.position.y + s * ahead_m + c * left_m);
+      });
+  const double lift = kAbove_m - lowest - x.position.z;
   there = there && std::abs(lift) < kThere;
   x.velocity = {0.0, 0.0, towards(lift, kLift_mps)};
   state_.linear_acceleration_mps2 = {kGravity_mps2 * up.x, kGravity_mps2 * up.y,
@@ -131,16 +134,10 @@ bool Simulator::carry_to_stand() noexcept {
 }
 
 void Simulator::set_terrain(const TerrainDescription& terrain) {
-  const auto kinds = [](const TerrainDescription& t) {
-    std::vector<std::tuple<GroundKind, double, double>> all;
-    for (const TerrainPatch& patch : t.patches) {
-      const GroundParameters& g = patch.ground;
-      const bool springs = g.kind == GroundKind::kLinear;
-      all.emplace_back(g.kind, springs ? g.stiffness_npm : 0.0, springs ? g.coupling_npm : 0.0);
-    }
-    return all;
+  const auto alike = [](const TerrainPatch& a, const TerrainPatch& b) {
+    return a.ground.carries_like(b.ground);
   };
-  if (kinds(terrain) != kinds(config_.terrain)) {
+  if (!std::ranges::equal(terrain.patches, config_.terrain.patches, alike)) {
     double deepest = 0.0;
     for (const double depth : report_.penetration) deepest = std::max(deepest, depth);
     state_.robot.rigid.position.z += deepest;
@@ -248,7 +245,7 @@ bool Simulator::truth(RobotTruth& truth) const noexcept {
     const Vec3<double>& centre = report_.foot_centre[l];
     truth.foot_centre_m[l] = array(centre);
     truth.foot_penetration_m[l] = report_.penetration[l];
-    const SurfaceAxes<double> axes = surface_axes(surface_at(terrain_, centre.x, centre.y));
+    const SurfaceAxes<double> axes = surface_axes(surface_at(terrain_.shape, centre.x, centre.y));
     const auto& force = report_.foot_force[l];
     truth.foot_force_n[l] = array(force[0] * axes.t1 + force[1] * axes.t2 + force[2] * axes.n);
   }
@@ -269,7 +266,7 @@ void Simulator::add_to(StateHash& hash) const noexcept {
 }
 
 double Simulator::surface_height(double x_m, double y_m) const noexcept {
-  return surface_at(terrain_, x_m, y_m).height;
+  return surface_at(terrain_.shape, x_m, y_m).height;
 }
 
 SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot) {

@@ -29,7 +29,7 @@ constexpr Group kGroups[] = {
     {"robot", "The robot."},
     {"terrain",
      "The ground: the keys of a file of --terrain. Each preset sets its own. A [[terrain.patch]] "
-     "has the keys\nof a ground, too, without `terrain.`; its two others are listed."},
+     "has the keys\nfrom `kind` on, too, without `terrain.`; its two others are listed."},
     {"sim", "The simulator: noise and delays of its sensors, its drives, its solver."},
     {"policy", "The exchange with the policy."},
     {"controller",

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
+#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "rt/base/config_tree.h"
@@ -18,24 +19,14 @@ namespace {
 
 using Ground = sim::GroundParameters;
 
-// What pages may set of the ground, with its keys from the table of all.
-constexpr double Ground::*kOffered[] = {&Ground::sigma_flat_npm3,
-                                        &Ground::sigma_cone_npm3,
-                                        &Ground::stiffness_npm,
-                                        &Ground::friction,
-                                        &Ground::drag,
-                                        &Ground::packing};
-
-std::vector<std::string> offered_keys() {
-  std::vector<std::string> keys;
-  for (const auto member : kOffered) {
-    for (const Setting<Ground>& row : sim::ground_settings()) {
-      const auto* const number = std::get_if<double Ground::*>(&row.member);
-      if (number != nullptr && *number == member) keys.emplace_back(row.key);
-    }
-  }
-  return keys;
-}
+// What pages may set of the ground.
+constexpr std::pair<const char*, double Ground::*> kOffered[] = {
+    {"sigma_flat_npm3", &Ground::sigma_flat_npm3},
+    {"sigma_cone_npm3", &Ground::sigma_cone_npm3},
+    {"stiffness_npm", &Ground::stiffness_npm},
+    {"friction", &Ground::friction},
+    {"drag", &Ground::drag},
+    {"packing", &Ground::packing}};
 
 GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& wanted) {
   const sim::GroundParameters& ground = terrain.patches.front().ground;
@@ -44,10 +35,7 @@ GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& w
   now.name = terrain.name;
   now.kind = sim::kind_name(ground.kind);
   now.presets = sim::terrain_preset_names();
-  const std::vector<std::string> keys = offered_keys();
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    now.values.emplace_back(keys[i], ground.*kOffered[i]);
-  }
+  for (const auto& [key, member] : kOffered) now.values.emplace_back(key, ground.*member);
   return now;
 }
 
@@ -62,9 +50,9 @@ sim::TerrainDescription read(const WantedGround& wanted, const std::string& sett
     throw InputError(fmt::format("terrain: '{}', expected one of {}", one_line(wanted.preset),
                                  fmt::join(sim::terrain_preset_names(), ", ")));
   }
-  const std::vector<std::string> keys = offered_keys();
+  const auto keys = std::views::keys(kOffered);
   for (const auto& [key, value] : wanted.set) {
-    if (std::ranges::find(keys, key) == keys.end()) {
+    if (std::ranges::find(keys, std::string_view(key)) == keys.end()) {
       throw InputError(
           fmt::format("terrain: '{}', expected one of {}", one_line(key), fmt::join(keys, ", ")));
     }
@@ -91,7 +79,7 @@ SimulatorControl::SimulatorControl(sim::Simulator& simulator,
     : simulator_(simulator),
       settings_(std::move(settings)),
       return_to_stand_(return_to_stand),
-      uneven_(simulator.terrain().highest > 0.0),
+      uneven_(simulator.terrain().shape.uneven > 0.0),
       ground_(describe(terrain, {})) {}
 
 std::string SimulatorControl::push(double direction_rad) {

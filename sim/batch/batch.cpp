@@ -27,6 +27,13 @@ const detail::BatchKernel& kernel_of(BatchWidth width) {
 
 constexpr std::size_t kAlignment = 64;
 
+template <typename Member>
+std::size_t offset_of(Member BatchRobot<float>::*member) noexcept {
+  static const BatchRobot<float> robot;
+  return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(robot.*member)) -
+                                  reinterpret_cast<const std::byte*>(&robot));
+}
+
 }  // namespace
 
 BatchWidth best_batch_width() noexcept {
@@ -73,16 +80,16 @@ void Batch::copy_out(int robot, std::size_t offset, void* values,
 }
 
 void Batch::set_model(int robot, const RobotModel<float>& v) noexcept {
-  copy_in(robot, offsetof(BatchRobot<float>, model), &v, sizeof(v));
+  copy_in(robot, offset_of(&BatchRobot<float>::model), &v, sizeof(v));
 }
 void Batch::set_terrain(int robot, const Terrain<float>& v) noexcept {
-  copy_in(robot, offsetof(BatchRobot<float>, terrain), &v, sizeof(v));
+  copy_in(robot, offset_of(&BatchRobot<float>::terrain), &v, sizeof(v));
 }
 void Batch::set_state(int robot, const RobotState<float>& v) noexcept {
-  copy_in(robot, offsetof(BatchRobot<float>, state), &v, sizeof(v));
+  copy_in(robot, offset_of(&BatchRobot<float>::state), &v, sizeof(v));
 }
 void Batch::set_drive(int robot, const BatchDrive<float>& v) noexcept {
-  copy_in(robot, offsetof(BatchRobot<float>, drive), &v, sizeof(v));
+  copy_in(robot, offset_of(&BatchRobot<float>::drive), &v, sizeof(v));
 }
 void Batch::set_robot(int robot, const BatchRobot<float>& v) noexcept {
   copy_in(robot, 0, &v, sizeof(v));
@@ -94,17 +101,17 @@ BatchRobot<float> Batch::robot(int robot) const noexcept {
 }
 RobotState<float> Batch::state(int robot) const noexcept {
   RobotState<float> v;
-  copy_out(robot, offsetof(BatchRobot<float>, state), &v, sizeof(v));
+  copy_out(robot, offset_of(&BatchRobot<float>::state), &v, sizeof(v));
   return v;
 }
 BatchSums<float> Batch::sums(int robot) const noexcept {
   BatchSums<float> v;
-  copy_out(robot, offsetof(BatchRobot<float>, sums), &v, sizeof(v));
+  copy_out(robot, offset_of(&BatchRobot<float>::sums), &v, sizeof(v));
   return v;
 }
 BatchReport<float> Batch::report(int robot) const noexcept {
   BatchReport<float> v;
-  copy_out(robot, offsetof(BatchRobot<float>, report), &v, sizeof(v));
+  copy_out(robot, offset_of(&BatchRobot<float>::report), &v, sizeof(v));
   return v;
 }
 

@@ -1,57 +1,165 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The force of granular ground on one foot: Aguilar & Goldman's developing cone as the paper
-// generalises it (section S11), its plastic memory, the moving average of the normal force (eq.
-// S16), and the horizontal stroke resistance (paper, eqs. 1 and 2). Where the paper's text and its
-// authors' code differ, the code is followed, since the published network was trained with it: the
-// filter's constants, ungated friction, depth term z - r_f, stroke resistance that begins beyond
-// the crater's radius and counts horizontal travel as fresh ground (the paper's text: any overlap
-// with the wall, and its greatest value so far).
-//
-// z is the penetration of the deepest point below the undisturbed surface, positive down; v =
-// dz/dt.
+// The law of granular ground: Aguilar & Goldman's developing cone as the paper generalises it
+// (section S11), its plastic memory, the moving average of the normal force (eq. S16), and the
+// horizontal stroke resistance (paper, eqs. 1 and 2). Where the paper's text and its authors' code
+// differ, the code is followed, since the published network was trained with it: the filter's
+// constants, ungated friction, depth term z - r_f, stroke resistance that begins beyond the
+// crater's radius and counts horizontal travel as fresh ground (the paper's text: any overlap with
+// the wall, and its greatest value so far).
 #pragma once
 
-#include "sim/ground/ground.h"
-#include "sim/lanes/vec.h"
+#include <numbers>
+
+#include "rt/base/settings.h"
+#include "sim/ground/law.h"
 
 namespace sandrunner::sim {
 
-/// What a foot's contact remembers. All of it is reset when the foot touches down.
-template <typename S>
-struct FootContact {
-  S active{};                ///< 1 from touchdown to lift-off
-  S region{};                ///< index of the patch of ground it touched down on
-  S velocity{};              ///< v of the previous step, also in the air, m/s
-  S memory_depth{};          ///< deepest penetration so far, less what has healed, m
-  S memory_x{}, memory_y{};  ///< where that was, world, m
-  S memory_travel{};         ///< greatest horizontal distance from there since, m
-  S restart_flat{};          ///< I_flat at which the present cone began to grow, m^3
-  S filter{};                ///< tau_r of eq. S16
-  S force{};                 ///< filtered normal force, N
-  S stroke_latched{};        ///< 1: the foot ploughs beyond its crater
-  S stroke_x{}, stroke_y{}, stroke_depth{};  ///< crater's centre and depth as latched, m
-  S stroke_travel{};                         ///< greatest distance from that centre since, m
+/// Defaults are those of the paper authors' code for its sand demonstration. Symbols as in Aguilar
+/// & Goldman 2016 as generalised by the paper (section S11) and its HSR model (eqs. 1, 2); sigma in
+/// N/m^3.
+struct GranularParameters {
+  static constexpr const char* kName = "granular";
+  // Developing cone.
+  double sigma_flat_npm3 = 1.0e6;              ///< stress gradient on the flat face
+  double sigma_cone_npm3 = 0.2e6;              ///< stress gradient on the cone's side
+  double recruitment = 2.0;                    ///< nu: cone height gained per depth
+  double cone_angle_rad = 1.0471975511965976;  ///< theta, from the horizontal
+  double mass_scaling = 2.7;                   ///< c_g: grains moved outside the cone
+  double packing = 0.57;                       ///< phi: volume fraction
+  double grain_density_kgpm3 = 1000.0;         ///< rho
+  double drag = 17.2;                          ///< c_d: inertial drag scaling
+  double plastic_tolerance_m = 1e-4;           ///< eps_f
+  // Horizontal stroke resistance.
+  double stroke_stiffness_npm = 160.0;           ///< k_h
+  double stroke_damping_nspm = 1.0;              ///< b_h
+  double stroke_depth_scaling = 0.5;             ///< beta_d
+  double crater_radius_m = 0.05;                 ///< r_c
+  double crater_angle_rad = 0.7853981633974483;  ///< gamma_c
+
+  // Effects, each of which can be switched off for an ablation.
+  bool inertial_drag = true;  ///< c_d m_a' z_dot
+  bool added_mass = true;     ///< m_a z_ddot
+  bool plastic_memory =
+      true;  ///< force only beyond the remembered depth (else whenever the foot goes down)
+  bool healing = true;  ///< the remembered depth heals as the foot moves sideways
+  bool filter = true;   ///< moving average of the normal force (eq. S16)
+  bool stroke_resistance = true;
+  bool gated_friction =
+      false;  ///< friction only while the normal force acts (authors' code: always)
+
+  using P = GranularParameters;
+  static constexpr Setting<P> kSettings[] = {
+      {"sigma_flat_npm3", &P::sigma_flat_npm3, 1.0, 1e10,
+       "Granular: stress gradient on the flat face of the cone of grains."},
+      {"sigma_cone_npm3", &P::sigma_cone_npm3, 1.0, 1e10,
+       "Granular: stress gradient on the side of the cone."},
+      {"recruitment", &P::recruitment, 0.01, 20.0,
+       "Granular: height that the cone gains per depth."},
+      {"cone_angle_deg", degrees(&P::cone_angle_rad), 5.0, 85.0,
+       "Granular: angle of the cone from the horizontal."},
+      {"mass_scaling", &P::mass_scaling, 0.0, 20.0,
+       "Granular: grains that move, over those in the cone."},
+      {"packing", &P::packing, 0.0, 1.0, "Granular: volume fraction of the grains."},
+      {"grain_density_kgpm3", &P::grain_density_kgpm3, 0.0, 2e4,
+       "Granular: density of the grains' material."},
+      {"drag", &P::drag, 0.0, 1e3, "Granular: scale of the inertial drag."},
+      {"plastic_tolerance_m", &P::plastic_tolerance_m, 0.0, 0.01,
+       "Granular: the force begins this much above the remembered depth."},
+      {"stroke_stiffness_npm", &P::stroke_stiffness_npm, 0.0, 1e5,
+       "Granular: stiffness against a foot that moves sideways."},
+      {"stroke_damping_nspm", &P::stroke_damping_nspm, 0.0, 1e3,
+       "Granular: damping against a foot that moves sideways."},
+      {"stroke_depth_scaling", &P::stroke_depth_scaling, 0.0, 10.0,
+       "Granular: weight of the depth in the resistance against moving sideways."},
+      {"crater_radius_m", &P::crater_radius_m, 0.0, 1.0,
+       "Granular: radius of the crater of a foot."},
+      {"crater_angle_deg", degrees(&P::crater_angle_rad), 5.0, 85.0,
+       "Granular: slope of the crater's wall."},
+      {"effects.inertial_drag", &P::inertial_drag, "Granular: drag of moving grains."},
+      {"effects.added_mass", &P::added_mass, "Granular: inertia of moving grains."},
+      {"effects.plastic_memory", &P::plastic_memory,
+       "Granular: force only beyond the depth that is remembered."},
+      {"effects.healing", &P::healing,
+       "Granular: the remembered depth heals as the foot moves sideways."},
+      {"effects.filter", &P::filter, "Granular: moving average of the normal force."},
+      {"effects.stroke_resistance", &P::stroke_resistance,
+       "Granular: resistance against a foot that moves sideways."},
+      {"effects.gated_friction", &P::gated_friction,
+       "Granular: friction only while the normal force acts."},
+  };
 };
 
-/// Forces on the foot at one step.
 template <typename S>
-struct GranularForce {
-  S normal{};          ///< filtered, >= 0, N
-  S raw{};             ///< before the filter, gated, N
-  S friction_bound{};  ///< of the tangential force, N
-  S stroke{};          ///< horizontal stroke resistance, N, acts along -(direction_x, direction_y)
-  S direction_x{}, direction_y{};  ///< unit vector, world
+struct GranularLaw {
+  using Parameters = GranularParameters;
+  static constexpr bool kHard = false, kRemembers = true, kDrawnAsSand = true;
+  S sigma_flat{}, sigma_cone{};  ///< N/m^3
+  S k{};                         ///< nu / tan(theta)
+  S k2_third{};                  ///< k^2/3
+  S inverse_cos{};               ///< 1/cos(theta)
+  S full_depth{};                ///< z_c, at which the lower flat has vanished, m
+  S full_flat{};                 ///< I_flat(z_c), m^3
+  S added_mass{};                ///< c_g phi rho nu (per I_flat), kg/m^3; 0: no added mass
+  S drag{};                      ///< c_d c_g phi rho nu (per A_flat), kg/m^3; 0: no drag
+  S memory{};                    ///< 1: plastic memory, 0: none
+  S tolerance{};                 ///< eps_f, m
+  S healing_slope{};             ///< tan(gamma_c), 0: no healing
+  S crater_radius{};             ///< r_c, m
+  S filter_step{};               ///< c_r, what tau_r gains at a reversal; 0: no filter
+  S friction_gated{};            ///< 1: friction only while the normal force acts
+  S stroke_stiffness{}, stroke_damping{}, stroke_depth_scaling{};  ///< k_h, b_h, beta_d
+  S stroke_offset{};  ///< r_f/sin(gamma_c) - r_c - r_f/tan(gamma_c), m
+  S inverse_tan_crater{};
+
+  FootForce<S> step(const FootProfile<S>& foot, S friction, const FootMotion<S>& motion, S rate_hz,
+                    FootContact<S>& contact) const noexcept;
 };
 
-/// One step of the granular law at a foot. (x, y), z, v, (vx, vy): place (world, m), penetration
-/// (m), its rate and horizontal velocity (m/s) of the deepest point; `rate_hz`: steps per second.
-/// Lanes in which the foot is in the air come out zero; `contact` is updated.
+GranularLaw<double> derive_law(const GranularParameters& parameters,
+                               const FootProfile<double>& foot, double foot_radius_m);
+
+/// Cone integrals at depth z (m) of a foot with the given P0, P1 (m^3; see FootProfile).
 template <typename S>
-inline GranularForce<S> granular_step(const Ground<S>& g, const FootProfile<S>& foot, S x, S y, S z,
-                                      S v, S vx, S vy, S rate_hz,
-                                      FootContact<S>& contact) noexcept {
+struct Cone {
+  S flat_integral;  ///< I_flat, m^3
+  S cone_integral;  ///< I_cone, m^3
+};
+template <typename S>
+inline Cone<S> cone_integrals(const GranularLaw<S>& g, S z, S p0, S p1) noexcept {
+  const S pi = S(std::numbers::pi);
+  // pi (P0 - 2 k P1 + k^2 z^3 / 3)
+  const S growing = pi * fma(z * (z * z), g.k2_third, fma(S(-2.0) * g.k, p1, p0));
+  const S flat = select(z < g.full_depth, growing, g.full_flat);
+  return {flat, fma(pi, p0, -flat) * g.inverse_cos};
+}
+/// Area of the lower flat at depth z, m^2: pi max(0, r_h - k z)^2.
+template <typename S>
+inline S flat_area(const GranularLaw<S>& g, S z, S hydraulic_radius) noexcept {
+  const S r = max(fma(-g.k, z, hydraulic_radius), S(0.0));
+  return S(std::numbers::pi) * (r * r);
+}
+/// Quasistatic force F_p = sigma_flat I_flat + sigma_cone I_cone, N.
+template <typename S>
+inline S quasistatic_force(const GranularLaw<S>& g, const Cone<S>& c) noexcept {
+  return fma(g.sigma_flat, c.flat_integral, g.sigma_cone * c.cone_integral);
+}
+/// The same at depth z >= 0 of a foot.
+template <typename S>
+inline S quasistatic_force(const GranularLaw<S>& g, const FootProfile<S>& foot, S z) noexcept {
+  S p0, p1;
+  foot.integrals(z, p0, p1);
+  return quasistatic_force(g, cone_integrals(g, z, p0, p1));
+}
+
+template <typename S>
+FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
+                                  const FootMotion<S>& motion, S rate_hz,
+                                  FootContact<S>& contact) const noexcept {
   const S zero = S(0.0), one = S(1.0);
+  const GranularLaw<S>& g = *this;
   FootContact<S>& c = contact;
+  const auto& [x, y, z, v, vx, vy] = motion;
   const Mask<S> touching = z >= zero;
   const Mask<S> touchdown = both(touching, c.active == zero);
   const S v_before = c.velocity;
@@ -108,7 +216,7 @@ inline GranularForce<S> granular_step(const Ground<S>& g, const FootProfile<S>& 
   const S acceleration = (v - v_before) * rate_hz;
   const S mass = g.added_mass * max(cone.flat_integral - c.restart_flat, zero);
   const S raw = fma(g.drag * area, v * v, fma(mass, acceleration, quasistatic));
-  GranularForce<S> f;
+  FootForce<S> f;
   f.raw = select(pushing, raw, zero);
   c.filter = select(v * v_before < zero, min(c.filter + g.filter_step, one), c.filter);
   const S weight = S(0.8) * c.filter;
@@ -117,7 +225,7 @@ inline GranularForce<S> granular_step(const Ground<S>& g, const FootProfile<S>& 
   f.normal = select(f.normal > S(1e-30), f.normal, zero);
   c.force = f.normal;
   f.friction_bound = select(both(touching, either(pushing, g.friction_gated == zero)),
-                            g.friction * quasistatic, zero);
+                            friction * quasistatic, zero);
 
   // Stroke resistance: only beyond the latched crater, only into fresh ground, only when buried
   // deeper than a radius.

@@ -1,64 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/ground/ground.h"
 
-#include <cmath>
-#include <numbers>
-
-#include "rt/core/split_mix.h"
-
 namespace sandrunner::sim {
+
+bool GroundParameters::carries_like(const GroundParameters& other) const noexcept {
+  bool alike = kind == other.kind;
+  Laws::for_each([&]<template <typename> typename Law>(int index) {
+    using Own = typename Law<double>::Parameters;
+    if constexpr (requires(const Own& p) { p.carries_like(p); }) {
+      if (index != static_cast<int>(kind)) return;
+      alike = alike && Own::carries_like(other);
+    }
+  });
+  return alike;
+}
 
 Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double>& foot,
                              double foot_radius_m) {
   Ground<double> g;
-  g.is_granular = p.kind == GroundKind::kGranular ? 1.0 : 0.0;
-  g.is_rigid = p.kind == GroundKind::kRigid ? 1.0 : 0.0;
-  g.is_linear = p.kind == GroundKind::kLinear ? 1.0 : 0.0;
+  Laws::for_each([&]<template <typename> typename Law>(int) {
+    const typename Law<double>::Parameters& own = p;
+    static_cast<Law<double>&>(g) = derive_law(own, foot, foot_radius_m);
+  });
+  g.kind = static_cast<double>(p.kind);
+  g.hard = p.is_hard() ? 1.0 : 0.0;
   g.friction = p.friction;
-  g.sigma_flat = p.sigma_flat_npm3;
-  g.sigma_cone = p.sigma_cone_npm3;
-  double sine, cosine;
-  sincos(p.cone_angle_rad, sine, cosine);
-  g.k = p.recruitment * cosine / sine;
-  g.k2_third = g.k * g.k / 3.0;
-  g.inverse_cos = 1.0 / cosine;
-  // z_c: the cone's radius r_h(z) - k z falls to zero once; beyond the radius r_h is constant.
-  double low = 0.0, high = foot.buried_radius / g.k + foot.radius;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (low + high);
-    (foot.hydraulic_radius(middle) > g.k * middle ? low : high) = middle;
-  }
-  g.full_depth = 0.5 * (low + high);
-  double p0, p1;
-  foot.integrals(g.full_depth, p0, p1);
-  const double z3 = g.full_depth * g.full_depth * g.full_depth;
-  g.full_flat = std::numbers::pi * (p0 - 2.0 * g.k * p1 + g.k2_third * z3);
-  const double recruited = p.mass_scaling * p.packing * p.grain_density_kgpm3 * p.recruitment;
-  g.added_mass = p.added_mass ? recruited : 0.0;
-  g.drag = p.inertial_drag ? p.drag * recruited : 0.0;
-  g.memory = p.plastic_memory ? 1.0 : 0.0;
-  g.tolerance = p.plastic_tolerance_m;
-  sincos(p.crater_angle_rad, sine, cosine);
-  g.healing_slope = p.healing ? sine / cosine : 0.0;
-  g.crater_radius = p.crater_radius_m;
-  // c_r = 100 / f_sim (eq. S16): the filter's memory grows to its full length over 40 reversals at
-  // 4 kHz.
-  g.filter_step = p.filter ? 100.0 * 0.25e-3 : 0.0;
-  g.friction_gated = p.gated_friction ? 1.0 : 0.0;
-  g.stroke_stiffness = p.stroke_resistance ? p.stroke_stiffness_npm : 0.0;
-  g.stroke_damping = p.stroke_resistance ? p.stroke_damping_nspm : 0.0;
-  g.stroke_depth_scaling = p.stroke_depth_scaling;
-  g.stroke_offset = foot_radius_m / sine - p.crater_radius_m - foot_radius_m * cosine / sine;
-  g.inverse_tan_crater = cosine / sine;
-  g.stiffness = p.stiffness_npm;
-  g.damping = p.damping_nspm;
-  g.coupling = p.kind == GroundKind::kLinear ? std::sqrt(p.coupling_npm) : 0.0;
-  const bool rough = p.kind == GroundKind::kRigid && p.roughness_m > 0.0;
-  g.roughness = rough ? p.roughness_m : 0.0;
-  g.wave_number = 2.0 * std::numbers::pi / p.roughness_wavelength_m;
-  // Spreads the seeds over [0, 2 pi).
-  g.phase = 2.0 * std::numbers::pi * static_cast<double>((p.roughness_seed * kGoldenRatio) >> 40) /
-            16777216.0;
   return g;
 }
 

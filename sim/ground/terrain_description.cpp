@@ -20,57 +20,13 @@ const std::vector<std::string> kPresets = [] {
   return names;
 }();
 
-// In the order of GroundKind and of FootShape.
-constexpr const char* kKinds[] = {"granular", "rigid", "linear"};
+// In the order of FootShape.
 constexpr const char* kShapes[] = {"tyre", "sphere", "disc"};
 
 using G = GroundParameters;
 constexpr Setting<G> kGround[] = {
-    {"kind", words<&G::kind>(kKinds), "What the ground is: grains, hard, or springs."},
+    {"kind", words<&G::kind>(Laws::kNames), "What the ground is: grains, hard, or springs."},
     {"friction", &G::friction, 0.0, 5.0, "Coulomb coefficient between foot and ground."},
-    {"sigma_flat_npm3", &G::sigma_flat_npm3, 1.0, 1e10,
-     "Granular: stress gradient on the flat face of the cone of grains."},
-    {"sigma_cone_npm3", &G::sigma_cone_npm3, 1.0, 1e10,
-     "Granular: stress gradient on the side of the cone."},
-    {"recruitment", &G::recruitment, 0.01, 20.0, "Granular: height that the cone gains per depth."},
-    {"cone_angle_deg", degrees(&G::cone_angle_rad), 5.0, 85.0,
-     "Granular: angle of the cone from the horizontal."},
-    {"mass_scaling", &G::mass_scaling, 0.0, 20.0,
-     "Granular: grains that move, over those in the cone."},
-    {"packing", &G::packing, 0.0, 1.0, "Granular: volume fraction of the grains."},
-    {"grain_density_kgpm3", &G::grain_density_kgpm3, 0.0, 2e4,
-     "Granular: density of the grains' material."},
-    {"drag", &G::drag, 0.0, 1e3, "Granular: scale of the inertial drag."},
-    {"plastic_tolerance_m", &G::plastic_tolerance_m, 0.0, 0.01,
-     "Granular: the force begins this much above the remembered depth."},
-    {"stroke_stiffness_npm", &G::stroke_stiffness_npm, 0.0, 1e5,
-     "Granular: stiffness against a foot that moves sideways."},
-    {"stroke_damping_nspm", &G::stroke_damping_nspm, 0.0, 1e3,
-     "Granular: damping against a foot that moves sideways."},
-    {"stroke_depth_scaling", &G::stroke_depth_scaling, 0.0, 10.0,
-     "Granular: weight of the depth in the resistance against moving sideways."},
-    {"crater_radius_m", &G::crater_radius_m, 0.0, 1.0, "Granular: radius of the crater of a foot."},
-    {"crater_angle_deg", degrees(&G::crater_angle_rad), 5.0, 85.0,
-     "Granular: slope of the crater's wall."},
-    {"stiffness_npm", &G::stiffness_npm, 1.0, 1e6, "Linear: spring under each foot."},
-    {"damping_nspm", &G::damping_nspm, 0.0, 2e3, "Linear: damper under each foot."},
-    {"coupling_npm", &G::coupling_npm, 0.0, 1e6,
-     "Linear: force on each foot per depth of all feet together."},
-    {"roughness_m", &G::roughness_m, 0.0, 0.2, "Rigid: standard deviation of its height; 0: flat."},
-    {"roughness_wavelength_m", &G::roughness_wavelength_m, 0.05, 100.0,
-     "Rigid: shortest wavelength of its height."},
-    {"roughness_seed", &G::roughness_seed, 0, 0x1p40, "Rigid: seed of its height."},
-    {"effects.inertial_drag", &G::inertial_drag, "Granular: drag of moving grains."},
-    {"effects.added_mass", &G::added_mass, "Granular: inertia of moving grains."},
-    {"effects.plastic_memory", &G::plastic_memory,
-     "Granular: force only beyond the depth that is remembered."},
-    {"effects.healing", &G::healing,
-     "Granular: the remembered depth heals as the foot moves sideways."},
-    {"effects.filter", &G::filter, "Granular: moving average of the normal force."},
-    {"effects.stroke_resistance", &G::stroke_resistance,
-     "Granular: resistance against a foot that moves sideways."},
-    {"effects.gated_friction", &G::gated_friction,
-     "Granular: friction only while the normal force acts."},
 };
 
 using T = TerrainDescription;
@@ -93,6 +49,14 @@ constexpr Setting<PatchKeys> kPatch[] = {
     {"from_x_m", &PatchKeys::from_x_m, -1e4, 1e4, "Where the patch begins; values ascend."},
 };
 
+void read_ground(ConfigTree& config, const std::string& table, GroundParameters& ground) {
+  read_settings(config, table, kGround, ground);
+  Laws::for_each([&]<template <typename> typename Law>(int) {
+    using Parameters = typename Law<double>::Parameters;
+    read_settings(config, table, Parameters::kSettings, static_cast<Parameters&>(ground));
+  });
+}
+
 const std::string& checked_preset(const std::string& name) {
   if (std::find(kPresets.begin(), kPresets.end(), name) == kPresets.end()) {
     throw InputError(fmt::format("terrain.patch: preset '{}', expected one of {}{}", name,
@@ -102,8 +66,6 @@ const std::string& checked_preset(const std::string& name) {
 }
 
 }  // namespace
-
-const char* kind_name(GroundKind kind) noexcept { return kKinds[static_cast<int>(kind)]; }
 
 std::vector<std::string> terrain_preset_names() { return kPresets; }
 
@@ -128,12 +90,14 @@ TerrainDescription terrain_preset(const std::string& name) {
   return read_terrain(config);
 }
 
-std::span<const Setting<GroundParameters>> ground_settings() noexcept { return kGround; }
-
 std::vector<SettingLine> terrain_settings() {
   std::vector<SettingLine> lines;
   list_settings(lines, "terrain", kTerrain);
+  list_settings(lines, "terrain", ShapeParameters::kSettings);
   list_settings(lines, "terrain", kGround);
+  Laws::for_each([&]<template <typename> typename Law>(int) {
+    list_settings(lines, "terrain", Law<double>::Parameters::kSettings);
+  });
   list_settings(lines, "terrain.patch[]", kPatch);
   return lines;
 }
@@ -141,8 +105,9 @@ std::vector<SettingLine> terrain_settings() {
 TerrainDescription read_terrain(ConfigTree& config) {
   TerrainDescription terrain;
   read_settings(config, "terrain", kTerrain, terrain);
+  read_settings(config, "terrain", ShapeParameters::kSettings, terrain.shape);
   TerrainPatch first;
-  read_settings(config, "terrain", kGround, first.ground);
+  read_ground(config, "terrain", first.ground);
   terrain.patches.push_back(first);
   for (ConfigTree& table : config.tables("terrain.patch")) {
     // A patch is a preset, or else the first ground, except for the keys it gives.
@@ -154,10 +119,10 @@ TerrainDescription read_terrain(ConfigTree& config) {
       layer.add_text(embedded_terrain_file(checked_preset(keys.preset) + ".toml"),
                      "preset " + keys.preset);
       patch.ground = {};
-      read_settings(layer, "terrain", kGround, patch.ground);
+      read_ground(layer, "terrain", patch.ground);
     }
     patch.from_x_m = keys.from_x_m;
-    read_settings(table, "", kGround, patch.ground);
+    read_ground(table, "", patch.ground);
     if (terrain.patches.size() > 1 && patch.from_x_m <= terrain.patches.back().from_x_m) {
       throw InputError(fmt::format("terrain.patch: from_x_m {} after {}, expected ascending values",
                                    patch.from_x_m, terrain.patches.back().from_x_m));
@@ -189,13 +154,13 @@ FootProfile<double> make_foot_profile(const TerrainDescription& terrain,
 Terrain<double> make_terrain(const TerrainDescription& description, const FootProfile<double>& foot,
                              const RobotModel<double>& model) {
   Terrain<double> terrain;
+  terrain.shape = derive_shape(description.shape);
   const std::size_t count = description.patches.size();
   terrain.count = static_cast<double>(count);
   for (std::size_t i = 0; i < count; ++i) {
     terrain.ground[i] = derive_ground(description.patches[i].ground, foot, model.foot_radius_m);
     terrain.start_x[i] = description.patches[i].from_x_m;
     if (terrain.ground[i].coupling > 0.0) terrain.coupled = 1.0;
-    terrain.highest = std::fmax(terrain.highest, highest_of(terrain.ground[i].roughness));
   }
   return terrain;
 }

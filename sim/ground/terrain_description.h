@@ -2,7 +2,6 @@
 // The terrain as a person describes it: a preset or a TOML file, and patches along x.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -20,13 +19,11 @@ struct TerrainPatch {
 
 struct TerrainDescription {
   std::string name = "terrain";
+  ShapeParameters shape;
   std::vector<TerrainPatch> patches;  ///< ascending in from_x_m; at least one, at most kMaxRegions
   FootShape foot_shape = FootShape::kTyre;
   double hydraulic_factor = 0.0;  ///< c_h of r_h = c_h A/P; 0: 4 for a tyre, else 3.24
 };
-
-/// "granular", "rigid", "linear": as in `terrain.kind`.
-const char* kind_name(GroundKind kind) noexcept;
 
 /// Names of the presets built in: "dry-sand", "rigid", ...
 std::vector<std::string> terrain_preset_names();
@@ -41,8 +38,6 @@ TerrainDescription terrain_preset(const std::string& name);
 /// Reads the table [terrain] of `config`. Throws InputError.
 TerrainDescription read_terrain(ConfigTree& config);
 
-/// The keys of a ground, without their table.
-std::span<const Setting<GroundParameters>> ground_settings() noexcept;
 /// The keys of the table [terrain], for the reference.
 std::vector<SettingLine> terrain_settings();
 

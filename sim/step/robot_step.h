@@ -8,7 +8,6 @@
 #include <array>
 #include <type_traits>
 
-#include "sim/ground/granular.h"
 #include "sim/ground/terrain.h"
 #include "sim/robot/dynamics.h"
 #include "sim/step/contact_solver.h"
@@ -70,7 +69,7 @@ class RobotStepper {
     Vec3<S> r_base{}, r_hip{};  ///< from the base origin and, of a leg, from its hip
     S radius{};
     int leg = -1, joints = 0;  ///< -1: of the base
-    bool only_rigid = false;   ///< granular and linear ground do not touch it
+    bool only_hard = false;    ///< ground that yields does not touch it
     int slot = 0;              ///< of its impulse in RobotState
   };
   using Columns = std::array<Vec3<S>, 3>;  // of a leg's Jacobian, body components
@@ -88,7 +87,10 @@ class RobotStepper {
   void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const HardPoint& point,
                       const Mask<S>& near, RobotState<S>& x, S& touched) noexcept;
   void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
-  Frame contact_frame(const Ground<S>& ground, const Surface<S>& surface) const noexcept;
+  Frame contact_frame(const Shape<S>& shape, const Surface<S>& surface) const noexcept;
+  FootMotion<S> foot_motion(const RobotState<S>& x, const Shape<S>& shape, const Mask<S>& yields,
+                            const Vec3<S>& r_base, const Vec3<S>& v_base, const Frame& frame,
+                            S penetration) const noexcept;
 
   Dynamics<S> dynamics_;
   Mat3<S> rotation_;  // body to world
@@ -100,9 +102,9 @@ class RobotStepper {
   std::array<StopRow<S>, kNumJoints> stops_;
   std::array<int, kNumJoints> stop_joints_{};
   int num_stops_ = 0;
-  std::array<GranularForce<S>, kNumLegs> granular_;
-  std::array<S, kNumLegs> spring_, coupling_;  // N, before it is cut at zero; as in Ground
-  Ground<S> mixed_ground_;                     // of lanes that stand on different patches
+  std::array<FootForce<S>, kNumLegs> foot_force_;
+  std::array<Frame, kNumLegs> foot_frame_;
+  Ground<S> mixed_ground_;  // of lanes that stand on different patches
 };
 
 }  // namespace sandrunner::sim

@@ -6,14 +6,35 @@ namespace sandrunner::sim {
 
 template <typename S>
 typename RobotStepper<S>::Frame RobotStepper<S>::contact_frame(
-    const Ground<S>& ground, const Surface<S>& surface) const noexcept {
+    const Shape<S>& shape, const Surface<S>& surface) const noexcept {
   const Frame level{rotation_.r0, rotation_.r1, rotation_.r2};
-  const Mask<S> rough = ground.roughness > S(0.0);
-  if (!any(rough)) return level;
+  const Mask<S> uneven = shape.uneven > S(0.0);
+  if (!any(uneven)) return level;
   const SurfaceAxes<S> axes = surface_axes(surface);
-  return {select(rough, transposed_times(rotation_, axes.t1), level.t1),
-          select(rough, transposed_times(rotation_, axes.t2), level.t2),
-          select(rough, transposed_times(rotation_, axes.n), level.n)};
+  return {select(uneven, transposed_times(rotation_, axes.t1), level.t1),
+          select(uneven, transposed_times(rotation_, axes.t2), level.t2),
+          select(uneven, transposed_times(rotation_, axes.n), level.n)};
+}
+
+// Of the deepest point, r_base from the base origin. On uneven ground that yields: along its plane,
+// of the place on the surface above that point, which stays where it is as the foot sinks in.
+template <typename S>
+FootMotion<S> RobotStepper<S>::foot_motion(const RobotState<S>& x, const Shape<S>& shape,
+                                           const Mask<S>& yields, const Vec3<S>& r_base,
+                                           const Vec3<S>& v_base, const Frame& frame,
+                                           S penetration) const noexcept {
+  const Vec3<S> point = x.rigid.position + rotation_ * r_base;
+  const Vec3<S> velocity = rotation_ * v_base;
+  FootMotion<S> m{point.x, point.y, penetration, -dot(frame.n, v_base), velocity.x, velocity.y};
+  const Mask<S> along = both(shape.uneven > S(0.0), yields);
+  if (!any(along)) return m;
+  const Vec3<S> above = x.rigid.position + rotation_ * mul_add(frame.n, penetration, r_base);
+  const SurfaceAxes<S> plane = shape.plane_axes();
+  m.x = select(along, dot(plane.t1, above), m.x);
+  m.y = select(along, dot(plane.t2, above), m.y);
+  m.vx = select(along, dot(frame.t1, v_base), m.vx);
+  m.vy = select(along, dot(frame.t2, v_base), m.vy);
+  return m;
 }
 
 template <typename S>
@@ -84,8 +105,8 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     // A contact keeps the patch on which it began.
     contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
     const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
-    const Surface<S> surface = surface_at(ground, centre.x, centre.y);
-    const Frame frame = contact_frame(ground, surface);
+    const Surface<S> surface = surface_at(terrain.shape, centre.x, centre.y);
+    const Frame& frame = foot_frame_[l] = contact_frame(terrain.shape, surface);
     // Deepest point: a foot radius from the centre against the normal; depth measured along the
     // normal.
     const Vec3<S> r_base = mul_add(frame.n, -model.foot_radius_m, centre_base);
@@ -97,37 +118,25 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
         model, l, pose.foot + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n));
     Vec3<S> v_base = cross_add(x.rigid.angular_velocity, r_base, velocity_);
     for (int j = 0; j < 3; ++j) v_base = mul_add(columns[j], x.rigid.qd[3 * l + j], v_base);
-    const Vec3<S> velocity = rotation_ * v_base;
-    report.foot_velocity[l] = velocity;
-
-    const S penetration_rate = -dot(frame.n, v_base);
-    const Vec3<S> point = x.rigid.position + rotation_ * r_base;
-    granular_[l] = granular_step(ground, foot, point.x, point.y, penetration, penetration_rate,
-                                 velocity.x, velocity.y, rate, contact);
-    const Mask<S> touching = penetration >= zero;
-    const Mask<S> granular = ground.is_granular == one;
-    const Mask<S> linear = ground.is_linear == one;
-    spring_[l] = fma(ground.stiffness, penetration, ground.damping * penetration_rate);
-    coupling_[l] = ground.coupling;
-    const S spring = max(spring_[l], zero);
-    const S normal = select(granular, granular_[l].normal, select(linear, spring, zero));
-    const S bound = select(granular, granular_[l].friction_bound,
-                           select(linear, ground.friction * spring, zero));
-    report.raw_force[l] = select(granular, granular_[l].raw, normal);
-    granular_[l].stroke = select(granular, granular_[l].stroke, zero);
+    report.foot_velocity[l] = rotation_ * v_base;
+    const FootMotion<S> motion =
+        foot_motion(x, terrain.shape, ground.hard == zero, r_base, v_base, frame, penetration);
+    const FootForce<S>& force = foot_force_[l] = foot_force(ground, foot, motion, rate, contact);
+    report.raw_force[l] = force.raw;
 
     PointContact<S>& c = points_[num_points_];
     slots_[num_points_] = l;
-    c.active = touching;
+    c.active = penetration >= zero;
     if (!any(c.active)) {
       x.impulse[l] = {zero, zero, zero};
       continue;
     }
-    c.hard = ground.is_rigid == one;
+    c.hard = ground.hard == one;
     fill_rows(r_base, l, columns, frame, c);
     c.friction = ground.friction;
-    c.disc = bound * dt;
-    c.impulse = {x.impulse[l][0], x.impulse[l][1], select(c.hard, x.impulse[l][2], normal * dt)};
+    c.disc = force.friction_bound * dt;
+    c.impulse = {x.impulse[l][0], x.impulse[l][1],
+                 select(c.hard, x.impulse[l][2], force.normal * dt)};
     ++num_points_;
   }
   couple_feet(terrain, dt, report);
@@ -141,13 +150,14 @@ void RobotStepper<S>::couple_feet(const Terrain<S>& terrain, S dt, StepReport<S>
   if (!any(terrain.coupled > zero)) return;
   S pressure = zero;
   for (int l = 0; l < kNumLegs; ++l) {
-    pressure = fma(coupling_[l], max(report.penetration[l], zero), pressure);
+    pressure = fma(foot_force_[l].coupling, max(report.penetration[l], zero), pressure);
   }
   for (int i = 0; i < num_points_; ++i) {
     PointContact<S>& c = points_[i];
     const int l = slots_[i];
-    const Mask<S> shares = both(c.active, coupling_[l] > zero);
-    const S normal = max(fma(coupling_[l], pressure, spring_[l]), zero);
+    const FootForce<S>& force = foot_force_[l];
+    const Mask<S> shares = both(c.active, force.coupling > zero);
+    const S normal = max(fma(force.coupling, pressure, force.uncut), zero);
     report.raw_force[l] = select(shares, normal, report.raw_force[l]);
     c.disc = select(shares, c.friction * normal * dt, c.disc);
     c.impulse[2] = select(shares, normal * dt, c.impulse[2]);
@@ -158,20 +168,22 @@ template <typename S>
 void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain,
                                      const HardPoint& point, const Mask<S>& near, RobotState<S>& x,
                                      S& touched) noexcept {
-  const auto [r_base, r_hip, radius, leg, joints, only_rigid, slot] = point;
+  const auto [r_base, r_hip, radius, leg, joints, only_hard, slot] = point;
   const S zero = S(0.0), one = S(1.0);
   const Vec3<S> place = x.rigid.position + rotation_ * r_base;
   const auto forget = [&x, at = point.slot, zero] { x.impulse[at] = {zero, zero, zero}; };
   // Lanes outside this mask stay outside, whatever rounding says of them further down: one robot
   // alone stops here.
-  const Mask<S> close = both(near, place.z - radius < terrain.highest);
+  const Shape<S>& shape = terrain.shape;
+  const Mask<S> close =
+      both(near, fma(-radius, shape.stretch, shape.over_plane(place)) < shape.crest);
   if (!any(close)) return forget();
   const Ground<S>& ground = terrain.pick(terrain.region_at(place.x), mixed_ground_);
-  const Surface<S> surface = surface_at(ground, place.x, place.y);
-  const Frame frame = contact_frame(ground, surface);
+  const Surface<S> surface = surface_at(shape, place.x, place.y);
+  const Frame frame = contact_frame(shape, surface);
   const S penetration = radius - (place.z - surface.height) * dot(frame.n, rotation_.r2);
   Mask<S> active = both(close, penetration >= zero);
-  if (only_rigid) active = both(active, ground.is_rigid == one);
+  if (only_hard) active = both(active, ground.hard == one);
   touched = select(active, one, touched);
   if (!any(active)) return forget();
   PointContact<S>& c = points_[num_points_];
@@ -197,6 +209,7 @@ template <typename S>
 void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain,
                                       RobotState<S>& x, StepReport<S>& report) noexcept {
   const S zero = S(0.0);
+  const Shape<S>& shape = terrain.shape;
   report.base_contact = report.thigh_contact = zero;
   S shank_contact = zero;  // not reported
   for (int l = 0; l < kNumLegs; ++l) {
@@ -210,25 +223,27 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
                          .joints = 2,
                          .slot = kNumLegs + l};
     add_hard_point(model, terrain, knee, every_lane<S>(), x, report.thigh_contact);
-    // On level ground knee and foot cover the shank; only uneven rigid ground can touch it.
-    const Mask<S> uneven = terrain.highest > zero;
-    if (any(uneven)) {
+    // On a plane knee and foot cover the shank; only waves of hard ground can touch it.
+    const Mask<S> waves = shape.crest > zero;
+    if (any(waves)) {
       const Vec3<S> middle = S(0.5) * (pose.knee + pose.foot);
       const HardPoint shank{.r_base = hip_to_base(model.legs[l], pose, middle),
                             .r_hip = middle,
                             .radius = model.shank_radius_m,
                             .leg = l,
                             .joints = 3,
-                            .only_rigid = true,
+                            .only_hard = true,
                             .slot = 2 * kNumLegs + l};
-      add_hard_point(model, terrain, shank, uneven, x, shank_contact);
+      add_hard_point(model, terrain, shank, waves, x, shank_contact);
     }
   }
+  // Heights over the plane; `up`: their gradient.
   const Vec3<S>& half = model.base_box_half_m;
-  const S reach = fma(abs(rotation_.r2.x), half.x,
-                      fma(abs(rotation_.r2.y), half.y, abs(rotation_.r2.z) * half.z));
-  const S lowest = (x.rigid.position.z + dot(rotation_.r2, model.base_box_centre_m)) - reach;
-  const Mask<S> low = lowest < terrain.highest;
+  const Vec3<S> up =
+      mul_add(rotation_.r0, -shape.slope_x, mul_add(rotation_.r1, -shape.slope_y, rotation_.r2));
+  const S reach = fma(abs(up.x), half.x, fma(abs(up.y), half.y, abs(up.z) * half.z));
+  const S lowest = (shape.over_plane(x.rigid.position) + dot(up, model.base_box_centre_m)) - reach;
+  const Mask<S> low = lowest < shape.crest;
   if (!any(low)) {
     for (int i = 0; i < kNumBaseCorners; ++i) x.impulse[3 * kNumLegs + i] = {zero, zero, zero};
     return;
@@ -334,14 +349,15 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
         select(stops_[i].impulse > zero, stops_[i].j[joint % 3] * stops_[i].impulse, zero);
   }
 
-  // Stroke resistance acts beside the contact problem, on the flank of the foot: a radius outwards
+  // Stroke resistance acts outside the contact problem, on the flank of the foot: a radius outwards
   // and up from the deepest point, which is level with the centre.
   for (int l = 0; l < kNumLegs; ++l) {
-    const GranularForce<S>& f = granular_[l];
+    const FootForce<S>& f = foot_force_[l];
+    const Frame& frame = foot_frame_[l];
     if (!any(f.stroke > zero)) continue;
     const LegPose<S>& pose = dynamics_.leg(l);
     const Vec3<S> outward =
-        transposed_times(rotation_, Vec3<S>{f.direction_x, f.direction_y, zero});
+        mul_add(frame.t1, f.direction_x, mul_add(frame.t2, f.direction_y, zero * frame.n));
     const Vec3<S> arm =
         mul_add(outward, model.foot_radius_m, hip_to_base(model.legs[l], pose, pose.foot));
     const Vec3<S> arm_hip = pose.foot + unrotate_x(pose.s1, pose.c1, model.foot_radius_m * outward);

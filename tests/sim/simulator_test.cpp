@@ -58,7 +58,7 @@ TEST(SimulatorTest, StandsAtRestInTheNominalPoseWithSeedZero) {
 TEST(SimulatorTest, OnUnevenGroundItStartsOnTheGroundWithAnySeed) {
   const Robot robot = load_raibo();
   SimulatorConfig config = config_of("rigid");
-  config.terrain.patches.front().ground.roughness_m = 0.05;
+  config.terrain.shape.roughness_m = 0.05;
   for (const std::uint64_t seed : {0u, 1u}) {
     config.seed = seed;
     Simulator simulator(robot, config);
@@ -324,7 +324,7 @@ TEST(SimulatorTest, TruthHoldsTheEstimatedQuantities) {
   EXPECT_EQ(truth.body_height_m, x.position.z + deepest);
 
   SimulatorConfig uneven = config_of("rigid");
-  uneven.terrain.patches.front().ground.roughness_m = 0.05;
+  uneven.terrain.shape.roughness_m = 0.05;
   const Simulator on_hills(robot, uneven);
   EXPECT_GT(std::fabs(on_hills.surface_height(0.0, 0.0)), 0.001);
   RobotTruth on_hills_truth;

@@ -145,8 +145,10 @@ inline JointCommand pd_command(const JointArray<double>& target_rad, double kp, 
 }
 
 /// A terrain of one patch.
-inline TerrainDescription one_patch(const GroundParameters& ground) {
+inline TerrainDescription one_patch(const GroundParameters& ground,
+                                    const ShapeParameters& shape = {}) {
   TerrainDescription t;
+  t.shape = shape;
   t.patches.push_back({0.0, ground});
   return t;
 }
@@ -156,12 +158,24 @@ inline GroundParameters ground_of_kind(GroundKind kind) {
   return g;
 }
 
+inline ShapeParameters waves(double roughness_m) {
+  ShapeParameters shape;
+  shape.roughness_m = roughness_m;
+  return shape;
+}
+inline ShapeParameters slope(double slope_rad, double heading_rad = 0.0) {
+  ShapeParameters shape;
+  shape.slope_rad = slope_rad;
+  shape.slope_heading_rad = heading_rad;
+  return shape;
+}
+
 /// RobotStepper with all that one step needs.
 struct Bench {
   explicit Bench(const GroundParameters& ground = ground_of_kind(GroundKind::kRigid),
-                 const Robot& of = load_raibo())
+                 const Robot& of = load_raibo(), const ShapeParameters& shape = {})
       : robot(of) {
-    const TerrainDescription description = one_patch(ground);
+    const TerrainDescription description = one_patch(ground, shape);
     foot = make_foot_profile(description, robot.model);
     terrain = make_terrain(description, foot, robot.model);
     state.rigid.position.z = robot.nominal_height_m;

@@ -73,8 +73,9 @@ Depths drop_on_cone(const sim::FootProfile<double>& foot, const Drop& drop) noex
   for (int i = 0; i < kDropSteps; ++i) {
     if (i == kDropSteps - kStepsBefore) before = z;
     const double force =
-        sim::granular_step(drop.ground, foot, drop.x_m, drop.y_m, z, v, drop.slip_mps.x,
-                           drop.slip_mps.y, 1.0 / kDropStep_s, contact)
+        sim::foot_force(drop.ground, foot,
+                        {drop.x_m, drop.y_m, z, v, drop.slip_mps.x, drop.slip_mps.y},
+                        1.0 / kDropStep_s, contact)
             .normal;
     v += kDropStep_s * (kGravity_mps2 - force * inverse_mass);
     z += kDropStep_s * v;

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "sim/ground/granular.h"
+#include "sim/ground/ground.h"
 #include "tools/bench/drft.h"
 #include "tools/bench/report.h"
 

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "tools/python/checks.h"
 
 namespace sandrunner::python {
@@ -15,15 +13,13 @@ FootForce force_of(const sim::Terrain<double>& terrain, const sim::FootProfile<d
                    sim::FootContact<double>& contact) noexcept {
   if (contact.active == 0.0) contact.region = terrain.region_at(position[0]);
   const sim::Ground<double>& ground = terrain.ground[static_cast<std::size_t>(contact.region)];
-  const double depth = -position[2], rate = -velocity[2];
-  const sim::GranularForce<double> f =
-      sim::granular_step(ground, foot, position[0], position[1], depth, rate, velocity[0],
-                         velocity[1], rate_hz, contact);
-  if (ground.is_linear == 1.0) {
-    const double spring =
-        depth >= 0.0 ? std::max(ground.stiffness * depth + ground.damping * rate, 0.0) : 0.0;
-    return {.normal = spring, .raw = spring, .friction_bound = ground.friction * spring};
-  }
+  const sim::FootMotion<double> motion{.x = position[0],
+                                       .y = position[1],
+                                       .z = -position[2],
+                                       .v = -velocity[2],
+                                       .vx = velocity[0],
+                                       .vy = velocity[1]};
+  const sim::FootForce<double> f = sim::foot_force(ground, foot, motion, rate_hz, contact);
   return {.normal = f.normal,
           .raw = f.raw,
           .friction_bound = f.friction_bound,
@@ -40,7 +36,7 @@ Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
   model.foot_width_m = checked("foot_width_m", foot_width_m, 0.0, 1.0);
   const sim::TerrainDescription description = read_ground(ground, settings);
   for (const sim::TerrainPatch& patch : description.patches) {
-    if (patch.ground.kind == sim::GroundKind::kRigid) {
+    if (patch.ground.is_hard()) {
       throw InputError(fmt::format(
           "ground: found '{}', which is hard: expected one that yields, with a law of force",
           description.name));
@@ -53,6 +49,12 @@ Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
   }
   foot_ = sim::make_foot_profile(description, model);
   terrain_ = sim::make_terrain(description, foot_, model);
+  if (terrain_.shape.uneven > 0.0) {
+    throw InputError(fmt::format(
+        "ground: found '{}' with a slope or roughness, expected level ground: measure the depth "
+        "along the normal of a surface of your own",
+        description.name));
+  }
 }
 
 void Feet::step(std::size_t count, const double* position, const double* velocity, double step_s,

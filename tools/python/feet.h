@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/ground/granular.h"
 #include "sim/ground/terrain.h"
 
 namespace sandrunner::python {
@@ -22,8 +21,8 @@ struct FootForce {
 class Feet {
  public:
   /// `ground`: a preset or terrain file; `settings`: PATH=VALUE of its table. A width of 0 is a
-  /// ball. Throws InputError, also for ground without a law of force: hard ground, and springs that
-  /// couple the feet of a robot.
+  /// ball. Throws InputError, also for hard ground, springs that couple the feet of a robot,
+  /// and ground that is not level.
   Feet(const std::string& ground, const std::vector<std::string>& settings, double foot_radius_m,
        double foot_width_m);
 

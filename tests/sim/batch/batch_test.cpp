@@ -28,7 +28,7 @@ namespace {
 constexpr int kRobots = 64;
 constexpr int kPeriods = 50;  // of 40 ticks: 2,000 ticks
 
-enum Kind { kSand, kFlatRock, kRoughRock, kSpring, kPatches, kNumKinds };
+enum Kind { kSand, kFlatRock, kRoughRock, kSpring, kPatches, kUnevenPatches, kNumKinds };
 
 const Robot& raibo() {
   static const Robot robot = load_raibo();
@@ -52,19 +52,30 @@ GroundParameters random_ground(Draw& draw, Kind kind) {
   g.stroke_stiffness_npm = draw(50.0, 2000.0);
   g.stiffness_npm = draw(5e3, 30e3);
   if (kind == kSpring) g.coupling_npm = draw(0.0, 1.0) < 0.7 ? draw(100.0, 5e3) : 0.0;
-  if (kind == kRoughRock) {
-    g.roughness_m = draw(0.005, 0.03);
-    g.roughness_seed = static_cast<std::uint64_t>(draw(1.0, 1e6));
-  }
   return g;
 }
 
+ShapeParameters random_shape(Draw& draw, Kind kind) {
+  ShapeParameters s;
+  if (kind == kRoughRock || kind == kUnevenPatches) {
+    s.roughness_m = draw(0.005, 0.03);
+    s.roughness_seed = static_cast<std::uint64_t>(draw(1.0, 1e6));
+  }
+  if (kind == kUnevenPatches) {
+    s.slope_rad = std::fmax(draw(-0.2, 0.2), 0.0);  // half of them have none
+    s.slope_heading_rad = draw(-3.0, 3.0);
+  }
+  return s;
+}
+
 Terrain<float> random_terrain(Draw& draw, Kind kind) {
-  TerrainDescription t = one_patch(random_ground(draw, kind == kPatches ? kSand : kind));
-  if (kind == kPatches) {
+  const bool patches = kind == kPatches || kind == kUnevenPatches;
+  TerrainDescription t =
+      one_patch(random_ground(draw, patches ? kSand : kind), random_shape(draw, kind));
+  if (patches) {
     // Borders under and just beside the robot, so that its feet stand on different patches.
     double from_x_m = -0.4;
-    for (const Kind next : {kFlatRock, kSand, kSpring, kRoughRock}) {
+    for (const Kind next : {kFlatRock, kSand, kSpring, kFlatRock}) {
       from_x_m += draw(0.1, 0.3);
       t.patches.push_back({from_x_m, random_ground(draw, next)});
     }
@@ -310,15 +321,18 @@ TEST(BatchTest, SameBitsFromTwoThreads) {
 TEST(BatchTest, AgreesWithTheStepInDouble) {
   flush_denormals_to_zero();
   constexpr int kTicks = 200;
-  for (const Kind kind : {kSand, kFlatRock, kRoughRock, kSpring}) {
+  // Waves so low, and slopes so slight, that the ground is met within the time.
+  const std::pair<Kind, ShapeParameters> cases[] = {
+      {kSand, {}},           {kFlatRock, {}},           {kRoughRock, waves(0.003)}, {kSpring, {}},
+      {kSand, waves(0.003)}, {kSand, slope(0.03, 0.7)}, {kSpring, slope(0.03, 2.0)}};
+  for (const auto& [kind, shape] : cases) {
     Draw draw(static_cast<std::uint64_t>(kind) + 100);
-    TerrainDescription ground = one_patch(random_ground(draw, kind));
-    if (kind == kRoughRock) ground.patches[0].ground.roughness_m = 0.003;  // met within the time
+    const TerrainDescription ground = one_patch(random_ground(draw, kind), shape);
     const Terrain<double> terrain = make_terrain(ground, foot(), raibo().model);
     const RobotModel<double>& model = raibo().model;
     RobotState<double> x;
     x.rigid.q = raibo().nominal_rad;
-    x.rigid.position.z = raibo().nominal_height_m + 0.005 + terrain.highest;
+    x.rigid.position.z = raibo().nominal_height_m + 0.005 + terrain.shape.crest;
     x.rigid.velocity = {0.5, 0.2, -0.5};
     BatchDrive<float> drive;
     drive.kp = 60.0f;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sim/ground/granular.h"
+#include "sim/ground/ground.h"
 #include "tests/sim/support.h"
 
 namespace sandrunner::sim {
@@ -25,15 +25,15 @@ struct Point {
 /// One foot on one ground, step by step.
 struct Foot {
   explicit Foot(const GroundParameters& p) : ground(derive_ground(p, profile, kFootRadius_m)) {}
-  GranularForce<double> step(const Point& p) {
-    return granular_step(ground, profile, p.x, p.y, p.z, p.v, p.vx, p.vy, 1.0 / kDt_s, contact);
+  FootForce<double> step(const Point& p) {
+    return foot_force(ground, profile, {p.x, p.y, p.z, p.v, p.vx, p.vy}, 1.0 / kDt_s, contact);
   }
   /// Moves in a straight line at constant speed to `to` in `steps` steps; the last force.
-  GranularForce<double> move(Point& at, const Point& to, int steps) {
+  FootForce<double> move(Point& at, const Point& to, int steps) {
     at.vx = (to.x - at.x) / (steps * kDt_s);
     at.vy = (to.y - at.y) / (steps * kDt_s);
     at.v = (to.z - at.z) / (steps * kDt_s);
-    GranularForce<double> f;
+    FootForce<double> f;
     for (int i = 0; i < steps; ++i) {
       at.x += at.vx * kDt_s;
       at.y += at.vy * kDt_s;

@@ -126,7 +126,7 @@ TEST(GranularTest, FollowsThePlainReadingOfTheRules) {
     const RandomMotion motion(seed, draw(0.0, 0.06), 0.08, draw(0.0, 0.25));
     for (int i = 0; i < 4000; ++i) {
       const Point q = motion.at(i * kDt_s);
-      const GranularForce<double> f = foot.step(q);
+      const FootForce<double> f = foot.step(q);
       const PlainReading::Force e = plain.step(q);
       const double tolerance = 1e-9 * (1.0 + std::fabs(e.raw));
       ASSERT_NEAR(f.raw, e.raw, tolerance) << "seed " << seed << " step " << i;

@@ -24,7 +24,7 @@ TEST(GranularTest, RawForceIsZeroWhenTheFootRisesAndFilteredForceIsNeverNegative
       // Vibration of a fifth of a millimetre on top, as of a leg that rings.
       q.z += 2e-4 * std::sin(2500.0 * i * kDt_s);
       q.v += 0.5 * std::cos(2500.0 * i * kDt_s);
-      const GranularForce<double> f = foot.step(q);
+      const FootForce<double> f = foot.step(q);
       if (q.v <= 0.0) {
         ASSERT_EQ(f.raw, 0.0);
         ++rising;
@@ -108,7 +108,7 @@ TEST(GranularTest, FrictionBoundFollowsTheQuasistaticForceOnly) {
     p.gated_friction = gated;
     Foot foot(p);
     Point at{0, 0, -0.01};
-    GranularForce<double> f = foot.move(at, {0, 0, 0.02}, 100);  // 0.3 mm a step: fast
+    FootForce<double> f = foot.move(at, {0, 0, 0.02}, 100);  // 0.3 mm a step: fast
     EXPECT_NEAR(f.friction_bound, 0.6 * foot.quasistatic(at.z), 1e-9);
     EXPECT_GT(f.raw, foot.quasistatic(at.z));  // drag is there, and not in the bound
     f = foot.move(at, {0, 0, 0.01}, 100);
@@ -124,7 +124,7 @@ TEST(GranularTest, StrokeResistanceActsOutwardsIntoFreshGroundWhenBuried) {
   Point at{0, 0, -0.001};
   foot.move(at, {0, 0, 0.06}, 400);
   EXPECT_EQ(foot.move(at, {0.0499, 0, 0.06}, 200).stroke, 0.0);  // within the crater
-  GranularForce<double> f = foot.move(at, {0.07, 0, 0.06}, 200);
+  FootForce<double> f = foot.move(at, {0.07, 0, 0.06}, 200);
   EXPECT_EQ(f.direction_x, 1.0);
   // The crater was latched where healing begins: eq. 1 with d = 70 mm at the remembered depth, then
   // eq. 2.
@@ -150,7 +150,7 @@ TEST(GranularTest, StrokeResistanceIsTheSameInAllDirections) {
   };
   const double along_x = push(0.0).stroke;
   for (const double angle : {0.7, std::numbers::pi / 2.0, 2.5, -2.0}) {
-    const GranularForce<double> f = push(angle);
+    const FootForce<double> f = push(angle);
     EXPECT_NEAR(f.stroke, along_x, 1e-9);
     EXPECT_NEAR(f.direction_x, std::cos(angle), 1e-9);
     EXPECT_NEAR(f.direction_y, std::sin(angle), 1e-9);
@@ -192,7 +192,7 @@ TEST(GranularTest, TouchdownForgetsTheLastContact) {
     fresh.step(air);
     for (int i = 0; i < 2000; ++i) {
       const Point q = after.at(i * kDt_s);
-      const GranularForce<double> a = used.step(q), b = fresh.step(q);
+      const FootForce<double> a = used.step(q), b = fresh.step(q);
       ASSERT_EQ(a.raw, b.raw);
       ASSERT_EQ(a.normal, b.normal);
       ASSERT_EQ(a.friction_bound, b.friction_bound);
@@ -236,7 +236,7 @@ TEST(GranularTest, EachSwitchTakesItsOwnEffectAway) {
   Foot unfiltered(p);
   const RandomMotion shaking(3, 0.05, 0.02, 0.0);
   for (int i = 0; i < 4000; ++i) {
-    const GranularForce<double> f = unfiltered.step(shaking.at(i * kDt_s));
+    const FootForce<double> f = unfiltered.step(shaking.at(i * kDt_s));
     ASSERT_EQ(f.normal, std::fmax(f.raw, 0.0));
   }
 
@@ -265,7 +265,7 @@ TEST(GranularTest, FilterGrowsByOneFortiethAReversal) {
   EXPECT_LT(still.contact.force, 1e-12);
   double expected = still.contact.force;
   for (int i = 0; i < 10; ++i) {
-    const GranularForce<double> f = still.step({0, 0, 0.021, 0, 0, 0.1});
+    const FootForce<double> f = still.step({0, 0, 0.021, 0, 0, 0.1});
     expected += 0.2 * (f.raw - expected);
     if (i == 0) continue;  // the reversal itself
     EXPECT_NEAR(f.normal, expected, 1e-9 * expected);

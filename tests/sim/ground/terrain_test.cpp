@@ -108,6 +108,29 @@ TEST(TerrainTest, PatchesTakeTheFirstGroundOrAPresetWithDifferences) {
   EXPECT_EQ(terrain.region_at(1e6), 2.0);
 }
 
+TEST(TerrainTest, SlopeAndWavesAreOfAllPatches) {
+  const TerrainDescription t = read(R"(
+    [terrain]
+    slope_deg = 10.0
+    slope_heading_deg = 90.0
+    roughness_m = 0.01
+    [[terrain.patch]]
+    from_x_m = 1.0
+    preset = "rigid"
+  )");
+  const Robot robot = load_raibo();
+  Shape<double> shape = make_terrain(t, make_foot_profile(t, robot.model), robot.model).shape;
+  EXPECT_EQ(shape.uneven, 1.0);
+  EXPECT_EQ(shape.roughness, 0.01);
+  shape.roughness = 0.0;
+  const Surface<double> surface = surface_at(shape, 5.0, 2.0);
+  EXPECT_NEAR(surface.height, 2.0 * std::tan(10.0 * std::numbers::pi / 180.0), 1e-12);
+  EXPECT_NEAR(surface.slope_x, 0.0, 1e-12);
+  EXPECT_NEAR(shape.over_plane({5.0, 2.0, surface.height}), 0.0, 1e-12);
+  expect_names("[terrain]\nslope_deg = 50", "slope_deg");
+  expect_names("[[terrain.patch]]\nslope_deg = 5", "slope_deg");
+}
+
 TEST(TerrainTest, ABallFootStandsOnTheSameGroundAsTheTyre) {
   // What carries, over the area of the buried foot seen from above.
   const RobotModel<double> tyre = load_raibo().model;
@@ -169,30 +192,23 @@ TEST(TerrainTest, SimulatorTableRefusesBadValues) {
 }
 
 TEST(RoughSurfaceTest, HasItsDeviationBoundAndGradient) {
-  GroundParameters p = ground_of_kind(GroundKind::kRigid);
-  p.roughness_m = 0.02;
-  p.roughness_wavelength_m = 0.5;
-  const Robot robot = load_raibo();
-  const TerrainDescription description = one_patch(p);
-  const Terrain<double> terrain =
-      make_terrain(description, make_foot_profile(description, robot.model), robot.model);
-  const Ground<double>& g = terrain.ground[0];
+  const Shape<double> shape = derive_shape(waves(0.02));
   Draw draw(1);
   double sum = 0.0, square = 0.0;
   const int n = 100000;
   for (int i = 0; i < n; ++i) {
     const double x = draw(-50.0, 50.0), y = draw(-50.0, 50.0), e = 1e-6;
     double h, dx, dy, a, b, unused;
-    rough_surface(g, x, y, h, dx, dy);
+    rough_surface(shape, x, y, h, dx, dy);
     sum += h;
     square += h * h;
-    ASSERT_LE(std::fabs(h), terrain.highest);
+    ASSERT_LE(std::fabs(h), shape.crest);
     if (i % 100 != 0) continue;
-    rough_surface(g, x + e, y, a, unused, unused);
-    rough_surface(g, x - e, y, b, unused, unused);
+    rough_surface(shape, x + e, y, a, unused, unused);
+    rough_surface(shape, x - e, y, b, unused, unused);
     EXPECT_NEAR(dx, (a - b) / (2 * e), 1e-8);
-    rough_surface(g, x, y + e, a, unused, unused);
-    rough_surface(g, x, y - e, b, unused, unused);
+    rough_surface(shape, x, y + e, a, unused, unused);
+    rough_surface(shape, x, y - e, b, unused, unused);
     EXPECT_NEAR(dy, (a - b) / (2 * e), 1e-8);
   }
   EXPECT_NEAR(sum / n, 0.0, 1e-3);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/ground/granular.h"
+#include "sim/ground/ground.h"
 #include "tests/sim/support.h"
 #include "tests/support/csv.h"
 
@@ -48,8 +48,7 @@ Drop drop(const DropSettings& s) {
   double sum = 0.0, square = 0.0, first = 0.0, last = 0.0;
   const int window = steps / 20;  // 0.1 s: means over it do not see the limit cycle
   for (int i = 0; i < steps; ++i) {
-    const double force =
-        granular_step(ground, foot, 0.0, 0.0, z, v, 0.0, 0.0, 1.0 / s.dt_s, contact).normal;
+    const double force = foot_force(ground, foot, {.z = z, .v = v}, 1.0 / s.dt_s, contact).normal;
     EXPECT_GE(force, 0.0);
     d.peak_force_n = std::fmax(d.peak_force_n, force);
     if (i >= half) {
@@ -147,8 +146,7 @@ TEST(DropTest, SlowLoadingSinksToTheStaticDepth) {
     const double dt_s = 0.25e-3;
     double z = -0.001, v = 0.0;
     for (int n = 0; n < 80000; ++n) {
-      const double force =
-          granular_step(ground, foot, 0.0, 0.0, z, v, 0.0, 0.0, 1.0 / dt_s, contact).normal;
+      const double force = foot_force(ground, foot, {.z = z, .v = v}, 1.0 / dt_s, contact).normal;
       v = (v + dt_s * (kGravity_mps2 - force / mass_kg)) / (1.0 + dt_s * 200.0);
       z += dt_s * v;
     }

@@ -73,7 +73,7 @@ Walk walk(Policy policy, const Robot& robot, double vx_mps,
 }
 
 Walk walk_in_mujoco(const Policy& policy, const Robot& robot, double vx_mps) {
-  const Bench bench({.kind = GroundKind::kRigid}, robot);
+  const Bench bench(ground_of_kind(GroundKind::kRigid), robot);
   bench::MujocoRobot mujoco(robot.model, kHardGround);
   mujoco.set(bench.state.rigid);
   return walk(
@@ -85,7 +85,7 @@ Walk walk_in_mujoco(const Policy& policy, const Robot& robot, double vx_mps) {
 }
 
 Walk walk_in_ours(const Policy& policy, const Robot& robot, double vx_mps) {
-  Bench bench({.kind = GroundKind::kRigid}, robot);
+  Bench bench(ground_of_kind(GroundKind::kRigid), robot);
   return walk(
       policy, robot, vx_mps, [&] { return bench.state.rigid; },
       [&](const auto& torque_nm) { bench.step(torque_nm); });

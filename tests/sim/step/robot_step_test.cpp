@@ -114,10 +114,9 @@ TEST(StandingTest, LoweredGentlyItSinksToTheStaticDepth) {
 
 TEST(StandingTest, UnevenRigidGroundCarriesTheWeight) {
   GroundParameters p = ground_of_kind(GroundKind::kRigid);
-  p.roughness_m = 0.01;
   p.friction = 1.0;
-  Bench bench(p);
-  bench.state.rigid.position.z += bench.terrain.highest;
+  Bench bench(p, load_raibo(), waves(0.01));
+  bench.state.rigid.position.z += bench.terrain.shape.crest;
   double sum = 0.0;
   for (int i = 0; i < 16000; ++i) {
     bench.step(stand_torque(bench, 300.0, 5.0));
@@ -126,7 +125,7 @@ TEST(StandingTest, UnevenRigidGroundCarriesTheWeight) {
     for (int l = 0; l < kNumLegs; ++l) {
       double h, dx, dy;
       const Vec3<double>& c = bench.report.foot_centre[l];
-      rough_surface(bench.terrain.ground[0], c.x, c.y, h, dx, dy);
+      rough_surface(bench.terrain.shape, c.x, c.y, h, dx, dy);
       const double n = 1.0 / std::sqrt(1.0 + dx * dx + dy * dy), t = 1.0 / std::sqrt(1.0 + dx * dx);
       const auto& f = bench.report.foot_force[l];
       sum += f[2] * n + f[0] * dx * t + f[1] * dy * n * t;

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "rt/core/messages.h"
-#include "sim/ground/granular.h"
+#include "sim/ground/ground.h"
 #include "tools/evaluate/study.h"
 
 namespace sandrunner::study {
@@ -158,8 +158,7 @@ Stop drop_ball(const Ball& ball, const sim::GroundParameters& parameters, double
   sim::FootContact<double> contact;
   double z = 0.0, v = impact_mps, t = 0.0;
   while (v > 0.0) {
-    const double force =
-        sim::granular_step(ground, foot, 0.0, 0.0, z, v, 0.0, 0.0, kStepHz, contact).normal;
+    const double force = sim::foot_force(ground, foot, {.z = z, .v = v}, kStepHz, contact).normal;
     v += (kGravity_mps2 - force / ball.mass_kg) / kStepHz;
     z += v / kStepHz;
     t += 1.0 / kStepHz;
@@ -198,12 +197,12 @@ double drag_force(const sim::GroundParameters& parameters, double depth_m, doubl
   const sim::Ground<double> ground = sim::derive_ground(parameters, foot, kFootRadius_m);
   sim::FootContact<double> contact;
   for (double z = 0.0; z < depth_m; z += kDown_mps / kStepHz) {
-    sim::granular_step(ground, foot, 0.0, 0.0, z, kDown_mps, 0.0, 0.0, kStepHz, contact);
+    sim::foot_force(ground, foot, {.z = z, .v = kDown_mps}, kStepHz, contact);
   }
-  sim::GranularForce<double> force;
+  sim::FootForce<double> force;
   for (double x = 0.0; x < parameters.crater_radius_m + kBeyond_m; x += speed_mps / kStepHz) {
     force =
-        sim::granular_step(ground, foot, x, 0.0, depth_m, 0.0, speed_mps, 0.0, kStepHz, contact);
+        sim::foot_force(ground, foot, {.x = x, .z = depth_m, .vx = speed_mps}, kStepHz, contact);
   }
   return force.friction_bound + force.stroke;
 }

@@ -26,10 +26,9 @@ Sample sample_of(const evaluate::ObservedStep& step, const sim::Terrain<float>& 
     s.stance[l] = contact.active > 0.0f;
     s.on_patch[l] = s.stance[l] && contact.region > 0.0f;
     if (!s.stance[l]) continue;
-    const bool granular = terrain.ground[static_cast<std::size_t>(contact.region)].is_granular > 0;
-    s.depth_m[l] = granular
-                       ? contact.memory_depth
-                       : std::max(0.0f, static_cast<float>(foot_radius_m) - s.foot_height_m[l]);
+    const sim::Ground<float>& ground = terrain.ground[static_cast<std::size_t>(contact.region)];
+    const float depth = static_cast<float>(foot_radius_m) - s.foot_height_m[l];
+    s.depth_m[l] = std::max(0.0f, sim::yielded_depth(ground, contact, depth));
   }
   for (int j = 0; j < kNumJoints; ++j) s.torque_nm[j] = static_cast<float>(step.torque_nm[j]);
   return s;

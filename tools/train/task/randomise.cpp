@@ -83,14 +83,15 @@ void Task::approach_target(Env& e) const {
   }
 }
 
-TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor) {
+TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor,
+                                 double roughness_m) {
   const auto f = [](double value) { return static_cast<float>(value); };
   const float friction = f(3.0 * (p.friction - 0.75));
   switch (p.kind) {
     case sim::GroundKind::kLinear:
       return {0.0f, f(std::log10(p.stiffness_npm / 10e3)), f(4.0 * (factor - 0.55)), friction};
     case sim::GroundKind::kRigid:
-      return {1.0f, 2.0f, 2.0f, friction, f(2.0 * (factor - 0.65)), f(100.0 * p.roughness_m)};
+      return {1.0f, 2.0f, 2.0f, friction, f(2.0 * (factor - 0.65)), f(100.0 * roughness_m)};
     case sim::GroundKind::kGranular:
       break;
   }
@@ -99,14 +100,14 @@ TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor) 
           f(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
           friction,
           f(2.0 * (factor - 0.65)),
-          f(100.0 * p.roughness_m),
+          f(100.0 * roughness_m),
           f((p.recruitment - 2.0) / 0.3),
           f((p.cone_angle_rad / kDegree_rad - 60.0) / 4.0),
           f((p.stroke_stiffness_npm - 225.0) / 175.0),
           f((p.stroke_damping_nspm - 2.0) / 2.0)};
 }
 
-sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
+sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid, sim::ShapeParameters& shape,
                                       TerrainFeatures& features) const {
   const GroundSettings& g = config_.ground;
   sim::GroundParameters p;
@@ -117,9 +118,9 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     // Some of the rigid robots walk on uneven ground, rougher as the curriculum opens.
     const bool uneven =
         is_rigid(env) && env % block_envs_ >= (1.0 - g.rigid_uneven_share) * g.rigid_envs;
-    p.roughness_m = uneven ? curriculum_.ground * uniform(env, e, 0.0, g.roughness_m) : 0.0;
-    p.roughness_wavelength_m = g.roughness_wavelength_m;
-    p.roughness_seed =
+    shape.roughness_m = uneven ? curriculum_.ground * uniform(env, e, 0.0, g.roughness_m) : 0.0;
+    shape.roughness_wavelength_m = g.roughness_wavelength_m;
+    shape.roughness_seed =
         sim::random_bits(seed_, static_cast<std::uint64_t>(env) + (2ull << 32), e.draws) >> 24;
   } else if (g.yielding == sim::GroundKind::kLinear) {
     const double low = log_between(g.spring_low_start, g.spring_low, curriculum_.ground, 1.0);
@@ -152,7 +153,7 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
     p.stroke_stiffness_npm = uniform(env, e, g.stroke_stiffness_low, g.stroke_stiffness_high);
     p.stroke_damping_nspm = uniform(env, e, g.stroke_damping_low, g.stroke_damping_high);
   }
-  features = terrain_features(p, inertial);
+  features = terrain_features(p, inertial, shape.roughness_m);
   return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
 }
 
@@ -160,11 +161,12 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid,
 void Task::new_ground(int env, Env& e, float x_m) {
   const GroundSettings& g = config_.ground;
   sim::Terrain<double> terrain;
+  sim::ShapeParameters shape;
   const int count = is_patchy(env) ? sim::kMaxRegions : 1;
   terrain.count = count;
   for (int i = 0; i < count; ++i) {
     const bool rigid = count > 1 ? uniform(env, e) < g.patch_rigid_share : is_rigid(env);
-    terrain.ground[i] = draw_ground(env, e, rigid, e.ground_features[i]);
+    terrain.ground[i] = draw_ground(env, e, rigid, shape, e.ground_features[i]);
     if (i < 2) continue;
     terrain.start_x[i] =
         terrain.start_x[i - 1] +
@@ -173,7 +175,7 @@ void Task::new_ground(int env, Env& e, float x_m) {
   // The robot stands anywhere in between.
   const double shift = x_m - terrain.start_x[count - 1] * uniform(env, e);
   for (int i = 1; i < count; ++i) terrain.start_x[i] += shift;
-  terrain.highest = sim::highest_of(terrain.ground[0].roughness);
+  terrain.shape = sim::derive_shape(shape);
   e.terrain = sim::convert_terrain<float>(terrain);
   batch_.set_terrain(env, e.terrain);
 }
@@ -277,10 +279,10 @@ void Task::hard_reset(int env, Env& e, double nominal_share) {
   };
   x.position = {draw(5.0), draw(5.0), 0.0f};
   new_ground(env, e, x.position.x);
-  const sim::Ground<float>& ground = e.terrain.ground[0];
-  const float height = sim::surface_at(e.terrain, x.position.x, x.position.y).height;
+  const sim::Shape<float>& shape = e.terrain.shape;
+  const float height = sim::surface_at(shape, x.position.x, x.position.y).height;
   x.position.z =
-      static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * ground.roughness;
+      static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * shape.roughness;
   const sim::Vec3<float> tilt{draw(off * s.reset_tilt_rad), draw(off * s.reset_tilt_rad), 0.0f};
   x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
   // Any heading: in small steps, which keep the series of `integrate` accurate.
@@ -318,7 +320,7 @@ void Task::begin_trial(int env, const Trial& trial) {
 void Task::soft_reset(int env, Env& e, float x_m) {
   e.step = 0;
   new_command(env, e);
-  if (e.terrain.highest == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground) {
+  if (e.terrain.shape.uneven == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground) {
     new_ground(env, e, x_m);
   }
 }

@@ -43,7 +43,8 @@ using TerrainFeatures = std::array<float, learner::kTerrainSize>;
 /// friction, factor, roughness and zeros. Soil: 0, both stress gradients (logarithms), friction,
 /// factor, 0, recruitment, cone angle, stiffness and damping of a stroke. Spring: 0, stiffness
 /// (logarithm), factor, friction and zeros.
-TerrainFeatures terrain_features(const sim::GroundParameters& ground, double factor);
+TerrainFeatures terrain_features(const sim::GroundParameters& ground, double factor,
+                                 double roughness_m = 0.0);
 
 /// A soil's first feature is the logarithm of its stress gradient over this one.
 inline constexpr double kUsualSigmaFlat_npm3 = 3e6;
@@ -172,7 +173,8 @@ class Task {
   }
   void new_command(int env, Env& e) const;
   void approach_target(Env& e) const;
-  sim::Ground<double> draw_ground(int env, Env& e, bool rigid, TerrainFeatures& features) const;
+  sim::Ground<double> draw_ground(int env, Env& e, bool rigid, sim::ShapeParameters& shape,
+                                  TerrainFeatures& features) const;
   void new_ground(int env, Env& e, float x_m);
   void new_robot(int env, Env& e);
   void new_joints(int env, Env& e, sim::RobotModel<double>& model) const;

@@ -55,6 +55,10 @@ std::vector<sim::Ground<float>> patches_of(const Task& task) {
   return patches;
 }
 
+sim::GroundKind kind_of(const sim::Ground<float>& patch) {
+  return static_cast<sim::GroundKind>(patch.kind);
+}
+
 TEST(CurriculumTest, OpensOnHardGroundAloneAndOnGroundThatYields) {
   for (const int rigid : {kEnvs, kEnvs / 4, 0}) {
     TaskConfig config = open_at_once();
@@ -93,8 +97,8 @@ TEST(YieldingGroundTest, SpringsHaveStiffnessesAndDampingWithinTheirRange) {
     int springs = 0;
     double least = 1e9, most = 0.0;
     for (const sim::Ground<float>& patch : patches_of(task)) {
-      EXPECT_EQ(patch.is_granular, 0.0f);
-      if (patch.is_linear == 0.0f) continue;
+      EXPECT_NE(kind_of(patch), sim::GroundKind::kGranular);
+      if (kind_of(patch) != sim::GroundKind::kLinear) continue;
       ++springs;
       const double ratio = patch.damping / (2.0 * std::sqrt(patch.stiffness * quarter_kg));
       EXPECT_GE(ratio, 0.0999);
@@ -119,7 +123,7 @@ TEST(YieldingGroundTest, SoilWithoutInertiaHasNeitherAddedMassNorDrag) {
   config.ground.inertial_low = config.ground.inertial_high = 0.0;
   int soils = 0;
   for (const sim::Ground<float>& patch : patches_of(task_with(config, 1))) {
-    if (patch.is_granular == 0.0f) continue;
+    if (kind_of(patch) != sim::GroundKind::kGranular) continue;
     ++soils;
     EXPECT_EQ(patch.added_mass, 0.0f);
     EXPECT_EQ(patch.drag, 0.0f);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a law of force is: how one kind of ground resists a foot. A law is a struct of its own file
+// (granular.h is the longest example) with
+//   Parameters     what a person writes: kName, its word of `terrain.kind`, and kSettings, a row
+//                  for each member; carries_like(), if some of them decide how deep a robot stands,
+//   members        constants that derive_law() makes from them, once for a foot; all of them S,
+//   step()         the force on one foot at one step,
+//   kHard          impenetrable: the contact problem finds the normal force. It has no step(),
+//   kRemembers     changes the FootContact. It then steps on every ground and in the air, so that
+//                  its memory is current when the foot comes to ground of its kind,
+//   kDrawnAsSand   pages draw sand, else something solid.
+// To add a law: its file, and its name in GroundKind and Laws (ground.h).
+#pragma once
+
+#include "sim/ground/foot_profile.h"
+#include "sim/lanes/lanes.h"
+
+namespace sandrunner::sim {
+
+/// Place and motion of a foot's deepest point. x, y: along the ground (Shape), on level ground in
+/// the world, m; z: its depth below the undisturbed surface, along the normal, m; v = dz/dt and
+/// vx, vy in m/s.
+template <typename S>
+struct FootMotion {
+  S x{}, y{}, z{}, v{}, vx{}, vy{};
+};
+
+/// What a foot's contact remembers. All but the first three is reset when the foot touches down.
+template <typename S>
+struct FootContact {
+  S active{};                ///< 1 from touchdown to lift-off
+  S region{};                ///< index of the patch of ground it touched down on
+  S velocity{};              ///< v of the previous step, also in the air, m/s
+  S memory_depth{};          ///< deepest penetration so far, less what has healed, m
+  S memory_x{}, memory_y{};  ///< where that was, as in FootMotion, m
+  S memory_travel{};         ///< greatest distance along the ground from there since, m
+  S restart_flat{};          ///< I_flat at which the present cone began to grow, m^3
+  S filter{};                ///< tau_r of eq. S16
+  S force{};                 ///< filtered normal force, N
+  S stroke_latched{};        ///< 1: the foot ploughs beyond its crater
+  S stroke_x{}, stroke_y{}, stroke_depth{};  ///< crater's centre and depth as latched, m
+  S stroke_travel{};                         ///< greatest distance from that centre since, m
+};
+
+/// Forces of the ground on a foot at one step.
+template <typename S>
+struct FootForce {
+  S normal{};          ///< >= 0, N
+  S raw{};             ///< normal before the filter of the granular law, N
+  S friction_bound{};  ///< of the tangential force, N
+  S stroke{};          ///< resistance along the ground, N, acts along -(direction_x, direction_y)
+  S direction_x{}, direction_y{};  ///< unit vector, axes of FootMotion
+  // Feet that share a pressure: the force without it before it is cut at zero, N, and the square
+  // root of the pressure's stiffness; 0: none.
+  S uncut{}, coupling{};
+};
+
+}  // namespace sandrunner::sim
