@@ -19,7 +19,7 @@ struct MyRobot final : sr::RobotIo {
 
 int main() {
   sr::ControllerConfig config;
-  config.damping.kd_nmsprad = config.gate.kd_limit_nmsprad = 2.0;
+  config.damping.kd_nmsprad.fill(config.gate.kd_limit_nmsprad = 2.0);
   sr::Controller controller(config);
   sr::ControllerInput input;
   sr::ControllerOutput output;

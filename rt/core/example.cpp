@@ -9,7 +9,7 @@ namespace sr = sandrunner;
 int main() {
   // What the controller must know of the robot; `sandrunner` reads it from the robot file.
   sr::ControllerConfig config;
-  config.damping.kd_nmsprad = 2.0;
+  config.damping.kd_nmsprad = {2.0, 2.0, 2.0};  // HAA, HFE, KFE
   config.gate.kd_limit_nmsprad = 5.0;
   sr::Controller controller(config);
   sr::ControllerInput input;

@@ -324,7 +324,7 @@ TEST_F(SafetyGateTest, NoSettingPutsAThresholdBeyondItsCeiling) {
   config.tilt_fault_deg = 180.0;
   config.joints_fault_ticks = 1'000'000;
   config.kp_limit_nmprad = 1e300;
-  const SafetyGate loose(config, 2.0);
+  const SafetyGate loose(config, {2.0, 2.0, 2.0});
   tilt(80.1);
   EXPECT_EQ(judge(loose, Mode::kStand), static_cast<std::uint64_t>(Fault::kTilt));
   state = {};
@@ -452,7 +452,7 @@ TEST_F(SafetyGateTest, TiltThresholdMatchesItsAngle) {
   trembles = false;
   for (int angle_deg = 5; angle_deg <= 80; angle_deg += 5) {
     config.tilt_fault_deg = angle_deg;
-    const SafetyGate other(config, 2.0);
+    const SafetyGate other(config, {2.0, 2.0, 2.0});
     state = {};
     tilt(angle_deg - 1e-6);
     EXPECT_EQ(judge(other, Mode::kStand), 0u) << angle_deg;
@@ -477,7 +477,7 @@ TEST_F(SafetyGateTest, TorqueFaultNeedsTwentySamplesOfOneJointInARow) {
 TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
   config.torque_limit_nm[2] = 30.0;
   config.speed_limit_radps[4] = 10.0;
-  const SafetyGate other(config, 2.0);
+  const SafetyGate other(config, {2.0, 2.0, 2.0});
   wanted.feedforward_nm[2] = wanted.feedforward_nm[1] = 50.0;
   const SafeCommand passed = other.pass(wanted, true, sensors.joints, state);
   EXPECT_NEAR(torque_of(passed, sensors.joints, 2), 30.0, 1e-9);

@@ -9,6 +9,8 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "rt/core/mode_machine.h"
 #include "rt/report/run_observer.h"
@@ -176,7 +178,7 @@ TEST(ViewTilesTest, ASlopeIsInTheHelloAndUnderTheWaves) {
   scene.slope = {0.1, -0.2};
   EXPECT_EQ(Json::parse(view_hello(scene, "")).at("slope"), (Json{0.1, -0.2}));
   EXPECT_NEAR(scene.ground_height_m(3.0, 1.0), 0.1, 1e-12);
-  EXPECT_TRUE(view_tiles(scene, std::vector<RunRow>(2), 1000).empty());
+  EXPECT_TRUE(view_tiles(scene, std::deque<RunRow>(2), 1000).empty());
   scene.waves_m = [](double, double) { return 0.01; };
   EXPECT_NEAR(scene.ground_height_m(3.0, 1.0), 0.11, 1e-12);
 }
