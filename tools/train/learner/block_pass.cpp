@@ -14,6 +14,7 @@ void LossSums::add(const LossSums& other) {
     estimate_square[k] += other.estimate_square[k];
   }
   kl += other.kl;
+  clipped += other.clipped;
   asymmetry += other.asymmetry;
   imitation += other.imitation;
   encoding += other.encoding;
@@ -256,6 +257,7 @@ void BlockPass<Scalar>::differentiate_loss(const Weights<Scalar>& weights,
     const Scalar bounded = std::clamp(ratio, 1 - clip, 1 + clip);
     const bool is_clipped = bounded * advantage < ratio * advantage;
     sums.policy -= static_cast<double>((is_clipped ? bounded : ratio) * advantage);
+    sums.clipped += is_clipped ? 1.0 : 0.0;
     sums.kl += static_cast<double>(kl_constant + static_cast<Scalar>(0.5) * shift_square);
     Scalar asymmetry = 0;
     const Scalar log_prob_gradient = is_clipped ? Scalar(0) : -advantage * ratio * policy_factor;

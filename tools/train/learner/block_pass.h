@@ -47,7 +47,8 @@ struct LossSums {
   double policy = 0.0;
   double value = 0.0;  ///< (V - R)^2 / 2
   std::array<double, kEstimateSize> estimate_square{};
-  double kl = 0.0;         ///< of the new policy from the one that acted, exact
+  double kl = 0.0;  ///< of the new policy from the one that acted, exact
+  double clipped = 0.0;
   double asymmetry = 0.0;  ///< |(mean - symmetric mean) / std|^2 / 2
   double imitation = 0.0;  ///< |mean - teacher's mean|^2 / 12
   double encoding = 0.0;   ///< |h - teacher's h|^2 / size of h
