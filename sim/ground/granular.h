@@ -153,9 +153,9 @@ inline S quasistatic_force(const GranularLaw<S>& g, const FootProfile<S>& foot, 
 }
 
 template <typename S>
-FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
-                                  const FootMotion<S>& motion, S rate_hz,
-                                  FootContact<S>& contact) const noexcept {
+inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
+                                         const FootMotion<S>& motion, S rate_hz,
+                                         FootContact<S>& contact) const noexcept {
   const S zero = S(0.0), one = S(1.0);
   const GranularLaw<S>& g = *this;
   FootContact<S>& c = contact;

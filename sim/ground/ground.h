@@ -73,18 +73,7 @@ inline FootForce<S> foot_force(const Ground<S>& ground, const FootProfile<S>& fo
       const Law<S>& law = ground;
       const Mask<S> here = ground.kind == S(double(index));
       if (!Law<S>::kRemembers && !any(here)) return;
-      const FootForce<S> f = law.step(foot, ground.friction, motion, rate_hz, contact);
-      const auto take = [&](S FootForce<S>::*member) {
-        force.*member = select(here, f.*member, force.*member);
-      };
-      take(&FootForce<S>::normal);
-      take(&FootForce<S>::raw);
-      take(&FootForce<S>::friction_bound);
-      take(&FootForce<S>::stroke);
-      take(&FootForce<S>::direction_x);
-      take(&FootForce<S>::direction_y);
-      take(&FootForce<S>::uncut);
-      take(&FootForce<S>::coupling);
+      force = select(here, law.step(foot, ground.friction, motion, rate_hz, contact), force);
     }
   });
   return force;

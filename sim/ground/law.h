@@ -54,5 +54,17 @@ struct FootForce {
   // root of the pressure's stiffness; 0: none.
   S uncut{}, coupling{};
 };
+template <typename S>
+inline FootForce<S> select(const Mask<S>& m, const FootForce<S>& a,
+                           const FootForce<S>& b) noexcept {
+  return {select(m, a.normal, b.normal),
+          select(m, a.raw, b.raw),
+          select(m, a.friction_bound, b.friction_bound),
+          select(m, a.stroke, b.stroke),
+          select(m, a.direction_x, b.direction_x),
+          select(m, a.direction_y, b.direction_y),
+          select(m, a.uncut, b.uncut),
+          select(m, a.coupling, b.coupling)};
+}
 
 }  // namespace sandrunner::sim

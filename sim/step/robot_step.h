@@ -88,9 +88,9 @@ class RobotStepper {
                       const Mask<S>& near, RobotState<S>& x, S& touched) noexcept;
   void add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept;
   Frame contact_frame(const Shape<S>& shape, const Surface<S>& surface) const noexcept;
-  FootMotion<S> foot_motion(const RobotState<S>& x, const Shape<S>& shape, const Mask<S>& yields,
-                            const Vec3<S>& r_base, const Vec3<S>& v_base, const Frame& frame,
-                            S penetration) const noexcept;
+  void lay_along(const Shape<S>& shape, const Mask<S>& along, const Vec3<S>& position,
+                 const Vec3<S>& r_base, const Vec3<S>& v_base, const Frame& frame,
+                 FootMotion<S>& m) const noexcept;
 
   Dynamics<S> dynamics_;
   Mat3<S> rotation_;  // body to world
@@ -103,7 +103,6 @@ class RobotStepper {
   std::array<int, kNumJoints> stop_joints_{};
   int num_stops_ = 0;
   std::array<FootForce<S>, kNumLegs> foot_force_;
-  std::array<Frame, kNumLegs> foot_frame_;
   Ground<S> mixed_ground_;  // of lanes that stand on different patches
 };
 

@@ -16,25 +16,20 @@ typename RobotStepper<S>::Frame RobotStepper<S>::contact_frame(
           select(uneven, transposed_times(rotation_, axes.n), level.n)};
 }
 
-// Of the deepest point, r_base from the base origin. On uneven ground that yields: along its plane,
-// of the place on the surface above that point, which stays where it is as the foot sinks in.
+// Turns a motion in the world into one along the plane, in the lanes `along`: that of the place on
+// the surface above the deepest point (r_base from the base origin), which stays where it is as the
+// foot sinks in.
 template <typename S>
-FootMotion<S> RobotStepper<S>::foot_motion(const RobotState<S>& x, const Shape<S>& shape,
-                                           const Mask<S>& yields, const Vec3<S>& r_base,
-                                           const Vec3<S>& v_base, const Frame& frame,
-                                           S penetration) const noexcept {
-  const Vec3<S> point = x.rigid.position + rotation_ * r_base;
-  const Vec3<S> velocity = rotation_ * v_base;
-  FootMotion<S> m{point.x, point.y, penetration, -dot(frame.n, v_base), velocity.x, velocity.y};
-  const Mask<S> along = both(shape.uneven > S(0.0), yields);
-  if (!any(along)) return m;
-  const Vec3<S> above = x.rigid.position + rotation_ * mul_add(frame.n, penetration, r_base);
+void RobotStepper<S>::lay_along(const Shape<S>& shape, const Mask<S>& along,
+                                const Vec3<S>& position, const Vec3<S>& r_base,
+                                const Vec3<S>& v_base, const Frame& frame,
+                                FootMotion<S>& m) const noexcept {
+  const Vec3<S> above = position + rotation_ * mul_add(frame.n, m.z, r_base);
   const SurfaceAxes<S> plane = shape.plane_axes();
   m.x = select(along, dot(plane.t1, above), m.x);
   m.y = select(along, dot(plane.t2, above), m.y);
   m.vx = select(along, dot(frame.t1, v_base), m.vx);
   m.vy = select(along, dot(frame.t2, v_base), m.vy);
-  return m;
 }
 
 template <typename S>
@@ -106,7 +101,7 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
     const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
     const Surface<S> surface = surface_at(terrain.shape, centre.x, centre.y);
-    const Frame& frame = foot_frame_[l] = contact_frame(terrain.shape, surface);
+    const Frame frame = contact_frame(terrain.shape, surface);
     // Deepest point: a foot radius from the centre against the normal; depth measured along the
     // normal.
     const Vec3<S> r_base = mul_add(frame.n, -model.foot_radius_m, centre_base);
@@ -118,9 +113,15 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
         model, l, pose.foot + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n));
     Vec3<S> v_base = cross_add(x.rigid.angular_velocity, r_base, velocity_);
     for (int j = 0; j < 3; ++j) v_base = mul_add(columns[j], x.rigid.qd[3 * l + j], v_base);
-    report.foot_velocity[l] = rotation_ * v_base;
-    const FootMotion<S> motion =
-        foot_motion(x, terrain.shape, ground.hard == zero, r_base, v_base, frame, penetration);
+    const Vec3<S> velocity = rotation_ * v_base;
+    report.foot_velocity[l] = velocity;
+    const Vec3<S> point = x.rigid.position + rotation_ * r_base;
+    FootMotion<S> motion{point.x,    point.y,   penetration, -dot(frame.n, v_base),
+                         velocity.x, velocity.y};
+    const Mask<S> along = both(terrain.shape.uneven > zero, ground.hard == zero);
+    if (any(along)) {
+      lay_along(terrain.shape, along, x.rigid.position, r_base, v_base, frame, motion);
+    }
     const FootForce<S>& force = foot_force_[l] = foot_force(ground, foot, motion, rate, contact);
     report.raw_force[l] = force.raw;
 
@@ -353,8 +354,9 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   // and up from the deepest point, which is level with the centre.
   for (int l = 0; l < kNumLegs; ++l) {
     const FootForce<S>& f = foot_force_[l];
-    const Frame& frame = foot_frame_[l];
     if (!any(f.stroke > zero)) continue;
+    const Vec3<S>& centre = report.foot_centre[l];
+    const Frame frame = contact_frame(terrain.shape, surface_at(terrain.shape, centre.x, centre.y));
     const LegPose<S>& pose = dynamics_.leg(l);
     const Vec3<S> outward =
         mul_add(frame.t1, f.direction_x, mul_add(frame.t2, f.direction_y, zero * frame.n));
