@@ -22,7 +22,7 @@ inline constexpr double kNotFollowing_rad = 0.6;
 inline constexpr double kNotFollowing_s = 0.05;  ///< ... for this long
 /// Fault: a joint stays within this, a count of a coarse encoder, ...
 inline constexpr double kStill_rad = 0.0005;
-inline constexpr double kStillTarget_rad = 0.4;  ///< ... while its target is this far away from
+inline constexpr double kStillTarget_rad = 0.2;  ///< ... while its target is this far away from
                                                  ///< where it was when the joint came to rest, ...
 inline constexpr double kStill_s = 0.1;          ///< ... for this long.
 /// Fault in Stand: another joint of a leg is pushed away by this much, while one stays the same to

@@ -148,7 +148,7 @@ std::vector<SensorCase> every_sensor_case() {
        sensor([](F f, H, N) { f.joints.position_rad[0] += 0.45; })},
       {Fault::kEncoderFrozen, "one, in motion", walk, 1.5,
        sensor([held_joint](F f, H held, N) { held_joint(f, held, 1); })},
-      {Fault::kEncoderFrozen, "one, but for a count", walk, 1.5, sensor([](F f, H held, N n) {
+      {Fault::kEncoderFrozen, "one, but for a count", walk, 5.0, sensor([](F f, H held, N n) {
          f.joints.position_rad[1] = held.joints.position_rad[1] + (n / 7 % 2 == 0 ? 0.0 : 0.0004);
          f.joints.velocity_radps[1] = n % 2 == 0 ? 0.01 : -0.01;
        })},
