@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "policy/text.h"
 #include "rt/core/split_mix.h"
@@ -25,11 +26,14 @@ Doubles linear(const std::vector<float>& weight, const std::vector<float>& bias,
   return output;
 }
 
-Doubles perceptron(const std::array<DenseParameters, 3>& layers, Doubles values) {
-  for (std::size_t k = 0; k < layers.size(); ++k) {
-    values = linear(layers[k].weight, layers[k].bias, values);
-    if (k + 1 == layers.size()) break;
-    for (double& value : values) value = value > 0.0 ? value : 0.01 * value;
+void leaky_relu(Doubles& values) {
+  for (double& value : values) value = value > 0.0 ? value : 0.01 * value;
+}
+
+Doubles perceptron(std::span<const DenseParameters> layers, Doubles values) {
+  for (const DenseParameters& layer : layers) {
+    if (&layer != layers.data()) leaky_relu(values);
+    values = linear(layer.weight, layer.bias, values);
   }
   return values;
 }
@@ -47,7 +51,8 @@ class PlainNetwork {
     Doubles estimate_raw;
   };
 
-  Output step(const float* observation) {
+  /// `insight` counts only if a network sees it.
+  Output step(const float* observation, const float* insight) {
     const NetworkParameters& p = parameters_;
     Doubles input;
     for (int i = 0; i < kObservationSize; ++i) {
@@ -56,8 +61,61 @@ class PlainNetwork {
       const double limit = p.observation_clip;
       input.push_back(std::clamp(x, -limit, limit));
     }
-    const Doubles from_input = linear(p.encoder_weight_ih, p.encoder_bias_ih,
-                                      Doubles(input.begin() + kCommandSize, input.end()));
+    const Doubles proprioception(input.begin() + kCommandSize, input.end());
+    const Doubles encoding = encode(proprioception, insight);
+    const Doubles estimate_raw = perceptron(p.estimator, encoding);
+    const ActorInputs& sees = p.wiring.actor_sees;
+    Doubles actor_input(input.begin(), input.begin() + kCommandSize);
+    const auto add = [&](bool seen, const auto& values) {
+      if (seen) actor_input.insert(actor_input.end(), values.begin(), values.end());
+    };
+    add(sees.encoding, encoding);
+    add(sees.estimate, estimate_raw);
+    add(sees.proprioception, proprioception);
+    if (sees.terrain) add(true, std::span(insight, kTerrainSize));
+    return {perceptron(p.actor, actor_input), estimate_raw};
+  }
+
+ private:
+  Doubles encode(const Doubles& proprioception, const float* insight) {
+    switch (parameters_.wiring.encoder) {
+      case EncoderKind::kTcn:
+        return convolve(proprioception);
+      case EncoderKind::kInsight:
+        return hyperbolic_tangent(
+            perceptron(parameters_.encoder, Doubles(insight, insight + kInsightSize)));
+      case EncoderKind::kLstm:
+        break;
+    }
+    return remember(proprioception);
+  }
+
+  static Doubles hyperbolic_tangent(Doubles values) {
+    for (double& value : values) value = std::tanh(value);
+    return values;
+  }
+
+  /// Each layer reads the one below it now and at its taps; before the first step, that is zero.
+  Doubles convolve(Doubles values) {
+    for (std::size_t i = 0; i < kTcnDilations.size(); ++i) {
+      below_[i].push_back(values);
+      Doubles taps;
+      for (int tap = 0; tap < kTcnTaps; ++tap) {
+        const std::ptrdiff_t at = std::ssize(below_[i]) - 1 - tap * kTcnDilations[i];
+        const Doubles& read = at < 0 ? Doubles(values.size(), 0.0) : below_[i][at];
+        taps.insert(taps.end(), read.begin(), read.end());
+      }
+      values = linear(parameters_.encoder[i].weight, parameters_.encoder[i].bias, taps);
+      leaky_relu(values);
+    }
+    const DenseParameters& last = parameters_.encoder.back();
+    return hyperbolic_tangent(linear(last.weight, last.bias, values));
+  }
+
+  /// The LSTM.
+  Doubles remember(const Doubles& input) {
+    const NetworkParameters& p = parameters_;
+    const Doubles from_input = linear(p.encoder_weight_ih, p.encoder_bias_ih, input);
     const Doubles from_state = linear(p.encoder_weight_hh, p.encoder_bias_hh, h_);
     for (int u = 0; u < kHiddenSize; ++u) {
       const auto gate = [&](int k) {
@@ -66,17 +124,13 @@ class PlainNetwork {
       c_[u] = logistic(gate(1)) * c_[u] + logistic(gate(0)) * std::tanh(gate(2));
       h_[u] = logistic(gate(3)) * std::tanh(c_[u]);
     }
-    const Doubles estimate_raw = perceptron(p.estimator, h_);
-    Doubles actor_input(input.begin(), input.begin() + kCommandSize);
-    actor_input.insert(actor_input.end(), h_.begin(), h_.end());
-    actor_input.insert(actor_input.end(), estimate_raw.begin(), estimate_raw.end());
-    return {perceptron(p.actor, actor_input), estimate_raw};
+    return h_;
   }
 
- private:
   const NetworkParameters& parameters_;
   Doubles h_ = Doubles(kHiddenSize, 0.0);
   Doubles c_ = Doubles(kHiddenSize, 0.0);
+  std::array<std::vector<Doubles>, kTcnDilations.size()> below_;  // of each convolution, all steps
 };
 
 /// Uniform numbers in [-1, 1) by SplitMix64: the same on every machine.
@@ -88,12 +142,16 @@ class Uniform {
   std::uint64_t state_ = 0;
 };
 
-template <std::size_t kSize>
-double worst(const std::string& file, int step, const char* what,
-             const std::array<float, kSize>& found, const std::vector<float>& expected) {
+const float* insight_at(const GoldenExample& golden, int step) {
+  return golden.insight.empty() ? nullptr : &golden.insight[step * kInsightSize];
+}
+
+template <typename Values>
+double worst(const std::string& file, int step, const char* what, const Values& found,
+             const std::vector<float>& expected) {
   double largest = 0.0;
-  for (std::size_t i = 0; i < kSize; ++i) {
-    const double wanted = expected[step * kSize + i];
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double wanted = expected[step * found.size() + i];
     const double deviation = std::abs(found[i] - wanted) / std::max(1.0, std::abs(wanted));
     if (!(deviation <= kGoldenTolerance)) {
       fail_file(file, "golden example fails at step {}: {}[{}] is {}, expected {:.9g}", step, what,
@@ -119,7 +177,11 @@ GoldenExample make_golden_example(const NetworkParameters& parameters) {
       golden.observation.push_back(
           static_cast<float>(parameters.observation_mean[i] + deviation * x));
     }
-    const auto output = network.step(&golden.observation[k * kObservationSize]);
+    for (int i = 0; parameters.wiring.sees_insight() && i < kInsightSize; ++i) {
+      golden.insight.push_back(static_cast<float>(std::sqrt(3.0) * uniform.next()));
+    }
+    const auto output =
+        network.step(&golden.observation[k * kObservationSize], insight_at(golden, k));
     golden.action.insert(golden.action.end(), output.action.begin(), output.action.end());
     golden.estimate_raw.insert(golden.estimate_raw.end(), output.estimate_raw.begin(),
                                output.estimate_raw.end());
@@ -136,6 +198,20 @@ double check_golden_example(const std::string& file, const Network& network,
     std::array<float, kObservationSize> observation;
     std::copy_n(&golden.observation[k * kObservationSize], kObservationSize, observation.begin());
     network.step(observation, state, output);
+    largest = std::max({largest, worst(file, k, "action", output.action, golden.action),
+                        worst(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
+  }
+  return largest;
+}
+
+double check_golden_example(const std::string& file, const NetworkParameters& parameters,
+                            const GoldenExample& golden) {
+  if (parameters.wiring == Wiring{}) return check_golden_example(file, Network(parameters), golden);
+  double largest = 0.0;
+  PlainNetwork network(parameters);
+  for (int k = 0; k < kGoldenSteps; ++k) {
+    const auto output =
+        network.step(&golden.observation[k * kObservationSize], insight_at(golden, k));
     largest = std::max({largest, worst(file, k, "action", output.action, golden.action),
                         worst(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
   }

@@ -19,6 +19,7 @@ struct GoldenExample {
   std::vector<float> observation;   ///< (kGoldenSteps, kObservationSize), raw
   std::vector<float> action;        ///< (kGoldenSteps, kNumJoints), the actor's output
   std::vector<float> estimate_raw;  ///< (kGoldenSteps, kEstimateSize), the estimator's output
+  std::vector<float> insight;       ///< (kGoldenSteps, kInsightSize), if a network sees it
 };
 
 /// Observations spread around the mean as the variance says, some beyond the clip, with the outputs
@@ -29,6 +30,10 @@ GoldenExample make_golden_example(const NetworkParameters& parameters);
 /// max(1, |expected output|). Throws InputError ("<file>: golden example fails at step ...") if it
 /// exceeds kGoldenTolerance.
 double check_golden_example(const std::string& file, const Network& network,
+                            const GoldenExample& golden);
+/// The same with the network of these parameters; in double precision where `Network` does not run
+/// it.
+double check_golden_example(const std::string& file, const NetworkParameters& parameters,
                             const GoldenExample& golden);
 
 }  // namespace sandrunner

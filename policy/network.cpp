@@ -99,6 +99,10 @@ struct alignas(64) Network::PackedWeights {
 };
 
 Network::Network(const NetworkParameters& parameters) {
+  if (!(parameters.wiring == Wiring{})) {
+    throw InputError(fmt::format("network: found networks wired as '{}', expected '{}'",
+                                 wiring_text(parameters.wiring), wiring_text({})));
+  }
   check_sizes(parameters);
   static_assert(sizeof(PackedWeights) <= kHugePageBytes);
   const std::shared_ptr<PackedWeights> weights(

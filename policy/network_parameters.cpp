@@ -12,27 +12,60 @@ std::size_t NamedTensor::size() const {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
+std::array<int, 4> actor_sizes(const ActorInputs& sees) {
+  std::array<int, 4> sizes = kActorSizes;
+  sizes[0] = kCommandSize + (sees.encoding ? kHiddenSize : 0) +
+             (sees.estimate ? kEstimateSize : 0) + (sees.proprioception ? kEncoderInputSize : 0) +
+             (sees.terrain ? kTerrainSize : 0);
+  return sizes;
+}
+
 std::vector<NamedTensor> tensors_of(NetworkParameters& parameters) {
-  constexpr std::size_t kGateRows = 4 * kHiddenSize;
   std::vector<NamedTensor> tensors = {
       {"observation.mean", {kObservationSize}, &parameters.observation_mean},
-      {"observation.variance", {kObservationSize}, &parameters.observation_variance},
-      {"encoder.weight_ih", {kGateRows, kEncoderInputSize}, &parameters.encoder_weight_ih},
-      {"encoder.weight_hh", {kGateRows, kHiddenSize}, &parameters.encoder_weight_hh},
-      {"encoder.bias_ih", {kGateRows}, &parameters.encoder_bias_ih},
-      {"encoder.bias_hh", {kGateRows}, &parameters.encoder_bias_hh}};
-  const auto add_layers = [&tensors](const std::string& prefix, const std::array<int, 4>& sizes,
-                                     std::array<DenseParameters, 3>& layers) {
+      {"observation.variance", {kObservationSize}, &parameters.observation_variance}};
+  const auto add_layer = [&](const std::string& name, int inputs, int outputs,
+                             DenseParameters& layer) {
+    const auto rows = static_cast<std::size_t>(outputs);
+    tensors.push_back({name + ".weight", {rows, static_cast<std::size_t>(inputs)}, &layer.weight});
+    tensors.push_back({name + ".bias", {rows}, &layer.bias});
+  };
+  const auto add_layers = [&](const std::string& prefix, const auto& sizes, auto& layers) {
     for (std::size_t k = 0; k < layers.size(); ++k) {
-      const auto inputs = static_cast<std::size_t>(sizes[k]);
-      const auto outputs = static_cast<std::size_t>(sizes[k + 1]);
-      const std::string layer = fmt::format("{}.{}", prefix, k);
-      tensors.push_back({layer + ".weight", {outputs, inputs}, &layers[k].weight});
-      tensors.push_back({layer + ".bias", {outputs}, &layers[k].bias});
+      add_layer(fmt::format("{}.{}", prefix, k), sizes[k], sizes[k + 1], layers[k]);
     }
   };
+  switch (parameters.wiring.encoder) {
+    case EncoderKind::kLstm: {
+      constexpr std::size_t kGateRows = 4 * kHiddenSize;
+      tensors.insert(
+          tensors.end(),
+          {{"encoder.weight_ih", {kGateRows, kEncoderInputSize}, &parameters.encoder_weight_ih},
+           {"encoder.weight_hh", {kGateRows, kHiddenSize}, &parameters.encoder_weight_hh},
+           {"encoder.bias_ih", {kGateRows}, &parameters.encoder_bias_ih},
+           {"encoder.bias_hh", {kGateRows}, &parameters.encoder_bias_hh}});
+      break;
+    }
+    case EncoderKind::kTcn: {
+      parameters.encoder.resize(kTcnDilations.size() + 1);
+      int inputs = kEncoderInputSize;
+      for (std::size_t k = 0; k < kTcnDilations.size(); ++k) {
+        add_layer(fmt::format("encoder.{}", k), kTcnTaps * inputs, kTcnChannels,
+                  parameters.encoder[k]);
+        inputs = kTcnChannels;
+      }
+      add_layer(fmt::format("encoder.{}", kTcnDilations.size()), inputs, kHiddenSize,
+                parameters.encoder.back());
+      break;
+    }
+    case EncoderKind::kInsight:
+      parameters.encoder.resize(2);
+      add_layers("encoder", std::array{kInsightSize, kInsightHidden, kHiddenSize},
+                 parameters.encoder);
+      break;
+  }
   add_layers("estimator", kEstimatorSizes, parameters.estimator);
-  add_layers("actor", kActorSizes, parameters.actor);
+  add_layers("actor", actor_sizes(parameters.wiring.actor_sees), parameters.actor);
   return tensors;
 }
 

@@ -11,12 +11,15 @@
 
 #include "policy/embedded.h"
 #include "policy/safetensors.h"
+#include "policy/study_file.h"
 #include "policy/text.h"
 
 namespace sandrunner {
 namespace {
 
 constexpr const char* kFormatVersion = "1";
+constexpr const char* kEncoderKey = "sandrunner.encoder";
+constexpr const char* kActorKey = "sandrunner.actor";
 constexpr double kLargestObservationClip = 1e6;
 constexpr double kLargestInEnvelope = 100.0;  // m/s, m/s^2, ...: beyond any robot
 constexpr std::string_view kProvenancePrefix = "provenance.";
@@ -153,10 +156,15 @@ struct OtherTensors {
   }
 };
 
-std::vector<NamedTensor> golden_tensors(GoldenExample& golden) {
-  return {{"golden.observation", {kGoldenSteps, kObservationSize}, &golden.observation},
-          {"golden.action", {kGoldenSteps, kNumJoints}, &golden.action},
-          {"golden.estimate", {kGoldenSteps, kEstimateSize}, &golden.estimate_raw}};
+std::vector<NamedTensor> golden_tensors(const Wiring& wiring, GoldenExample& golden) {
+  std::vector<NamedTensor> tensors = {
+      {"golden.observation", {kGoldenSteps, kObservationSize}, &golden.observation},
+      {"golden.action", {kGoldenSteps, kNumJoints}, &golden.action},
+      {"golden.estimate", {kGoldenSteps, kEstimateSize}, &golden.estimate_raw}};
+  if (wiring.sees_insight()) {
+    tensors.push_back({"golden.insight", {kGoldenSteps, kInsightSize}, &golden.insight});
+  }
+  return tensors;
 }
 
 /// Moves each of `wanted` out of `tensors`.
@@ -189,7 +197,7 @@ void take_tensors(const std::string& path, std::map<std::string, Tensor> tensors
   OtherTensors others;
   take(path, tensors_of(file.parameters), tensors);
   take(path, others.list(), tensors);
-  if (with_golden) take(path, golden_tensors(file.golden), tensors);
+  if (with_golden) take(path, golden_tensors(file.parameters.wiring, file.golden), tensors);
   if (!tensors.empty()) {
     fail_file(path, "unknown tensor '{}'", printable(tensors.begin()->first));
   }
@@ -199,28 +207,11 @@ void take_tensors(const std::string& path, std::map<std::string, Tensor> tensors
   std::copy_n(others.estimate_variance.begin(), kEstimateSize, file.spec.estimate_variance.begin());
 }
 
-PolicyFile decode(const std::string& path, TensorFile content) {
-  PolicyFile file;
-  file.spec = read_spec(path, kFormatVersion, content.metadata, file.parameters.observation_clip);
-  take_tensors(path, std::move(content.tensors), true, file);
-  check_golden_example(path, Network(file.parameters), file.golden);
-  return file;
-}
-
-}  // namespace
-
-PolicySpec read_spec(const std::string& path, const std::string& format,
-                     const std::map<std::string, std::string>& metadata, float& observation_clip) {
-  Metadata values(path, metadata);
-  if (!values.contains("sandrunner.format")) {
-    fail_file(path,
-              "not a policy file: metadata key 'sandrunner.format' is missing "
-              "('sandrunner-policy import' takes bare weights)");
-  }
-  values.expect("sandrunner.format", format);
+void read_spec(Metadata& values, const std::string& path, PolicyFile& file) {
+  values.expect("sandrunner.format", kFormatVersion);
   values.expect("sandrunner.policy_hz", std::to_string(kPolicyHz));
   values.expect("sandrunner.control_hz", std::to_string(kControlHz));
-  PolicySpec spec;
+  PolicySpec& spec = file.spec;
   spec.name = values.text("sandrunner.name");
   spec.joint_names = values.joint_names("sandrunner.joint_names");
   spec.nominal_position_rad = values.joint_numbers("sandrunner.nominal_position_rad");
@@ -237,7 +228,7 @@ PolicySpec read_spec(const std::string& path, const std::string& format,
     fail_file(path, "metadata 'sandrunner.observation_clip' is {}, expected at most {}", clip,
               kLargestObservationClip);
   }
-  observation_clip = static_cast<float>(clip);
+  file.parameters.observation_clip = static_cast<float>(clip);
   spec.has_envelope =
       std::any_of(std::begin(kEnvelopeKeys), std::end(kEnvelopeKeys),
                   [&](const EnvelopeKey& key) { return values.contains(key.name); });
@@ -247,16 +238,56 @@ PolicySpec read_spec(const std::string& path, const std::string& format,
     }
   }
   spec.provenance = values.provenance();
-  values.expect_empty();
-  return spec;
 }
 
-std::map<std::string, std::string> write_spec(const std::string& format, const PolicySpec& spec,
-                                              float observation_clip) {
+Wiring read_wiring(Metadata& values, const std::string& path) {
+  const auto key = [&](const char* name) { return fmt::format("'{}': metadata '{}'", path, name); };
+  Wiring wiring;
+  if (values.contains(kEncoderKey)) {
+    wiring.encoder = parse_encoder(key(kEncoderKey), values.text(kEncoderKey));
+  }
+  if (values.contains(kActorKey)) {
+    wiring.actor_sees = parse_actor_inputs(key(kActorKey), values.text(kActorKey));
+  }
+  return wiring;
+}
+
+PolicyFile decode(const std::string& path, TensorFile content) {
+  if (!content.metadata.contains("sandrunner.format")) {
+    fail_file(path,
+              "not a policy file: metadata key 'sandrunner.format' is missing "
+              "('sandrunner-policy import' takes bare weights)");
+  }
+  renew_study_file(path, content);
+  PolicyFile file;
+  Metadata values(path, std::move(content.metadata));
+  read_spec(values, path, file);
+  file.parameters.wiring = read_wiring(values, path);
+  values.expect_empty();
+  take_tensors(path, std::move(content.tensors), true, file);
+  check_golden_example(path, file.parameters, file.golden);
+  return file;
+}
+
+Policy make_policy(const std::string& path, PolicyFile file) {
+  const Wiring& wiring = file.parameters.wiring;
+  if (wiring.sees_insight()) {
+    fail_file(path, "found a network that needs what no robot can sense ({}), expected a policy",
+              wiring_text(wiring));
+  }
+  if (!(wiring == Wiring{})) {
+    fail_file(path, "found networks wired as '{}', expected '{}'", wiring_text(wiring),
+              wiring_text({}));
+  }
+  return {std::move(file.spec), Network(file.parameters)};
+}
+
+std::map<std::string, std::string> metadata_of(const PolicyFile& file) {
   // fmt writes the shortest text that reads back as the same number.
   const auto text = [](auto value) { return fmt::format("{}", value); };
+  const PolicySpec& spec = file.spec;
   std::map<std::string, std::string> metadata = {
-      {"sandrunner.format", format},
+      {"sandrunner.format", kFormatVersion},
       {"sandrunner.name", spec.name},
       {"sandrunner.joint_names", joined(spec.joint_names, ",")},
       {"sandrunner.policy_hz", text(kPolicyHz)},
@@ -268,7 +299,12 @@ std::map<std::string, std::string> write_spec(const std::string& format, const P
       {"sandrunner.kd_nmsprad", text(spec.kd_nmsprad)},
       {"sandrunner.torque_limit_nm", text(spec.torque_limit_nm)},
       {"sandrunner.yaw_command_clip_mps2", text(spec.yaw_command_clip_mps2)},
-      {"sandrunner.observation_clip", text(observation_clip)}};
+      {"sandrunner.observation_clip", text(file.parameters.observation_clip)}};
+  const Wiring& wiring = file.parameters.wiring;
+  if (!(wiring == Wiring{})) {
+    metadata[kEncoderKey] = encoder_text(wiring.encoder);
+    metadata[kActorKey] = actor_inputs_text(wiring.actor_sees);
+  }
   if (spec.has_envelope) {
     for (const EnvelopeKey& key : kEnvelopeKeys) {
       metadata[key.name] = text(spec.envelope.*key.value);
@@ -280,6 +316,8 @@ std::map<std::string, std::string> write_spec(const std::string& format, const P
   return metadata;
 }
 
+}  // namespace
+
 PolicyFile read_policy_file(const std::string& path) {
   return decode(path, read_safetensors(path));
 }
@@ -288,14 +326,10 @@ PolicyFile parse_policy_file(std::string_view content, const std::string& name) 
   return decode(name, parse_safetensors(content, name));
 }
 
-Policy load_policy(const std::string& path) {
-  PolicyFile file = read_policy_file(path);
-  return {std::move(file.spec), Network(file.parameters)};
-}
+Policy load_policy(const std::string& path) { return make_policy(path, read_policy_file(path)); }
 
 Policy load_policy_text(std::string_view content, const std::string& name) {
-  PolicyFile file = parse_policy_file(content, name);
-  return {std::move(file.spec), Network(file.parameters)};
+  return make_policy(name, parse_policy_file(content, name));
 }
 
 std::string_view shipped_policy_text(const std::string& robot) {
@@ -311,9 +345,9 @@ void write_policy_file(const std::string& path, const PolicyFile& file) {
   OtherTensors others{{file.spec.estimate_mean.begin(), file.spec.estimate_mean.end()},
                       {file.spec.estimate_variance.begin(), file.spec.estimate_variance.end()}};
   TensorFile content;
-  content.metadata = write_spec(kFormatVersion, file.spec, file.parameters.observation_clip);
-  for (const auto& list :
-       {tensors_of(copy.parameters), others.list(), golden_tensors(copy.golden)}) {
+  content.metadata = metadata_of(file);
+  for (const auto& list : {tensors_of(copy.parameters), others.list(),
+                           golden_tensors(file.parameters.wiring, copy.golden)}) {
     for (const NamedTensor& tensor : list) {
       if (tensor.values->size() != tensor.size()) {
         fail_file(path, "tensor '{}' has {} values, expected {}", tensor.name,

@@ -3,7 +3,6 @@
 // golden example. README.md of this folder defines the format.
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -26,7 +25,8 @@ PolicyFile read_policy_file(const std::string& path);
 /// The same from the bytes of a file; `name` stands for it in errors.
 PolicyFile parse_policy_file(std::string_view content, const std::string& name);
 
-/// The policy of a file, ready to run. Errors as read_policy_file.
+/// The policy of a file, ready to run. Errors as read_policy_file, and for a network that needs
+/// what a robot cannot sense.
 Policy load_policy(const std::string& path);
 /// The policy in the bytes of a file; `name` stands for it in errors.
 Policy load_policy_text(std::string_view content, const std::string& name);
@@ -39,13 +39,6 @@ std::string_view shipped_policy_text(const std::string& robot = "raibo");
 /// Checks `file` as read_policy_file would, then writes it; `path` is whole or untouched. Throws
 /// InputError.
 void write_policy_file(const std::string& path, const PolicyFile& file);
-
-/// The metadata of a file and the spec that they hold. `format` is the name of the file's format: a
-/// policy's is "1". Throw InputError.
-PolicySpec read_spec(const std::string& path, const std::string& format,
-                     const std::map<std::string, std::string>& metadata, float& observation_clip);
-std::map<std::string, std::string> write_spec(const std::string& format, const PolicySpec& spec,
-                                              float observation_clip);
 
 /// Reads the layout in which others publish such networks: the same tensors without a golden
 /// example; whatever metadata they have becomes the provenance. The rest of the result is left at

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <functional>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "policy/safetensors.h"
 #include "rt/base/errors.h"
@@ -72,6 +75,89 @@ TEST_F(PolicyFileTest, ReadsBackWhatItWrote) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(*found[i].values, *expected[i].values) << expected[i].name;
   }
+}
+
+const Wiring kTcn = {EncoderKind::kTcn, {}};
+const Wiring kTeacher = {EncoderKind::kInsight, {true, false, true, false}};
+const Wiring kOracle = {EncoderKind::kLstm, {false, true, true, true}};
+
+class WiringTest : public PolicyFileTest, public testing::WithParamInterface<Wiring> {};
+
+INSTANTIATE_TEST_SUITE_P(Wirings, WiringTest, testing::Values(Wiring{}, kTcn, kTeacher, kOracle),
+                         [](const auto& test) { return "Wiring" + std::to_string(test.index); });
+
+TEST_P(WiringTest, IsReadBackWithAllTensors) {
+  PolicyFile file = random_policy_file(3, GetParam());
+  write_policy_file(path_, file);
+  PolicyFile again = read_policy_file(path_);
+  EXPECT_EQ(wiring_text(again.parameters.wiring), wiring_text(GetParam()));
+  const auto expected = tensors_of(file.parameters);
+  const auto found = tensors_of(again.parameters);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(*found[i].values, *expected[i].values) << expected[i].name;
+  }
+}
+
+TEST_P(WiringTest, ChangedWeightFailsTheGoldenExample) {
+  write_policy_file(path_, random_policy_file(3, GetParam()));
+  expect_refused_after(
+      [](TensorFile& f) {
+        for (float& weight : f.tensors.at("actor.1.weight").values) weight *= 1.01f;
+      },
+      "golden example fails at step 0: action[");
+}
+
+TEST_F(PolicyFileTest, NamesItsWiringOnlyIfThatIsNotTheUsualOne) {
+  EXPECT_FALSE(read_safetensors(path_).metadata.contains("sandrunner.encoder"));
+  write_policy_file(path_, random_policy_file(1, kOracle));
+  const auto metadata = read_safetensors(path_).metadata;
+  EXPECT_EQ(metadata.at("sandrunner.encoder"), "lstm");
+  EXPECT_EQ(metadata.at("sandrunner.actor"), "estimate, proprioception, terrain");
+}
+
+TEST_F(PolicyFileTest, RefusesAnUnknownWiring) {
+  expect_refused_with("sandrunner.encoder", "gru",
+                      "metadata 'sandrunner.encoder': found 'gru', expected one of lstm, tcn");
+  expect_refused_with("sandrunner.actor", "smell",
+                      "metadata 'sandrunner.actor': found 'smell', expected some of encoding");
+  expect_refused_with("sandrunner.encoder", "tcn", "tensor 'encoder.0.weight' is missing");
+}
+
+TEST_F(PolicyFileTest, OfANetworkThatNeedsWhatNoRobotCanSenseMakesNoPolicy) {
+  for (const Wiring& wiring : {kTeacher, kOracle}) {
+    write_policy_file(path_, random_policy_file(1, wiring));
+    expect_refused(path_, "needs what no robot can sense (" + wiring_text(wiring) + ")");
+  }
+}
+
+TEST_F(PolicyFileTest, FilesOfTheFormatStudy1AreReadAndNewlyWritten) {
+  int found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SANDRUNNER_STUDY_TRAINED)) {
+    if (entry.path().extension() != ".safetensors") continue;
+    const TensorFile old = read_safetensors(entry.path());
+    if (old.metadata.at("sandrunner.format") != "study 1") continue;
+    ++found;
+    PolicyFile file = read_policy_file(entry.path());
+    file.golden = make_golden_example(file.parameters);
+    write_policy_file(path_, file);
+    const TensorFile now = read_safetensors(path_);
+    EXPECT_EQ(now.metadata.at("sandrunner.format"), "1");
+    for (const auto& [name, tensor] : old.tensors) {
+      if (name == "encoder" || name.starts_with("golden.")) continue;
+      EXPECT_EQ(tensor.values, now.tensors.at(name).values) << entry.path() << name;
+    }
+    if (!old.tensors.contains("encoder")) continue;
+    const std::vector<float>& row = old.tensors.at("encoder").values;  // [ih | bias | hh]
+    EXPECT_EQ(now.tensors.at("encoder.weight_ih").values[1], row[1]);
+    EXPECT_EQ(now.tensors.at("encoder.bias_ih").values[0], row[30]);
+    EXPECT_EQ(now.tensors.at("encoder.weight_hh").values[2], row[33]);
+  }
+  EXPECT_EQ(found, 7);
+}
+
+TEST_F(PolicyFileTest, OfTheFormatStudy1WithoutSettingsIsRefused) {
+  expect_refused_with("sandrunner.format", "study 1", "'provenance.config' is missing");
 }
 
 TEST_F(PolicyFileTest, LoadedPolicyStepsAsTheOneThatWasWritten) {

@@ -35,8 +35,9 @@ class RandomFloats {
 };
 
 /// Weights of a size that keeps the layers' outputs near 1; normalisation about 0 +- 1 with clip 3.
-inline PolicyFile random_policy_file(std::uint64_t seed = 1) {
+inline PolicyFile random_policy_file(std::uint64_t seed = 1, const Wiring& wiring = {}) {
   PolicyFile file;
+  file.parameters.wiring = wiring;
   RandomFloats random(seed);
   for (const NamedTensor& tensor : tensors_of(file.parameters)) {
     const float scale = 2.0f / std::sqrt(static_cast<float>(tensor.shape.back()));

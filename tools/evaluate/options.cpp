@@ -33,9 +33,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "commands and disturbances.",
       "sandrunner-evaluate"};
   app.option_defaults()->always_capture_default();
-  app.add_option("--policy", o.policy_path, "policy file, or a study model")
-      ->type_name("FILE")
-      ->required();
+  app.add_option("--policy", o.policy_path, "policy file")->type_name("FILE")->required();
   app.add_option("--against", o.against_path, "second policy file, to compare with")
       ->type_name("FILE");
   app.add_option("--robot", o.robot,

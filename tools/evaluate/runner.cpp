@@ -239,12 +239,13 @@ class PackRun {
 }  // namespace
 
 Subject load_subject(const std::string& path) {
-  if (!train::is_study_model(path)) return load_policy(path);
-  train::StudyModelFile file = train::read_study_model(path);
-  if (file.sizes.see_insight()) {
+  PolicyFile file = read_policy_file(path);
+  const Wiring& wiring = file.parameters.wiring;
+  if (wiring == Wiring{}) return Policy(std::move(file.spec), Network(file.parameters));
+  if (wiring.sees_insight()) {
     throw InputError(fmt::format(
-        "'{}': found a study model wired as '{}', expected one that sees what sensors measure",
-        path, learner::wiring_text(file.sizes.encoder, file.sizes.actor_sees)));
+        "'{}': found networks wired as '{}', expected some that see what sensors measure",
+        path, wiring_text(wiring)));
   }
   return train::StudyModel(std::move(file));
 }

@@ -19,7 +19,7 @@ namespace sandrunner::evaluate {
 /// What is measured: a policy, or a network that only a study has.
 using Subject = std::variant<Policy, train::StudyModel>;
 
-/// The subject of a file. Throws InputError, also for a study model that sees what no sensor
+/// The subject of a file. Throws InputError, also for a network that sees what no sensor
 /// measures.
 Subject load_subject(const std::string& path);
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "policy/policy_file.h"
 #include "policy/text.h"
@@ -63,18 +64,32 @@ std::size_t number_of_parameters(NetworkParameters parameters) {
   return count - 2 * kObservationSize;  // the normalisation is not trained
 }
 
+/// The encoder's kind and the widths of its layers.
+std::string encoder_summary(const NetworkParameters& parameters) {
+  if (parameters.wiring.encoder == EncoderKind::kLstm) {
+    return fmt::format("LSTM {}-{}", kEncoderInputSize, kHiddenSize);
+  }
+  std::vector<std::size_t> widths;
+  for (const DenseParameters& layer : parameters.encoder) widths.push_back(layer.bias.size());
+  return encoder_text(parameters.wiring.encoder) + " " + joined(widths, "-");
+}
+
 void print_info(const std::string& path) {
   const PolicyFile file = read_policy_file(path);
   const PolicySpec& spec = file.spec;
-  const double deviation = check_golden_example(path, Network(file.parameters), file.golden);
+  const double deviation = check_golden_example(path, file.parameters, file.golden);
 
   const auto row = [](const char* label, const std::string& text) {
     fmt::print("{:<20}{}\n", label, text);
   };
   row("name", printable(spec.name));
-  row("network", fmt::format("LSTM {}-{}, estimator {}, actor {}; {} parameters", kEncoderInputSize,
-                             kHiddenSize, joined(kEstimatorSizes, "-"), joined(kActorSizes, "-"),
-                             number_of_parameters(file.parameters)));
+  const Wiring& wiring = file.parameters.wiring;
+  row("network",
+      fmt::format("{}, estimator {}, actor {}; {} parameters", encoder_summary(file.parameters),
+                  joined(kEstimatorSizes, "-"), joined(actor_sizes(wiring.actor_sees), "-"),
+                  number_of_parameters(file.parameters)));
+  row("actor sees", "command, " + actor_inputs_text(wiring.actor_sees) +
+                        (wiring.sees_insight() ? "; no robot can sense what it needs" : ""));
   row("observation", fmt::format("{} values, normalised, limited to +-{}", kObservationSize,
                                  file.parameters.observation_clip));
   row("rates", fmt::format("policy {} Hz, control {} Hz", kPolicyHz, kControlHz));

@@ -8,6 +8,7 @@
 #include "tools/python/bind.h"
 #include "tools/python/environments.h"
 #include "tools/train/policy_spec.h"
+#include "tools/train/task/leg_modes.h"
 
 namespace sandrunner::python {
 namespace {

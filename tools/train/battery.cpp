@@ -61,7 +61,7 @@ Battery::Battery(const BatterySettings& settings, const TaskConfig& training, in
       steps_(static_cast<int>(std::lround(settings.duration_s * kPolicyHz))),
       task_(without_randomness(training), robot, {whole_blocks(runs_.size()), kBlock}, kSeed),
       rollout_({whole_blocks(runs_.size()), 1, Task::privileged_size(),
-                layout.sizes().see_insight() ? learner::kInsightSize : 0},
+                layout.sizes().wiring.sees_insight() ? kInsightSize : 0},
                layout.memory()),
       weights_(layout),
       pool_(pool),

@@ -34,7 +34,7 @@ void print_end(const std::string& out, const std::string& robot, bool are_a_robo
     const std::string of_robot = robot == kDefaultRobot ? "" : "--robot " + robot + " ";
     fmt::print("wrote {}: run it with sandrunner {}--policy {}\n", out, of_robot, policy);
   } else {
-    fmt::print("wrote {}: no robot runs {}, a study model\n", out, policy);
+    fmt::print("wrote {}: no robot runs the networks of {}\n", out, policy);
   }
   if (interrupted) fmt::print("interrupted: go on with the same command and --resume\n");
 }
@@ -106,7 +106,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
                  "robot")
       ->type_name("FILE");
   app.add_option("--judge", a.judged_file,
-                 "run the battery of these settings with a policy file or study model, and end")
+                 "run the battery of these settings with a policy file, and end")
       ->type_name("FILE");
   app.add_flag("--explain", a.explain, "say what the lines of progress mean, and end");
   app.footer(
@@ -154,7 +154,7 @@ int run(const Arguments& a) {
   fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
   std::fflush(stdout);
   training.run(interrupted);
-  print_end(out, a.robot_name, config.learner.network.are_a_robots());
+  print_end(out, a.robot_name, config.learner.network.wiring == Wiring{});
   return kExitOk;
 }
 

@@ -2,9 +2,6 @@
 #include "tools/train/policy_spec.h"
 
 #include <algorithm>
-#include <vector>
-
-#include "tools/train/task/leg_modes.h"
 
 namespace sandrunner::train {
 
@@ -41,23 +38,6 @@ void set_normalisation(const InputScales& scales, NetworkParameters& parameters)
   parameters.observation_variance.clear();
   for (const float d : scales.inverse_deviation) {
     parameters.observation_variance.push_back(1.0f / (d * d) - 1e-8f);  // the network adds 1e-8
-  }
-}
-
-void answer_in_joints(const std::array<double, kNumLegs>& mode_gain,
-                      NetworkParameters& parameters) {
-  DenseParameters& last = parameters.actor.back();
-  for (std::vector<float>* rows : {&last.weight, &last.bias}) {
-    const std::vector<float> modes = *rows;
-    joints_from_modes(mode_gain, modes.data(), modes.size() / kNumJoints, rows->data());
-  }
-}
-
-void answer_in_modes(const std::array<double, kNumLegs>& mode_gain, NetworkParameters& parameters) {
-  DenseParameters& last = parameters.actor.back();
-  for (std::vector<float>* rows : {&last.weight, &last.bias}) {
-    const std::vector<float> joints = *rows;
-    modes_from_joints(mode_gain, joints.data(), joints.size() / kNumJoints, rows->data());
   }
 }
 

@@ -3,8 +3,6 @@
 // another with our environments.
 #pragma once
 
-#include <array>
-
 #include "policy/policy.h"
 #include "sim/robot/robot_model.h"
 #include "tools/train/task/normalise.h"
@@ -18,10 +16,5 @@ PolicySpec policy_spec(const TaskConfig& config, const sim::Robot& robot, const 
 
 /// The normalisation of observations, so that the network sees what it saw in the task.
 void set_normalisation(const InputScales& scales, NetworkParameters& parameters);
-
-/// Turns a network that answers in the modes of leg_modes.h into one that answers in joints.
-void answer_in_joints(const std::array<double, kNumLegs>& mode_gain, NetworkParameters& parameters);
-/// The way back.
-void answer_in_modes(const std::array<double, kNumLegs>& mode_gain, NetworkParameters& parameters);
 
 }  // namespace sandrunner::train

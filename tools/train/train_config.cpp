@@ -109,8 +109,8 @@ void read_wiring(ConfigTree& config, TrainConfig& c) {
     return config.text(key, "");
   };
   learner::NetworkSizes& network = c.learner.network;
-  network.encoder = learner::parse_encoder("network.encoder", text("network.encoder"));
-  network.actor_sees = learner::parse_actor_inputs("network.actor", text("network.actor"));
+  network.wiring.encoder = parse_encoder("network.encoder", text("network.encoder"));
+  network.wiring.actor_sees = parse_actor_inputs("network.actor", text("network.actor"));
   c.teacher = text("imitation.teacher");
   if (c.teacher.empty()) return;
   c.learner.loss.policy_weight = 0.0;

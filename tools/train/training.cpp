@@ -57,7 +57,7 @@ learner::RolloutShape rollout_shape(const TrainConfig& config) {
   shape.steps = config.window;
   shape.privileged = Task::privileged_size();
   const bool imitates = !config.teacher.empty();
-  shape.insight = imitates || config.learner.network.see_insight() ? learner::kInsightSize : 0;
+  shape.insight = imitates || config.learner.network.wiring.sees_insight() ? kInsightSize : 0;
   shape.teacher = imitates ? config.learner.network.hidden : 0;
   return shape;
 }
@@ -206,15 +206,17 @@ void Training::save() {
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
   const Snapshot now = snapshot();
-  write_network(options_.out + "/policy.safetensors", policy_spec(now), learner_.averaged());
+  write_policy_file(options_.out + "/policy.safetensors",
+                    policy_file(policy_spec(now), learner_.averaged()));
   if (!best_is_written_) {
     PolicySpec best = policy_spec(best_);
     best.provenance["battery"] = Progress::summary(best_.battery);
-    write_network(options_.out + "/best.safetensors", std::move(best), best_parameters_);
+    write_policy_file(options_.out + "/best.safetensors",
+                      policy_file(std::move(best), best_parameters_));
     best_is_written_ = true;
   }
   progress_.write(options_.out);
-  if (config_.learner.network.are_a_robots()) {
+  if (config_.learner.network.wiring == Wiring{}) {
     const PolicyFile policy = policy_file(policy_spec(now), learner_.averaged());
     pool_.run(1, [&](int, int) {
       write_file(options_.out + "/curve.html",

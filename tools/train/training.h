@@ -11,7 +11,7 @@
 #include "sim/robot/robot_model.h"
 #include "tools/train/battery.h"
 #include "tools/train/learner/learner.h"
-#include "tools/train/model/model_file.h"
+#include "tools/train/model/task_network.h"
 #include "tools/train/penalty_gate.h"
 #include "tools/train/progress.h"
 #include "tools/train/task/task.h"
@@ -71,9 +71,6 @@ class Training {
                        double simulation_s, double total_s) const;
   PolicySpec policy_spec(const Snapshot& snapshot) const;
   PolicyFile policy_file(PolicySpec spec, const std::vector<float>& parameters) const;
-  StudyModelFile study_model(PolicySpec spec, const std::vector<float>& parameters) const;
-  void write_network(const std::string& path, PolicySpec spec,
-                     const std::vector<float>& parameters) const;
 
   TrainConfig config_;
   sim::Robot robot_;

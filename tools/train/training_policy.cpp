@@ -6,31 +6,19 @@
 
 #include "rt/base/errors.h"
 #include "tools/train/policy_spec.h"
+#include "tools/train/task/leg_modes.h"
 #include "tools/train/training.h"
 
 namespace sandrunner::train {
-namespace {
-
-/// As files have them.
-ObservationScales observation_scales(const InputScales& scales) {
-  NetworkParameters p;
-  set_normalisation(scales, p);
-  return {p.observation_mean, p.observation_variance, p.observation_clip};
-}
-
-}  // namespace
-
 void Training::go_on_from(PolicyFile policy) {
-  const learner::NetworkSizes& network = config_.learner.network;
-  if (!network.are_a_robots()) {
-    throw InputError(fmt::format(
-        "--from: found networks wired as '{}', expected '{}': those of a "
-        "policy file",
-        learner::wiring_text(network.encoder, network.actor_sees), learner::wiring_text({}, {})));
+  const Wiring& wiring = config_.learner.network.wiring;
+  if (!(policy.parameters.wiring == wiring)) {
+    throw InputError(
+        fmt::format("--from: found networks wired as '{}', expected '{}', as the "
+                    "training's",
+                    wiring_text(policy.parameters.wiring), wiring_text(wiring)));
   }
-  const NetworkParameters& p = policy.parameters;
-  require_scales(policy.spec, {p.observation_mean, p.observation_variance, p.observation_clip},
-                 config_.task.policy, task_.scales());
+  require_scales(policy.spec, scales_of(policy.parameters), config_.task.policy, task_.scales());
   answer_in_modes(config_.task.policy.mode_gain, policy.parameters);
   learner_.set_policy(policy.parameters);
   origin_ = fmt::format("sandrunner-train, from the weights of policy '{}'", policy.spec.name);
@@ -70,24 +58,6 @@ PolicyFile Training::policy_file(PolicySpec spec, const std::vector<float>& para
   answer_in_joints(config_.task.policy.mode_gain, p);
   file.golden = make_golden_example(p);
   return file;
-}
-
-StudyModelFile Training::study_model(PolicySpec spec, const std::vector<float>& parameters) const {
-  StudyModelFile file;
-  file.spec = std::move(spec);
-  file.sizes = config_.learner.network;
-  file.scales = observation_scales(task_.scales());
-  set_trained(parameters, config_.task.policy.mode_gain, file);
-  return file;
-}
-
-void Training::write_network(const std::string& path, PolicySpec spec,
-                             const std::vector<float>& parameters) const {
-  if (config_.learner.network.are_a_robots()) {
-    write_policy_file(path, policy_file(std::move(spec), parameters));
-  } else {
-    write_study_model(path, study_model(std::move(spec), parameters));
-  }
 }
 
 }  // namespace sandrunner::train

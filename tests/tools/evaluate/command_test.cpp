@@ -7,7 +7,6 @@
 #include "tests/policy/random_policy.h"
 #include "tests/support/program_test.h"
 #include "tests/support/small_robot.h"
-#include "tools/train/model/model_file.h"
 
 namespace sandrunner {
 namespace {
@@ -17,19 +16,10 @@ class EvaluateCommandTest : public ProgramTest {
   EvaluateCommandTest() : ProgramTest(SANDRUNNER_EVALUATE_PROGRAM) {
     write_policy_file(folder_.path("p"), random_policy_file());
   }
-  void write_study_model(const std::string& name, const std::string& actor) const {
-    const PolicyFile policy = random_policy_file();
-    train::StudyModelFile file;
-    file.spec = policy.spec;
-    file.spec.provenance = {
-        {"config", "network.encoder = \"lstm\"\nnetwork.actor = \"" + actor + "\"\n"}};
-    file.sizes.actor_sees = learner::parse_actor_inputs("actor", actor);
-    file.scales.mean = policy.parameters.observation_mean;
-    file.scales.variance = policy.parameters.observation_variance;
-    file.scales.clip = policy.parameters.observation_clip;
-    const learner::ParameterLayout layout = train::model_layout(file.sizes);
-    file.parameters = learner::initial_parameters(layout, 1, 0.5);
-    train::write_study_model(folder_.path(name), file);
+  void write_model(const std::string& name, const std::string& actor) const {
+    write_policy_file(
+        folder_.path(name),
+        random_policy_file(1, {EncoderKind::kLstm, parse_actor_inputs("actor", actor)}));
   }
   std::string read(const std::string& name) const { return read_file(folder_.path(name)); }
 };
@@ -72,16 +62,16 @@ TEST_F(EvaluateCommandTest, WritesOnlyThePartsAskedFor) {
 }
 
 TEST_F(EvaluateCommandTest, MeasuresAStudyModelThatSeesWhatSensorsMeasure) {
-  write_study_model("s", "encoding, proprioception");
+  write_model("s", "encoding, proprioception");
   ASSERT_EQ(run("--policy s --against p --only turn --runs 1 --threads 1 --out one"), 0) << error();
   ASSERT_EQ(run("--policy s --against p --only turn --runs 1 --threads 3 --out three"), 0);
   EXPECT_EQ(read("one/turn.csv"), read("three/turn.csv"));
 }
 
 TEST_F(EvaluateCommandTest, RefusesAStudyModelThatSeesTheGround) {
-  write_study_model("s", "estimate, proprioception, terrain");
+  write_model("s", "estimate, proprioception, terrain");
   EXPECT_EQ(run("--policy s --only turn"), 2);
-  EXPECT_NE(error().find("found a study model wired as 'encoder lstm, actor sees estimate, "
+  EXPECT_NE(error().find("found networks wired as 'encoder lstm, actor sees estimate, "
                          "proprioception, terrain', expected"),
             std::string::npos)
       << error();

@@ -15,6 +15,7 @@
 #include "sim/robot/robot_model.h"
 #include "tools/train/learner/learner.h"
 #include "tools/train/policy_spec.h"
+#include "tools/train/task/leg_modes.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/task/task.h"
 #include "tools/train/train_config.h"

@@ -39,8 +39,8 @@ std::string wiring_of(const std::map<std::string, std::string>& settings) {
     const std::string& quoted = settings.at(key);
     return quoted.substr(1, quoted.size() - 2);
   };
-  return learner::wiring_text(learner::parse_encoder("encoder", text("network.encoder")),
-                              learner::parse_actor_inputs("actor", text("network.actor")));
+  return wiring_text({parse_encoder("encoder", text("network.encoder")),
+                      parse_actor_inputs("actor", text("network.actor"))});
 }
 
 TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListedAndIsWiredAsItsController) {

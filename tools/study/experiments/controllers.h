@@ -18,7 +18,7 @@ enum class ModelKind {
 struct Controller {
   const char* key;  ///< of its files and in results.json
   ModelKind kind;
-  const char* wiring = "encoder lstm, actor sees encoding, estimate";  ///< learner::wiring_text
+  const char* wiring = "encoder lstm, actor sees encoding, estimate";  ///< wiring_text
 };
 
 /// All of them, in the order of the tables.

@@ -51,7 +51,7 @@ FileName read_name(const std::filesystem::path& path) {
 }
 
 Model load_model(const FileName& name, const train::PolicySettings& task, const sim::Robot& robot) {
-  const std::string bytes = read_input_file(name.path, "a policy or a study model");
+  const std::string bytes = read_input_file(name.path, "a policy file");
   std::optional<evaluate::Subject> subject;
   if (name.controller->kind == ModelKind::kPolicy) {
     subject = load_policy_text(bytes, name.path);
@@ -60,7 +60,7 @@ Model load_model(const FileName& name, const train::PolicySettings& task, const 
   }
   train::TaskNetwork network = train::read_task_network(name.path, task.mode_gain);
   const learner::NetworkSizes& sizes = network.layout.sizes();
-  const std::string wiring = learner::wiring_text(sizes.encoder, sizes.actor_sees);
+  const std::string wiring = wiring_text(sizes.wiring);
   if (wiring != name.controller->wiring) {
     throw InputError(fmt::format("{}: found networks wired as '{}', expected '{}'", name.path,
                                  wiring, name.controller->wiring));

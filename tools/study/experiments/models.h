@@ -11,7 +11,7 @@
 #include "sim/robot/robot_model.h"
 #include "tools/evaluate/runner.h"
 #include "tools/study/experiments/controllers.h"
-#include "tools/train/model/model_file.h"
+#include "tools/train/model/task_network.h"
 
 namespace sandrunner::study {
 
@@ -32,7 +32,7 @@ std::uint64_t hash_of(std::string_view bytes);
 
 /// The models of `folder` with these seeds (none: all seeds), by controller, then seed. Throws
 /// InputError if there is none, if a file's name is not that of a controller with a seed, if a file
-/// is neither a policy nor a study model of a training of `robot`, or if its networks are not wired
+/// is no policy file of a training of `robot`, or if its networks are not wired
 /// as those of its controller.
 std::vector<Model> load_models(const std::string& folder, const std::vector<int>& seeds,
                                const sim::Robot& robot);

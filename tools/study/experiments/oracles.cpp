@@ -103,14 +103,14 @@ std::vector<InputGroup> input_groups(const learner::ParameterLayout& layout) {
     if (seen) groups.push_back({name, first, count});
     if (seen) first += count;
   };
-  const learner::ActorInputs& sees = layout.sizes().actor_sees;
+  const ActorInputs& sees = layout.sizes().wiring.actor_sees;
   add(true, "cmd", kCommandSize);
   add(sees.encoding, "h", layout.hidden());
   add(sees.estimate, "e", kEstimateSize);
   add(sees.proprioception, "o", learner::kProprioceptionSize);
-  add(sees.terrain, "T", learner::kTerrainSize);
-  for (int i = 0; i < learner::kTerrainSize; ++i) {
-    groups.push_back({"", first - learner::kTerrainSize + i, 1});
+  add(sees.terrain, "T", kTerrainSize);
+  for (int i = 0; i < kTerrainSize; ++i) {
+    groups.push_back({"", first - kTerrainSize + i, 1});
   }
   return groups;
 }
@@ -143,7 +143,7 @@ void add_bins(const States& states, const train::GroundSettings& ground,
               const Eigen::VectorXd& ablation, RunGroup& group) {
   const double low = std::log10(ground.sigma_flat_low / train::kUsualSigmaFlat_npm3);
   const double high = std::log10(ground.sigma_flat_high / train::kUsualSigmaFlat_npm3);
-  const Eigen::Index row = states.inputs.rows() - learner::kTerrainSize + kSigmaFlat;
+  const Eigen::Index row = states.inputs.rows() - kTerrainSize + kSigmaFlat;
   std::vector<std::vector<double>> values(kBins);
   for (Eigen::Index i = 0; i < ablation.size(); ++i) {
     const double share = (static_cast<double>(states.inputs(row, i)) - low) / (high - low);
@@ -161,8 +161,8 @@ void add_bins(const States& states, const train::GroundSettings& ground,
 
 // What is measured of each parameter of the ground.
 void add_parameters(const Attribution& a, std::size_t first_alone, RunGroup& group) {
-  const Eigen::Index first_input = a.reference.size() - learner::kTerrainSize;
-  for (int i = 0; i < learner::kTerrainSize; ++i) {
+  const Eigen::Index first_input = a.reference.size() - kTerrainSize;
+  for (int i = 0; i < kTerrainSize; ++i) {
     const Eigen::Index input = first_input + i;
     group.lists["deviation"].push_back(a.deviation[input]);
     group.lists["alone"].push_back(
@@ -188,7 +188,7 @@ Measured run_attribution(Lab& lab, const Model& model) {
       attribute(joint_actor(model.network, task.policy.mode_gain), states.inputs, groups, pool);
 
   RunGroup group{kGround, "", 0.0, {}, {}};
-  const std::size_t named = groups.size() - learner::kTerrainSize;
+  const std::size_t named = groups.size() - kTerrainSize;
   for (std::size_t g = 0; g < named; ++g) {
     group.runs[groups[g].name] =
         mean_of_blocks(states, a.ablation.row(static_cast<Eigen::Index>(g)));

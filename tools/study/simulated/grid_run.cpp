@@ -23,7 +23,7 @@ struct RobotSums {
 void add_feet(const TaskStep& s, int env, double foot_radius_m, ClearanceSums& sums) {
   const train::InputScales& scales = s.task.scales();
   constexpr int kFirstFoot = kEstimateSize - kNumLegs;
-  constexpr int kFirstLoad = learner::kTerrainSize + kEstimateSize;
+  constexpr int kFirstLoad = kTerrainSize + kEstimateSize;
   std::array<double, kNumLegs> height_m{};
   std::array<bool, kNumLegs> loaded{};
   for (int l = 0; l < kNumLegs; ++l) {

@@ -15,7 +15,7 @@ void run_on_task(const train::TaskNetwork& network, const TaskRun& run, const si
   train::Task task(run.task, robot, {run.envs, run.block_envs}, run.seed);
   task.set_curriculum({run.task.command.speed_max_mps, 1.0}, kTrainingDone_transitions, 1.0);
   task.restart(run.seed);  // draws again, with the curricula open
-  learner::Rollout rollout({run.envs, 1, train::Task::privileged_size(), learner::kInsightSize, 0},
+  learner::Rollout rollout({run.envs, 1, train::Task::privileged_size(), kInsightSize, 0},
                            network.layout.memory());
   learner::Weights<float> weights(network.layout);
   weights.set(network.parameters.data());

@@ -9,7 +9,7 @@
 
 #include "rt/base/worker_pool.h"
 #include "tools/train/learner/block_pass.h"
-#include "tools/train/model/model_file.h"
+#include "tools/train/model/task_network.h"
 #include "tools/train/task/task.h"
 
 namespace sandrunner::study {

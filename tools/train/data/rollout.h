@@ -8,15 +8,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "policy/wiring.h"
 #include "rt/core/messages.h"
 
 namespace sandrunner::learner {
-
-/// What only networks of a study see, which never run on a robot: the parameters of the ground
-/// under the base, ...
-inline constexpr int kTerrainSize = 10;
-/// ... and all that a teacher sees: [terrain | estimate without error | load of each foot].
-inline constexpr int kInsightSize = kTerrainSize + kEstimateSize + kNumLegs;
 
 struct RolloutShape {
   int envs = 0;        ///< environments

@@ -41,10 +41,12 @@ BlockPass<Scalar>::BlockPass(const ParameterLayout& layout, int steps, int envs,
       estimator_(layout.estimator(), chunk_steps * envs, kernels),
       actor_(layout.actor(), chunk_steps * envs, kernels),
       critic_(layout.critic(), chunk_steps * envs, kernels),
-      estimate_row_(kCommandSize + (layout.sizes().actor_sees.encoding ? layout.hidden() : 0)),
-      proprioception_row_(estimate_row_ + (layout.sizes().actor_sees.estimate ? kEstimateSize : 0)),
+      estimate_row_(kCommandSize +
+                    (layout.sizes().wiring.actor_sees.encoding ? layout.hidden() : 0)),
+      proprioception_row_(estimate_row_ +
+                          (layout.sizes().wiring.actor_sees.estimate ? kEstimateSize : 0)),
       terrain_row_(proprioception_row_ +
-                   (layout.sizes().actor_sees.proprioception ? kProprioceptionSize : 0)),
+                   (layout.sizes().wiring.actor_sees.proprioception ? kProprioceptionSize : 0)),
       actor_input_(layout.actor_inputs(), chunk_steps * envs),
       critic_input_(layout.privileged(), chunk_steps * envs),
       output_gradient_(layout.hidden(), steps * envs) {}
@@ -52,7 +54,7 @@ BlockPass<Scalar>::BlockPass(const ParameterLayout& layout, int steps, int envs,
 template <typename Scalar>
 typename BlockPass<Scalar>::Encoder BlockPass<Scalar>::make_encoder(
     const ParameterLayout& layout, int steps, int envs, const Kernels<Scalar>& kernels) {
-  switch (layout.sizes().encoder) {
+  switch (layout.sizes().wiring.encoder) {
     case EncoderKind::kTcn:
       return Tcn<Scalar>(layout, steps, envs, kernels);
     case EncoderKind::kInsight:
@@ -71,7 +73,7 @@ const Matrix<Scalar>& BlockPass<Scalar>::encoding() const {
 template <typename Scalar>
 void BlockPass<Scalar>::set_data(int first, const ConstMatrixRef<Scalar>& observation,
                                  const ConstMatrixRef<Scalar>& insight) {
-  const ActorInputs& sees = layout_.sizes().actor_sees;
+  const ActorInputs& sees = layout_.sizes().wiring.actor_sees;
   actor_input_.block(0, first, kCommandSize, envs_) = observation.topRows(kCommandSize);
   if (sees.proprioception) {
     actor_input_.block(proprioception_row_, first, kProprioceptionSize, envs_) =
@@ -85,7 +87,7 @@ void BlockPass<Scalar>::set_data(int first, const ConstMatrixRef<Scalar>& observ
 template <typename Scalar>
 template <typename Encoding, typename Estimate>
 void BlockPass<Scalar>::set_answers(const Encoding& h, const Estimate& estimate) {
-  const ActorInputs& sees = layout_.sizes().actor_sees;
+  const ActorInputs& sees = layout_.sizes().wiring.actor_sees;
   if (sees.encoding) actor_input_.block(kCommandSize, 0, h.rows(), h.cols()) = h;
   if (sees.estimate) {
     actor_input_.block(estimate_row_, 0, kEstimateSize, estimate.cols()) = estimate;
@@ -186,7 +188,7 @@ LossSums BlockPass<Scalar>::loss_and_gradient(const Weights<Scalar>& weights,
     estimator_.backward(weights.estimator(), encoding().middleCols(t * envs_, n), gradient);
     // Of the actor's inputs only h: others are data, the estimate is detached.
     auto dh = output_gradient_.middleCols(t * envs_, n);
-    if (layout_.sizes().actor_sees.encoding) actor_.add_input_gradient(weights.actor(), dh);
+    if (layout_.sizes().wiring.actor_sees.encoding) actor_.add_input_gradient(weights.actor(), dh);
     estimator_.add_input_gradient(weights.estimator(), dh);
   }
   std::visit(

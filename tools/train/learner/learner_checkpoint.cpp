@@ -21,11 +21,11 @@ std::string join(const std::vector<int>& widths) {
 
 std::string Learner::architecture() const {
   const NetworkSizes& network = config_.network;
-  return fmt::format(
-      "envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}{}",
-      rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged, network.hidden,
-      join(network.estimator), join(network.actor), join(network.critic),
-      network.are_a_robots() ? "" : ", " + wiring_text(network.encoder, network.actor_sees));
+  return fmt::format("envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}{}",
+                     rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged,
+                     network.hidden, join(network.estimator), join(network.actor),
+                     join(network.critic),
+                     network.wiring == Wiring{} ? "" : ", " + wiring_text(network.wiring));
 }
 
 void Learner::save(Checkpoint& checkpoint) const {

@@ -26,13 +26,13 @@ ParameterLayout::ParameterLayout(const NetworkSizes& sizes, int privileged)
 }
 
 int ParameterLayout::actor_inputs() const {
-  const ActorInputs& sees = sizes_.actor_sees;
+  const ActorInputs& sees = sizes_.wiring.actor_sees;
   return kCommandSize + (sees.encoding ? sizes_.hidden : 0) + (sees.estimate ? kEstimateSize : 0) +
          (sees.proprioception ? kProprioceptionSize : 0) + (sees.terrain ? kTerrainSize : 0);
 }
 
 int ParameterLayout::memory() const {
-  switch (sizes_.encoder) {
+  switch (sizes_.wiring.encoder) {
     case EncoderKind::kTcn:
       return kTcnPast * kProprioceptionSize + 1;
     case EncoderKind::kInsight:
@@ -45,7 +45,7 @@ int ParameterLayout::memory() const {
 
 void ParameterLayout::add_encoder() {
   const int hidden = sizes_.hidden;
-  switch (sizes_.encoder) {
+  switch (sizes_.wiring.encoder) {
     case EncoderKind::kLstm:
       encoder_ = add("encoder", 4 * hidden, kProprioceptionSize + 1 + hidden);
       break;
@@ -139,6 +139,20 @@ std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64
 
 void to_policy(const ParameterLayout& layout, const std::vector<float>& parameters,
                NetworkParameters& policy) {
+  policy.wiring = layout.sizes().wiring;
+  const auto layers = [&](const std::vector<LayerView>& from, auto& to) {
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      const float* const weight = parameters.data() + from[k].weight;
+      const float* const bias = parameters.data() + from[k].bias;
+      to[k].weight.assign(weight, weight + std::ptrdiff_t{from[k].outputs} * from[k].inputs);
+      to[k].bias.assign(bias, bias + from[k].outputs);
+    }
+  };
+  layers(layout.estimator(), policy.estimator);
+  layers(layout.actor(), policy.actor);
+  policy.encoder.resize(layout.encoder_layers().size());
+  layers(layout.encoder_layers(), policy.encoder);
+  if (policy.wiring.encoder != EncoderKind::kLstm) return;
   const int hidden = layout.hidden();
   const int cols = kProprioceptionSize + 1 + hidden;
   const auto columns = [&](int first, int count) {
@@ -153,20 +167,20 @@ void to_policy(const ParameterLayout& layout, const std::vector<float>& paramete
   policy.encoder_weight_hh = columns(kProprioceptionSize + 1, hidden);
   policy.encoder_bias_ih = columns(kProprioceptionSize, 1);
   policy.encoder_bias_hh.assign(static_cast<std::size_t>(4 * hidden), 0.0f);
-  const auto layers = [&](const std::vector<LayerView>& from, auto& to) {
-    for (std::size_t k = 0; k < to.size(); ++k) {
-      const float* const weight = parameters.data() + from[k].weight;
-      const float* const bias = parameters.data() + from[k].bias;
-      to[k].weight.assign(weight, weight + std::ptrdiff_t{from[k].outputs} * from[k].inputs);
-      to[k].bias.assign(bias, bias + from[k].outputs);
-    }
-  };
-  layers(layout.estimator(), policy.estimator);
-  layers(layout.actor(), policy.actor);
 }
 
 void from_policy(const NetworkParameters& policy, const ParameterLayout& layout,
                  std::vector<float>& parameters) {
+  const auto layers = [&](const auto& from, const std::vector<LayerView>& to) {
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      std::ranges::copy(from[k].weight, parameters.begin() + to[k].weight);
+      std::ranges::copy(from[k].bias, parameters.begin() + to[k].bias);
+    }
+  };
+  layers(policy.estimator, layout.estimator());
+  layers(policy.actor, layout.actor());
+  layers(policy.encoder, layout.encoder_layers());
+  if (policy.wiring.encoder != EncoderKind::kLstm) return;
   const int hidden = layout.hidden();
   const int cols = kProprioceptionSize + 1 + hidden;
   for (int row = 0; row < 4 * hidden; ++row) {
@@ -175,14 +189,6 @@ void from_policy(const NetworkParameters& policy, const ParameterLayout& layout,
     to[kProprioceptionSize] = policy.encoder_bias_ih[row] + policy.encoder_bias_hh[row];
     std::copy_n(&policy.encoder_weight_hh[row * hidden], hidden, to + kProprioceptionSize + 1);
   }
-  const auto layers = [&](const auto& from, const std::vector<LayerView>& to) {
-    for (std::size_t k = 0; k < from.size(); ++k) {
-      std::ranges::copy(from[k].weight, parameters.begin() + to[k].weight);
-      std::ranges::copy(from[k].bias, parameters.begin() + to[k].bias);
-    }
-  };
-  layers(policy.estimator, layout.estimator());
-  layers(policy.actor, layout.actor());
 }
 
 }  // namespace sandrunner::learner

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "policy/network_parameters.h"
+#include "policy/wiring.h"
 #include "rt/core/messages.h"
 #include "tools/train/data/rollout.h"
-#include "tools/train/learner/wiring.h"
 
 namespace sandrunner::learner {
 
@@ -28,19 +28,10 @@ struct NetworkSizes {
   std::vector<int> estimator = {128, 128};
   std::vector<int> actor = {256, 128};
   std::vector<int> critic = {256, 128};
-  EncoderKind encoder = EncoderKind::kLstm;
-  ActorInputs actor_sees = {};
-  std::vector<int> insight = {72};  ///< hidden layers of EncoderKind::kInsight
+  Wiring wiring = {};
+  std::vector<int> insight = {kInsightHidden};  ///< hidden layers of EncoderKind::kInsight
 
-  int channels = 40;  ///< of each layer of EncoderKind::kTcn
-
-  /// Networks as a policy file holds them, which a robot can run.
-  bool are_a_robots() const {
-    return encoder == EncoderKind::kLstm && actor_sees.encoding && actor_sees.estimate &&
-           !actor_sees.proprioception && !actor_sees.terrain;
-  }
-  /// A network sees BasicRollout::insight.
-  bool see_insight() const { return encoder == EncoderKind::kInsight || actor_sees.terrain; }
+  int channels = kTcnChannels;  ///< of each layer of EncoderKind::kTcn
 };
 
 /// A tensor within the flat array: row-major, starting at `offset`.
@@ -111,7 +102,7 @@ class ParameterLayout {
 std::vector<float> initial_parameters(const ParameterLayout& layout, std::uint64_t seed,
                                       double action_std);
 
-/// Encoder, estimator and actor of a robot's networks, into those of a policy file. (`bias_hh` gets
+/// Encoder, estimator and actor into those of a policy file, with their wiring. (`bias_hh` gets
 /// zeros: one bias is enough.) Its normalisation stays.
 void to_policy(const ParameterLayout& layout, const std::vector<float>& parameters,
                NetworkParameters& policy);

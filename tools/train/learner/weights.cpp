@@ -39,7 +39,7 @@ Weights<Scalar>::Weights(const ParameterLayout& layout)
       encoder_(make_layers<Scalar>(layout.encoder_layers(), 0)),
       estimator_(make_layers<Scalar>(layout.estimator(), layout.hidden())),
       actor_(make_layers<Scalar>(layout.actor(),
-                                 layout.sizes().actor_sees.encoding ? layout.hidden() : 0)),
+                                 layout.sizes().wiring.actor_sees.encoding ? layout.hidden() : 0)),
       critic_(make_layers<Scalar>(layout.critic(), 0)),
       log_std_(kActionSize) {
   if (layout.encoder_layers().empty()) {

@@ -8,29 +8,30 @@
 #include <utility>
 #include <vector>
 
-#include "policy/policy.h"
+#include "policy/policy_file.h"
 #include "tools/train/learner/block_pass.h"
-#include "tools/train/model/model_file.h"
+#include "tools/train/model/task_network.h"
 
 namespace sandrunner::train {
 
-/// The networks of a study model for one robot, step by step. float runs; double makes golden runs.
+/// The networks of a file for one robot, step by step.
 template <typename Scalar>
 class ModelNetwork {
  public:
-  explicit ModelNetwork(const StudyModelFile& file)
-      : layout_(model_layout(file.sizes)),
+  explicit ModelNetwork(const NetworkParameters& file)
+      : layout_(model_layout(file.wiring)),
         weights_(layout_),
         pass_(layout_, 1, 1, 1),
-        mean_(file.scales.mean.begin(), file.scales.mean.end()),
-        clip_(static_cast<Scalar>(file.scales.clip)),
+        mean_(file.observation_mean.begin(), file.observation_mean.end()),
+        clip_(static_cast<Scalar>(file.observation_clip)),
         observation_(kObservationSize, 1),
-        insight_(learner::kInsightSize, 1),
+        insight_(kInsightSize, 1),
         action_(kNumJoints, 1),
         memory_(learner::Matrix<Scalar>::Zero(layout_.memory(), 1)) {
-    const std::vector<Scalar> parameters(file.parameters.begin(), file.parameters.end());
-    weights_.set(parameters.data());
-    for (const float variance : file.scales.variance) {
+    std::vector<float> parameters(static_cast<std::size_t>(layout_.size()));
+    learner::from_policy(file, layout_, parameters);
+    weights_.set(std::vector<Scalar>(parameters.begin(), parameters.end()).data());
+    for (const float variance : file.observation_variance) {
       inverse_deviation_.push_back(1 / std::sqrt(static_cast<Scalar>(variance) + Scalar(1e-8)));
     }
   }
@@ -43,7 +44,7 @@ class ModelNetwork {
       const Scalar x = (static_cast<Scalar>(observation[i]) - mean_[k]) * inverse_deviation_[k];
       observation_(i, 0) = std::clamp(x, -clip_, clip_);
     }
-    for (int i = 0; i < learner::kInsightSize; ++i) {
+    for (int i = 0; i < kInsightSize; ++i) {
       insight_(i, 0) = static_cast<Scalar>(insight[i]);
     }
     pass_.answer(weights_, observation_, insight_, &kGoOn, memory_, action_);
@@ -64,19 +65,19 @@ class ModelNetwork {
   learner::Matrix<Scalar> observation_, insight_, action_, memory_;
 };
 
-/// A study model that runs, with the functions of Policy. Not for real time.
+/// Networks of any wiring that run, with the functions of Policy. Not for real time.
 class StudyModel {
  public:
   using State = std::vector<float>;
 
-  explicit StudyModel(StudyModelFile file) : network_(file), spec_(std::move(file.spec)) {}
+  explicit StudyModel(PolicyFile file) : network_(file.parameters), spec_(std::move(file.spec)) {}
 
   void reset() { network_.memory().setZero(); }
 
   /// One step at kPolicyHz. `observation` is raw; `insight` as Task makes it, for a model that sees
   /// it.
   PolicyStep step(const std::array<float, kObservationSize>& observation,
-                  const std::array<float, learner::kInsightSize>& insight = {}) {
+                  const std::array<float, kInsightSize>& insight = {}) {
     network_.step(observation.data(), insight.data());
     std::array<float, kNumJoints> action{};
     std::array<float, kEstimateSize> estimate{};

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
+#include "policy/network_parameters.h"
 #include "rt/core/messages.h"
 
 namespace sandrunner::train {
@@ -54,6 +56,26 @@ inline void modes_from_joints(const std::array<double, kNumLegs>& gain, const fl
     return kLegModes[leg][mode] / (joint == 0 ? 1.0 : gain[mode]);
   };
   mix_legs(factor, joints, columns, modes);
+}
+
+/// Turns a network that answers in modes into one that answers in joints.
+inline void answer_in_joints(const std::array<double, kNumLegs>& gain,
+                             NetworkParameters& parameters) {
+  DenseParameters& last = parameters.actor.back();
+  for (std::vector<float>* rows : {&last.weight, &last.bias}) {
+    const std::vector<float> modes = *rows;
+    joints_from_modes(gain, modes.data(), modes.size() / kNumJoints, rows->data());
+  }
+}
+
+/// The way back.
+inline void answer_in_modes(const std::array<double, kNumLegs>& gain,
+                            NetworkParameters& parameters) {
+  DenseParameters& last = parameters.actor.back();
+  for (std::vector<float>* rows : {&last.weight, &last.bias}) {
+    const std::vector<float> joints = *rows;
+    modes_from_joints(gain, joints.data(), joints.size() / kNumJoints, rows->data());
+  }
 }
 
 }  // namespace sandrunner::train

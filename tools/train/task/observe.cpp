@@ -107,7 +107,7 @@ learner::Symmetry Task::symmetry() {
   add(s.observation, {-1, 1, -1});      // angular velocity
   add_legs(s.observation, {-1, 1, 1});  // joint positions less nominal, and velocities
   add_legs(s.observation, {-1, 1, 1});
-  for (int i = 0; i < learner::kTerrainSize; ++i) add(s.insight, {1});
+  for (int i = 0; i < kTerrainSize; ++i) add(s.insight, {1});
   add(s.insight, {1, 1, -1, 1});  // body height, velocity
   add_legs(s.insight, {1});       // foot heights
   add_legs(s.insight, {1});       // loaded feet

@@ -36,7 +36,7 @@ struct CommandRange {
 };
 
 /// What an oracle and the critic see of a ground.
-using TerrainFeatures = std::array<float, learner::kTerrainSize>;
+using TerrainFeatures = std::array<float, kTerrainSize>;
 
 /// Those of a ground, scaled to about +-1; the critic sees the first six. `factor`: added mass and
 /// drag of a soil over the usual ones, or the damping ratio of a spring. Hard ground: 1, 2, 2,

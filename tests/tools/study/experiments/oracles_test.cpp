@@ -46,7 +46,7 @@ TEST_F(OraclesTest, EachPartOfTheActorsInputHasAnAblation) {
 TEST_F(OraclesTest, OnSoilAloneHardGroundsParametersDoNotVaryAndHaveNoAttribution) {
   const RunGroup group = measure(without_);
   constexpr std::size_t kRigid = 0, kRoughness = 5;
-  for (std::size_t i = 0; i < learner::kTerrainSize; ++i) {
+  for (std::size_t i = 0; i < kTerrainSize; ++i) {
     const bool varies = i != kRigid && i != kRoughness;
     for (const char* list : {"deviation", "alone", "gradient_haa", "gradient_kfe"}) {
       EXPECT_EQ(group.lists.at(list).at(i) > 0.0, varies) << list << " " << i;
@@ -70,7 +70,7 @@ TEST_F(OraclesTest, AnActorThatIgnoresTheTerrainHasNoAttributionToIt) {
   const learner::LayerView& first = model.network.layout.actor().front();
   for (int k = 0; k < first.outputs; ++k) {
     float* const row = model.network.parameters.data() + first.weight + k * first.inputs;
-    std::fill(row + first.inputs - learner::kTerrainSize, row + first.inputs, 0.0f);
+    std::fill(row + first.inputs - kTerrainSize, row + first.inputs, 0.0f);
   }
   const RunGroup group = measure(model);
   EXPECT_EQ(group.runs.at("T").at(0), 0.0);

@@ -66,7 +66,7 @@ TEST_F(TaskRunTest, ShowsEachStepAsTheNetworkAnsweredIt) {
       }
       // The insight holds the state that the estimator is to find.
       for (int i = 0; i < kEstimateSize; ++i) {
-        EXPECT_EQ(s.rollout.insight(0)(learner::kTerrainSize + i, env),
+        EXPECT_EQ(s.rollout.insight(0)(kTerrainSize + i, env),
                   s.rollout.estimate_target(0)(i, env));
       }
     }

@@ -26,7 +26,7 @@ NetworkSizes sizes() { return {5, {7, 6}, {8, 7}, {6, 5}}; }
 
 RolloutShape shape_for(const NetworkSizes& sizes) {
   RolloutShape shape = kShape;
-  shape.insight = sizes.see_insight() ? kInsightSize : 0;
+  shape.insight = sizes.wiring.sees_insight() ? kInsightSize : 0;
   shape.teacher = sizes.hidden;
   return shape;
 }
@@ -118,34 +118,34 @@ class GradientTest : public testing::Test, protected Gradients {
   GradientTest() : Gradients(sizes()) {}
 };
 
-struct Wiring {
+struct WiredCase {
   const char* name;
   EncoderKind encoder;
   ActorInputs actor;
 };
 
-NetworkSizes wired(const Wiring& wiring) {
+NetworkSizes wired(const WiredCase& wiring) {
   NetworkSizes networks = sizes();
-  networks.encoder = wiring.encoder;
-  networks.actor_sees = wiring.actor;
+  networks.wiring.encoder = wiring.encoder;
+  networks.wiring.actor_sees = wiring.actor;
   networks.insight = {6};
   networks.channels = 4;
   return networks;
 }
 
-class WiringGradientTest : public testing::TestWithParam<Wiring>, protected Gradients {
+class WiringGradientTest : public testing::TestWithParam<WiredCase>, protected Gradients {
  protected:
   WiringGradientTest() : Gradients(wired(GetParam())) {}
 };
 
 INSTANTIATE_TEST_SUITE_P(
     Study, WiringGradientTest,
-    testing::Values(Wiring{"robot", EncoderKind::kLstm, {true, true, false, false}},
-                    Wiring{"tcn", EncoderKind::kTcn, {true, true, false, false}},
-                    Wiring{"oracle_h", EncoderKind::kLstm, {true, true, false, true}},
-                    Wiring{"oracle_o", EncoderKind::kLstm, {false, true, true, true}},
-                    Wiring{"teacher", EncoderKind::kInsight, {true, false, true, false}},
-                    Wiring{"student", EncoderKind::kLstm, {true, false, true, false}}),
+    testing::Values(WiredCase{"robot", EncoderKind::kLstm, {true, true, false, false}},
+                    WiredCase{"tcn", EncoderKind::kTcn, {true, true, false, false}},
+                    WiredCase{"oracle_h", EncoderKind::kLstm, {true, true, false, true}},
+                    WiredCase{"oracle_o", EncoderKind::kLstm, {false, true, true, true}},
+                    WiredCase{"teacher", EncoderKind::kInsight, {true, false, true, false}},
+                    WiredCase{"student", EncoderKind::kLstm, {true, false, true, false}}),
     [](const auto& param) { return std::string(param.param.name); });
 
 TEST_P(WiringGradientTest, EveryTensorMatchesDifferencesWithResetsInsideTheWindow) {

@@ -11,7 +11,7 @@ namespace {
 LearnerConfig toy_config() {
   LearnerConfig config;
   config.network = {16, {16}, {32, 32}, {32, 32}};
-  config.network.actor_sees = {true, false, true, false};
+  config.network.wiring.actor_sees = {true, false, true, false};
   config.network.insight = {24};
   config.block_envs = 32;
   config.gamma = 0.95;
@@ -22,7 +22,7 @@ LearnerConfig toy_config() {
 
 LearnerConfig teacher_config() {
   LearnerConfig config = toy_config();
-  config.network.encoder = EncoderKind::kInsight;
+  config.network.wiring.encoder = EncoderKind::kInsight;
   return config;
 }
 

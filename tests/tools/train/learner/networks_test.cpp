@@ -59,23 +59,36 @@ std::vector<NamedTensor> networks_of(NetworkParameters& policy) {
   return tensors;
 }
 
+const std::vector<Wiring> kWirings = {{},
+                                      {EncoderKind::kTcn, {}},
+                                      {EncoderKind::kInsight, {true, false, true, false}},
+                                      {EncoderKind::kLstm, {false, true, true, true}}};
+
 TEST(ParametersTest, APolicyGetsAsManyNumbersAsItsFileHas) {
-  const ParameterLayout layout(NetworkSizes{}, 80);
-  NetworkParameters policy = policy_of(layout, initial_parameters(layout, 1, 0.6));
-  for (const NamedTensor& tensor : networks_of(policy)) {
-    EXPECT_EQ(tensor.values->size(), tensor.size()) << tensor.name;
+  for (const Wiring& wiring : kWirings) {
+    NetworkSizes sizes;
+    sizes.wiring = wiring;
+    const ParameterLayout layout(sizes, 80);
+    NetworkParameters policy = policy_of(layout, initial_parameters(layout, 1, 0.6));
+    for (const NamedTensor& tensor : networks_of(policy)) {
+      EXPECT_EQ(tensor.values->size(), tensor.size()) << wiring_text(wiring) << tensor.name;
+    }
   }
 }
 
 TEST(ParametersTest, NetworksOfAPolicyComeBackAsTheyWere) {
-  const ParameterLayout layout(NetworkSizes{}, 80);
-  const std::vector<float> from = initial_parameters(layout, 1, 0.6);
-  std::vector<float> to = initial_parameters(layout, 2, 0.3);
-  const std::vector<float> before = to;
-  from_policy(policy_of(layout, from), layout, to);
-  const std::ptrdiff_t critic = layout.critic().front().weight;
-  EXPECT_TRUE(std::equal(to.begin(), to.begin() + critic, from.begin()));
-  EXPECT_TRUE(std::equal(to.begin() + critic, to.end(), before.begin() + critic));
+  for (const Wiring& wiring : kWirings) {
+    NetworkSizes sizes;
+    sizes.wiring = wiring;
+    const ParameterLayout layout(sizes, 80);
+    const std::vector<float> from = initial_parameters(layout, 1, 0.6);
+    std::vector<float> to = initial_parameters(layout, 2, 0.3);
+    const std::vector<float> before = to;
+    from_policy(policy_of(layout, from), layout, to);
+    const std::ptrdiff_t critic = layout.critic().front().weight;
+    EXPECT_TRUE(std::equal(to.begin(), to.begin() + critic, from.begin())) << wiring_text(wiring);
+    EXPECT_TRUE(std::equal(to.begin() + critic, to.end(), before.begin() + critic));
+  }
 }
 
 double sigmoid(double x) { return 1.0 / (1.0 + std::exp(-x)); }

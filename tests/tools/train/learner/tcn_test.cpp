@@ -17,7 +17,7 @@ constexpr int kTcnSteps = 128;
 
 NetworkSizes tcn_sizes() {
   NetworkSizes sizes;
-  sizes.encoder = EncoderKind::kTcn;
+  sizes.wiring.encoder = EncoderKind::kTcn;
   return sizes;
 }
 

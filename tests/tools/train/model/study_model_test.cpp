@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Study models: as files, and as they answer.
+// Networks of all wirings: as they answer, and as a Task runs them.
 #include "tools/train/model/study_model.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "policy/policy_file.h"
-#include "policy/safetensors.h"
-#include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/train/task/leg_modes.h"
@@ -18,36 +19,18 @@ namespace {
 
 constexpr std::array<double, kNumLegs> kModeGain = {0.6, 0.7, 0.9, 1.6};
 
-struct Wiring {
-  const char* name;
-  const char* encoder;
-  const char* actor;
-};
-
 /// The file of a training with random weights, which it returns in `trained`.
-StudyModelFile random_file(const Wiring& wiring, std::vector<float>* trained = nullptr) {
-  StudyModelFile file;
-  file.spec.name = "random";
-  for (int j = 0; j < kNumJoints; ++j) file.spec.joint_names[j] = "joint" + std::to_string(j);
-  file.spec.action_scale_rad = 0.3;
-  file.spec.kp_nmprad = 50.0;
-  file.spec.kd_nmsprad = 0.5;
-  file.spec.torque_limit_nm = 60.0;
-  file.spec.yaw_command_clip_mps2 = 3.0;
-  file.spec.estimate_variance.fill(1.0f);
-  file.spec.provenance = {{"config", std::string("network.encoder = \"") + wiring.encoder +
-                                         "\"\nnetwork.actor = \"" + wiring.actor + "\"\n"}};
-  file.sizes.encoder = learner::parse_encoder("encoder", wiring.encoder);
-  file.sizes.actor_sees = learner::parse_actor_inputs("actor", wiring.actor);
-  for (int i = 0; i < kObservationSize; ++i) {
-    file.scales.mean.push_back(0.1f * static_cast<float>(i % 3));
-    file.scales.variance.push_back(0.5f + 0.1f * static_cast<float>(i % 4));
-  }
-  file.scales.clip = 6.0f;
-  const learner::ParameterLayout layout(file.sizes, 80);
+PolicyFile random_file(const Wiring& wiring, std::vector<float>* trained = nullptr) {
+  PolicyFile file = parse_policy_file(shipped_policy_text(), "the shipped policy");
+  file.spec.nominal_position_rad = {};
+  learner::NetworkSizes sizes;
+  sizes.wiring = wiring;
+  const learner::ParameterLayout layout(sizes, 80);
   const std::vector<float> parameters = learner::initial_parameters(layout, 5, 0.5);
   if (trained != nullptr) *trained = parameters;
-  set_trained(parameters, kModeGain, file);
+  learner::to_policy(layout, parameters, file.parameters);
+  answer_in_joints(kModeGain, file.parameters);
+  file.golden = make_golden_example(file.parameters);
   return file;
 }
 
@@ -57,51 +40,28 @@ class StudyModelTest : public testing::TestWithParam<Wiring> {
   const TemporaryFolder folder_;
 };
 
+constexpr ActorInputs kUsual, kProprioception = {true, false, true, false};
 INSTANTIATE_TEST_SUITE_P(Wirings, StudyModelTest,
-                         testing::Values(Wiring{"oracle_h", "lstm", "encoding, estimate, terrain"},
-                                         Wiring{"tcn", "tcn", "encoding, estimate"},
-                                         Wiring{"oracle_o", "lstm",
-                                                "estimate, proprioception, terrain"},
-                                         Wiring{"teacher", "insight", "encoding, proprioception"},
-                                         Wiring{"student", "lstm", "encoding, proprioception"}),
-                         [](const auto& param) { return std::string(param.param.name); });
-
-TEST_P(StudyModelTest, FileHoldsWeightsAndWiring) {
-  const StudyModelFile file = random_file(GetParam());
-  write_study_model(path(), file);
-  EXPECT_TRUE(is_study_model(path()));
-  const StudyModelFile read = read_study_model(path());
-  EXPECT_EQ(read.parameters, file.parameters);
-  EXPECT_EQ(learner::wiring_text(read.sizes.encoder, read.sizes.actor_sees),
-            learner::wiring_text(file.sizes.encoder, file.sizes.actor_sees));
-  EXPECT_EQ(read.scales.mean, file.scales.mean);
-}
-
-TEST_P(StudyModelTest, ChangedWeightFailsTheGoldenRun) {
-  write_study_model(path(), random_file(GetParam()));
-  TensorFile content = read_safetensors(path());
-  for (float& weight : content.tensors.at("actor.1.weight").values) weight *= 1.01f;
-  write_safetensors(path(), content);
-  try {
-    read_study_model(path());
-    FAIL() << "was read";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("golden example fails at step 0: action["),
-              std::string::npos)
-        << error.what();
-  }
-}
+                         testing::Values(Wiring{EncoderKind::kLstm, {true, true, false, true}},
+                                         Wiring{EncoderKind::kTcn, kUsual},
+                                         Wiring{EncoderKind::kLstm, {false, true, true, true}},
+                                         Wiring{EncoderKind::kInsight, kProprioception},
+                                         Wiring{EncoderKind::kLstm, kProprioception}),
+                         [](const auto& test) { return "Wiring" + std::to_string(test.index); });
 
 TEST_P(StudyModelTest, AnswersInJointsWhatTheTrainingAnswersInModes) {
   std::vector<float> trained;
-  const StudyModelFile file = random_file(GetParam(), &trained);
-  const learner::ParameterLayout layout(file.sizes, 80);
+  const PolicyFile file = random_file(GetParam(), &trained);
+  const NetworkParameters& p = file.parameters;
+  learner::NetworkSizes sizes;
+  sizes.wiring = GetParam();
+  const learner::ParameterLayout layout(sizes, 80);
   learner::Weights<float> weights(layout);
   weights.set(trained.data());
   learner::BlockPass<float> pass(layout, 1, 1, 1);
   learner::Matrix<float> memory = learner::Matrix<float>::Zero(layout.memory(), 1);
   learner::Matrix<float> normalised(kObservationSize, 1), modes(kNumJoints, 1);
-  std::array<float, learner::kInsightSize> insight{};
+  std::array<float, kInsightSize> insight{};
   std::array<float, kObservationSize> raw{};
   StudyModel model(file);
   const std::uint8_t go_on = 0;
@@ -110,11 +70,12 @@ TEST_P(StudyModelTest, AnswersInJointsWhatTheTrainingAnswersInModes) {
     for (int i = 0; i < kObservationSize; ++i) {
       raw[i] = std::sin(static_cast<float>(7 * step + i));
       normalised(i, 0) =
-          (raw[i] - file.scales.mean[i]) / std::sqrt(file.scales.variance[i] + 1e-8f);
+          (raw[i] - p.observation_mean[i]) / std::sqrt(p.observation_variance[i] + 1e-8f);
+      normalised(i, 0) = std::clamp(normalised(i, 0), -p.observation_clip, p.observation_clip);
     }
     for (std::size_t i = 0; i < insight.size(); ++i) insight[i] = raw[i];
     const learner::Matrix<float> seen =
-        Eigen::Map<const learner::Matrix<float>>(insight.data(), learner::kInsightSize, 1);
+        Eigen::Map<const learner::Matrix<float>>(insight.data(), kInsightSize, 1);
     pass.answer(weights, normalised, seen, &go_on, memory, modes);
     std::array<float, kNumJoints> joints{};
     joints_from_modes(kModeGain, modes.data(), 1, joints.data());
@@ -129,7 +90,7 @@ TEST_P(StudyModelTest, AnswersInJointsWhatTheTrainingAnswersInModes) {
 
 TEST_P(StudyModelTest, TaskNetworkHasTheWeightsOfTheTraining) {
   std::vector<float> trained;
-  write_study_model(path(), random_file(GetParam(), &trained));
+  write_policy_file(path(), random_file(GetParam(), &trained));
   const TaskNetwork network = read_task_network(path(), kModeGain);
   const learner::LayerView& last = network.layout.actor().back();
   for (std::ptrdiff_t i = 0; i < last.bias + kNumJoints; ++i) {
@@ -153,21 +114,8 @@ TEST(TaskNetworkTest, PolicyFileRunsOnATaskToo) {
   const std::string path = folder.path("policy.safetensors");
   write_file(path, shipped_policy_text());
   const TaskNetwork network = read_task_network(path, kModeGain);
-  EXPECT_TRUE(network.layout.sizes().are_a_robots());
+  EXPECT_TRUE(network.layout.sizes().wiring == Wiring{});
   EXPECT_EQ(network.spec.name, "raibo");
-}
-
-TEST(StudyModelFileTest, WithoutSettingsItsWiringIsUnknown) {
-  const TemporaryFolder folder;
-  StudyModelFile file = random_file({"", "lstm", "encoding, proprioception"});
-  file.spec.provenance.clear();
-  try {
-    write_study_model(folder.path("a"), file);
-    FAIL() << "was written";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("'provenance.config' is missing"), std::string::npos)
-        << error.what();
-  }
 }
 
 }  // namespace

@@ -15,7 +15,6 @@
 #include "rt/base/errors.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
-#include "tools/train/model/model_file.h"
 
 namespace sandrunner {
 namespace {
@@ -187,11 +186,8 @@ TEST_F(TrainCommandTest, AStudentThatIsKilledResumesToTheWeightsOfAnUninterrupte
   EXPECT_EQ(child.wait().code, 128 + SIGKILL) << "the run was over before the kill";
   words.emplace_back("--resume");
   ASSERT_EQ(run("killed", words), 0);
-  const auto model = [&](const std::string& out) {
-    return train::read_study_model(folder_.path(out) + "/policy.safetensors");
-  };
-  EXPECT_EQ(model("killed").parameters, model("whole").parameters);
-  EXPECT_NE(model("whole").spec.provenance.at("origin").find("imitating 'raibo'"),
+  expect_same_weights(policy("killed"), policy("whole"));
+  EXPECT_NE(policy("whole").spec.provenance.at("origin").find("imitating 'raibo'"),
             std::string::npos);
 }
 
@@ -214,20 +210,13 @@ TEST_F(TrainCommandTest, JudgeRunsTheBatteryWithAPolicyThatStandsOnHardGround) {
       << ended;
 }
 
-TEST_F(TrainCommandTest, AnotherWiringEndsInAStudyModelThatIsNoPolicy) {
+TEST_F(TrainCommandTest, AnotherWiringEndsInAFileThatNoRobotRuns) {
   ASSERT_EQ(run("a", {"--set", "network.actor=\"encoding, estimate, terrain\""}), 0);
-  const train::StudyModelFile model =
-      train::read_study_model(folder_.path("a") + "/best.safetensors");
-  EXPECT_TRUE(model.sizes.actor_sees.terrain);
-  EXPECT_NE(model.spec.provenance.at("battery").find("alive"), std::string::npos);
-  try {
-    policy("a");
-    FAIL() << "read as a policy";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("'sandrunner.format' is 'study 1', expected '1'"),
-              std::string::npos)
-        << error.what();
-  }
+  const std::string path = folder_.path("a") + "/best.safetensors";
+  const PolicyFile file = read_policy_file(path);
+  EXPECT_TRUE(file.parameters.wiring.actor_sees.terrain);
+  EXPECT_NE(file.spec.provenance.at("battery").find("alive"), std::string::npos);
+  EXPECT_THROW(load_policy(path), InputError);
 }
 
 TEST_F(TrainCommandTest, WeightsDoNotDependOnTheNumberOfThreads) {

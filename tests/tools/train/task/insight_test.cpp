@@ -18,14 +18,14 @@ constexpr int kInsightEnvs = 64;
 TEST(InsightTest, IsTheGroundAndTheTruthThatTheCriticSees) {
   const sim::Robot robot = sim::load_raibo();
   Task task(shipped_task_config(robot), robot, {kInsightEnvs, kInsightEnvs}, 3);
-  learner::Rollout rollout({kInsightEnvs, 2, Task::privileged_size(), learner::kInsightSize}, 0);
+  learner::Rollout rollout({kInsightEnvs, 2, Task::privileged_size(), kInsightSize}, 0);
   task.observe(0, 0, rollout);
   for (int t = 0; t < 2; ++t) task.step(0, t, rollout);
   const auto insight = rollout.insight(2);
   EXPECT_EQ(insight.topRows(6), rollout.privileged(2).middleRows(kGroundRow, 6));
-  EXPECT_EQ(insight.middleRows(learner::kTerrainSize, kEstimateSize), rollout.estimate_target(2));
+  EXPECT_EQ(insight.middleRows(kTerrainSize, kEstimateSize), rollout.estimate_target(2));
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    EXPECT_EQ(insight.row(learner::kTerrainSize + kEstimateSize + leg),
+    EXPECT_EQ(insight.row(kTerrainSize + kEstimateSize + leg),
               rollout.privileged(2).row(kFeetRow + 4 * leg));
   }
   // Soil has all ten parameters, hard ground the first six.
@@ -53,7 +53,7 @@ TEST(InsightTest, ATrialShowsTheGroundThatItGives) {
   trial.terrain = &one_patch;
   trial.features = terrain_features(ground, 1.0);
   task.begin_trial(0, trial);
-  learner::Rollout rollout({kInsightEnvs, 1, Task::privileged_size(), learner::kInsightSize}, 0);
+  learner::Rollout rollout({kInsightEnvs, 1, Task::privileged_size(), kInsightSize}, 0);
   task.observe(0, 0, rollout);
   EXPECT_FLOAT_EQ(rollout.insight(0)(1, 0), 1.0f);
   EXPECT_FLOAT_EQ(rollout.insight(0)(6, 0), 1.0f);
@@ -63,14 +63,14 @@ TEST(InsightTest, ATrialShowsTheGroundThatItGives) {
 // places.
 TEST(InsightTest, ReflectionTurnsSidewaysVelocityAndExchangesLegs) {
   const learner::Reflection reflection = Task::symmetry().insight;
-  Eigen::Matrix<float, learner::kInsightSize, 1> insight;
-  for (int i = 0; i < learner::kInsightSize; ++i) insight(i) = static_cast<float>(i + 1);
-  std::array<float, learner::kInsightSize> scratch;
-  Eigen::Matrix<float, learner::kInsightSize, 1> image = insight;
+  Eigen::Matrix<float, kInsightSize, 1> insight;
+  for (int i = 0; i < kInsightSize; ++i) insight(i) = static_cast<float>(i + 1);
+  std::array<float, kInsightSize> scratch;
+  Eigen::Matrix<float, kInsightSize, 1> image = insight;
   reflection.apply(image, scratch.data());
-  EXPECT_EQ(image.head(learner::kTerrainSize), insight.head(learner::kTerrainSize));
+  EXPECT_EQ(image.head(kTerrainSize), insight.head(kTerrainSize));
   const std::array<float, 12> rest{11, 12, -13, 14, 16, 15, 18, 17, 20, 19, 22, 21};
-  for (int i = 0; i < 12; ++i) EXPECT_EQ(image(learner::kTerrainSize + i), rest[i]);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(image(kTerrainSize + i), rest[i]);
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ TEST(SymmetryShapeTest, ReflectionsAreTheirOwnInverse) {
   const learner::Symmetry s = Task::symmetry();
   EXPECT_EQ(s.observation.index.size(), std::size_t{kObservationSize});
   EXPECT_EQ(s.action.index.size(), std::size_t{kNumJoints});
-  EXPECT_EQ(s.insight.index.size(), std::size_t{learner::kInsightSize});
+  EXPECT_EQ(s.insight.index.size(), std::size_t{kInsightSize});
   for (const Reflection& r : {s.observation, s.action, s.insight}) {
     for (std::size_t i = 0; i < r.index.size(); ++i) {
       EXPECT_EQ(r.index[r.index[i]], static_cast<int>(i));

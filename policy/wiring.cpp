@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/train/learner/wiring.h"
+#include "policy/wiring.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "rt/base/errors.h"
 
-namespace sandrunner::learner {
+namespace sandrunner {
 namespace {
 
 struct EncoderName {
@@ -63,14 +63,22 @@ ActorInputs parse_actor_inputs(const std::string& key, const std::string& text) 
   return sees;
 }
 
-std::string wiring_text(EncoderKind encoder, const ActorInputs& actor) {
+std::string encoder_text(EncoderKind encoder) {
+  return std::ranges::find_if(kEncoders, [&](const EncoderName& e) { return e.kind == encoder; })
+      ->name;
+}
+
+std::string actor_inputs_text(const ActorInputs& actor) {
   std::vector<std::string> seen;
   for (const PartName& part : kParts) {
     if (actor.*part.seen) seen.emplace_back(part.name);
   }
-  const auto kind =
-      std::ranges::find_if(kEncoders, [&](const EncoderName& e) { return e.kind == encoder; });
-  return fmt::format("encoder {}, actor sees {}", kind->name, fmt::join(seen, ", "));
+  return fmt::format("{}", fmt::join(seen, ", "));
 }
 
-}  // namespace sandrunner::learner
+std::string wiring_text(const Wiring& wiring) {
+  return fmt::format("encoder {}, actor sees {}", encoder_text(wiring.encoder),
+                     actor_inputs_text(wiring.actor_sees));
+}
+
+}  // namespace sandrunner
