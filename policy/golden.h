@@ -31,8 +31,8 @@ GoldenExample make_golden_example(const NetworkParameters& parameters);
 /// exceeds kGoldenTolerance.
 double check_golden_example(const std::string& file, const Network& network,
                             const GoldenExample& golden);
-/// The same with the network of these parameters; in double precision where `Network` does not run
-/// it.
+/// The same with the network of these parameters; in double precision if it sees the insight, which
+/// `Network` does not.
 double check_golden_example(const std::string& file, const NetworkParameters& parameters,
                             const GoldenExample& golden);
 

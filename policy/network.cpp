@@ -8,53 +8,41 @@
 #include <cmath>
 #include <cstddef>
 #include <new>
+#include <variant>
 
 #include "policy/activations.h"
+#include "policy/lstm_encoder.h"
 #include "policy/packed_layer.h"
+#include "policy/tcn_encoder.h"
 #include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {
 
-constexpr int kGates = 4;
-constexpr int kEncoderColumns = kEncoderInputSize + kHiddenSize;
-using EncoderLayer = PackedLayer<kEncoderColumns, kGates * kHiddenSize>;
-/// A panel of the encoder holds all four gates of its units, so that they are finished while they
-/// are hot.
-constexpr int kUnits = EncoderLayer::kRows / kGates;
+/// The actor's input: [command | encoding | estimate | proprioception]. The usual wiring sees all
+/// but the last part.
+constexpr int kEstimateAt = kCommandSize + kHiddenSize;
+constexpr int kProprioceptionAt = kEstimateAt + kEstimateSize;
+constexpr int kWidestActor = kProprioceptionAt + kEncoderInputSize;
+static_assert(kActorSizes[0] == kProprioceptionAt);
 
-/// Columns are the input, then h. The two biases are one.
-void pack_encoder(const NetworkParameters& parameters, EncoderLayer& layer) {
-  for (int gate = 0; gate < kGates; ++gate) {
-    for (int unit = 0; unit < kHiddenSize; ++unit) {
-      const int row = gate * kHiddenSize + unit;
-      auto& panel = layer.panel[unit / kUnits];
-      const int lane = gate * kUnits + unit % kUnits;
-      panel[0][lane] = parameters.encoder_bias_ih[row] + parameters.encoder_bias_hh[row];
-      for (int j = 0; j < kEncoderInputSize; ++j) {
-        panel[1 + j][lane] = parameters.encoder_weight_ih[row * kEncoderInputSize + j];
-      }
-      for (int j = 0; j < kHiddenSize; ++j) {
-        panel[1 + kEncoderInputSize + j][lane] =
-            parameters.encoder_weight_hh[row * kHiddenSize + j];
-      }
-    }
+/// The actor's first layer with a weight of zero for what it does not see.
+DenseParameters widened(const DenseParameters& layer, const ActorInputs& sees) {
+  DenseParameters wide{{}, layer.bias};
+  const float* from = layer.weight.data();
+  for (std::size_t row = 0; row < layer.bias.size(); ++row) {
+    const auto add = [&](bool seen, int count) {
+      wide.weight.insert(wide.weight.end(), static_cast<std::size_t>(count), 0.0f);
+      if (!seen) return;
+      std::copy_n(from, count, wide.weight.end() - count);
+      from += count;
+    };
+    add(true, kCommandSize);
+    add(sees.encoding, kHiddenSize);
+    add(sees.estimate, kEstimateSize);
+    add(sees.proprioception, kEncoderInputSize);
   }
-}
-
-/// `input` (kEncoderColumns) is the observation without the command, then h of the last step.
-inline void encode(const EncoderLayer& layer, const float* input, NetworkState& state) noexcept {
-  alignas(64) float gates[kGates][kUnits];
-  for (int p = 0; p < EncoderLayer::kPanels; ++p) {
-    multiply_panel(layer, p, input, gates[0]);
-    float* const h = state.h.data() + p * kUnits;
-    float* const c = state.c.data() + p * kUnits;
-    for (int u = 0; u < kUnits; ++u) {
-      const float in = sigmoid(gates[0][u]) * tanh_approximation(gates[2][u]);
-      c[u] = std::fma(sigmoid(gates[1][u]), c[u], in);
-      h[u] = sigmoid(gates[3][u]) * tanh_approximation(c[u]);
-    }
-  }
+  return wide;
 }
 
 /// Where the system grants it, one such page holds all weights: a cold step walks no page tables
@@ -82,14 +70,11 @@ void check_sizes(const NetworkParameters& parameters) {
   }
 }
 
-}  // namespace
-
-/// One block of memory, in the order of the computation.
-struct alignas(64) Network::PackedWeights {
+struct alignas(64) StreamedWeights {
   float observation_mean[kObservationSize];
   float observation_deviation[kObservationSize];
   float observation_clip;
-  EncoderLayer encoder;
+  std::variant<LstmEncoder, TcnEncoder> encoder;
   PackedLayer<kEstimatorSizes[0], kEstimatorSizes[1]> estimator_0;
   PackedLayer<kEstimatorSizes[1], kEstimatorSizes[2]> estimator_1;
   PackedLayer<kEstimatorSizes[2], kEstimatorSizes[3]> estimator_2;
@@ -98,48 +83,68 @@ struct alignas(64) Network::PackedWeights {
   PackedLayer<kActorSizes[2], kActorSizes[3]> actor_2;
 };
 
+}  // namespace
+
+/// One block of memory, in the order of the computation.
+struct Network::PackedWeights {
+  StreamedWeights streamed;
+  /// In place of actor_0 where the actor's inputs are not the usual ones.
+  bool is_wide = false;
+  PackedLayer<kWidestActor, kActorSizes[1]> wide_actor_0;
+
+  std::size_t bytes_read() const { return is_wide ? sizeof *this : sizeof streamed; }
+};
+
 Network::Network(const NetworkParameters& parameters) {
-  if (!(parameters.wiring == Wiring{})) {
-    throw InputError(fmt::format("network: found networks wired as '{}', expected '{}'",
-                                 wiring_text(parameters.wiring), wiring_text({})));
+  const Wiring& wiring = parameters.wiring;
+  if (wiring.sees_insight()) {
+    throw InputError(
+        fmt::format("network: found networks that see what no sensor measures ({}), expected none",
+                    wiring_text(wiring)));
   }
   check_sizes(parameters);
   static_assert(sizeof(PackedWeights) <= kHugePageBytes);
-  const std::shared_ptr<PackedWeights> weights(
+  const std::shared_ptr<PackedWeights> packed(
       new (allocate_huge_page()) PackedWeights(),  // value-initialised: padding is zero
-      [](PackedWeights* packed) { ::operator delete(packed, kHugePageAlignment); });
+      [](PackedWeights* memory) { ::operator delete(memory, kHugePageAlignment); });
+  StreamedWeights& w = packed->streamed;
   for (int i = 0; i < kObservationSize; ++i) {
-    weights->observation_mean[i] = parameters.observation_mean[i];
-    weights->observation_deviation[i] = static_cast<float>(
+    w.observation_mean[i] = parameters.observation_mean[i];
+    w.observation_deviation[i] = static_cast<float>(
         std::sqrt(static_cast<double>(parameters.observation_variance[i]) + 1e-8));
   }
-  weights->observation_clip = parameters.observation_clip;
-  pack_encoder(parameters, weights->encoder);
-  pack(parameters.estimator[0], weights->estimator_0);
-  pack(parameters.estimator[1], weights->estimator_1);
-  pack(parameters.estimator[2], weights->estimator_2);
-  pack(parameters.actor[0], weights->actor_0);
-  pack(parameters.actor[1], weights->actor_1);
-  pack(parameters.actor[2], weights->actor_2);
-  weights_ = weights;
+  w.observation_clip = parameters.observation_clip;
+  if (wiring.encoder == EncoderKind::kTcn) w.encoder.emplace<TcnEncoder>();
+  std::visit([&](auto& encoder) { encoder.pack(parameters); }, w.encoder);
+  pack(parameters.estimator[0], w.estimator_0);
+  pack(parameters.estimator[1], w.estimator_1);
+  pack(parameters.estimator[2], w.estimator_2);
+  packed->is_wide = !(wiring.actor_sees == ActorInputs{});
+  if (packed->is_wide) {
+    pack(widened(parameters.actor[0], wiring.actor_sees), packed->wide_actor_0);
+  } else {
+    pack(parameters.actor[0], w.actor_0);
+  }
+  pack(parameters.actor[1], w.actor_1);
+  pack(parameters.actor[2], w.actor_2);
+  weights_ = packed;
 }
 
 void Network::step(const std::array<float, kObservationSize>& observation, NetworkState& state,
                    NetworkOutput& output) const noexcept {
-  const PackedWeights& w = *weights_;
+  const StreamedWeights& w = weights_->streamed;
   alignas(64) float normalised[kObservationSize];
   for (int i = 0; i < kObservationSize; ++i) {
     normalised[i] = clip((observation[i] - w.observation_mean[i]) / w.observation_deviation[i],
                          w.observation_clip);
   }
-  alignas(64) float encoder_input[kEncoderColumns];
-  std::copy_n(normalised + kCommandSize, kEncoderInputSize, encoder_input);
-  std::copy_n(state.h.data(), kHiddenSize, encoder_input + kEncoderInputSize);
-  encode(w.encoder, encoder_input, state);
+  const float* const proprioception = normalised + kCommandSize;
+  std::visit([&](const auto& encoder) { encoder.step(proprioception, state); }, w.encoder);
 
-  alignas(64) float actor_input[kActorSizes[0]];
+  alignas(64) float actor_input[kWidestActor];
   std::copy_n(normalised, kCommandSize, actor_input);
   std::copy_n(state.h.data(), kHiddenSize, actor_input + kCommandSize);
+  std::copy_n(proprioception, kEncoderInputSize, actor_input + kProprioceptionAt);
 
   LayerOutput<kEstimatorSizes[0], kEstimatorSizes[1]> estimator_0;
   LayerOutput<kEstimatorSizes[1], kEstimatorSizes[2]> estimator_1;
@@ -147,13 +152,19 @@ void Network::step(const std::array<float, kObservationSize>& observation, Netwo
   linear_leaky_relu(w.estimator_0, actor_input + kCommandSize, estimator_0);
   linear_leaky_relu(w.estimator_1, estimator_0.value, estimator_1);
   linear(w.estimator_2, estimator_1.value, estimate);
-  std::copy_n(estimate.value, kEstimateSize, actor_input + kCommandSize + kHiddenSize);
+  std::copy_n(estimate.value, kEstimateSize, actor_input + kEstimateAt);
   std::copy_n(estimate.value, kEstimateSize, output.estimate_raw.begin());
 
   LayerOutput<kActorSizes[0], kActorSizes[1]> actor_0;
   LayerOutput<kActorSizes[1], kActorSizes[2]> actor_1;
   LayerOutput<kActorSizes[2], kActorSizes[3]> action;
-  linear_leaky_relu(w.actor_0, actor_input, actor_0);
+  if (weights_->is_wide) {
+    LayerOutput<kWidestActor, kActorSizes[1]> wide;
+    linear_leaky_relu(weights_->wide_actor_0, actor_input, wide);
+    std::copy_n(wide.value, kActorSizes[1], actor_0.value);
+  } else {
+    linear_leaky_relu(w.actor_0, actor_input, actor_0);
+  }
   linear_leaky_relu(w.actor_1, actor_0.value, actor_1);
   linear(w.actor_2, actor_1.value, action);
   std::copy_n(action.value, kNumJoints, output.action.begin());
@@ -162,11 +173,11 @@ void Network::step(const std::array<float, kObservationSize>& observation, Netwo
 void Network::touch_weights() const noexcept {
   const auto* at = reinterpret_cast<const volatile float*>(weights_.get());
   constexpr std::size_t kLine = 64 / sizeof(float);
-  for (std::size_t i = 0; i < sizeof(PackedWeights) / sizeof(float); i += kLine) {
+  for (std::size_t i = 0; i < weights_->bytes_read() / sizeof(float); i += kLine) {
     static_cast<void>(at[i]);  // volatile: is read
   }
 }
 
-std::size_t Network::weight_bytes() noexcept { return sizeof(PackedWeights); }
+std::size_t Network::weight_bytes() const noexcept { return weights_->bytes_read(); }
 
 }  // namespace sandrunner

@@ -3,20 +3,46 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <type_traits>
 
 #include "policy/network_parameters.h"
+#include "rt/core/state_hash.h"
 
 namespace sandrunner {
 
-/// What the network remembers from step to step: output and cell of the LSTM. All zero at the
-/// start.
+/// The last inputs of a convolution over time, as many as its taps reach: that of step k at k %
+/// kSteps.
+template <int kInputs, int kDilation>
+struct TcnLayerPast {
+  static constexpr int kSteps = (kTcnTaps - 1) * kDilation + 1;
+  std::array<std::array<float, kInputs>, kSteps> input{};
+};
+
+/// What a TCN remembers.
+struct TcnPast {
+  std::uint64_t steps = 0;  ///< since the start
+  TcnLayerPast<kEncoderInputSize, kTcnDilations[0]> layer_0;
+  TcnLayerPast<kTcnChannels, kTcnDilations[1]> layer_1;
+  TcnLayerPast<kTcnChannels, kTcnDilations[2]> layer_2;
+};
+
+/// What the network remembers from step to step. All zero at the start.
 struct NetworkState {
-  std::array<float, kHiddenSize> h{};
-  std::array<float, kHiddenSize> c{};
+  std::array<float, kHiddenSize> h{};  ///< the encoder's output
+  std::array<float, kHiddenSize> c{};  ///< cells of an LSTM
+  TcnPast past;                        ///< last: an LSTM leaves it as it is
 };
 static_assert(std::is_trivially_copyable_v<NetworkState>);
+static_assert(sizeof(NetworkState) == offsetof(NetworkState, past) + sizeof(TcnPast));
+
+/// Adds what the network has remembered.
+inline void add_to(StateHash& hash, const NetworkState& state) noexcept {
+  hash.add(state.h);
+  hash.add(state.c);
+  if (state.past.steps > 0) hash.add(state.past);
+}
 
 /// What one step of the network yields, before any scaling.
 struct NetworkOutput {
@@ -24,19 +50,20 @@ struct NetworkOutput {
   std::array<float, kEstimateSize> estimate_raw{};
 };
 
-/// The whole network (paper, "Controller structure"): normalisation, LSTM encoder 30 -> 64,
-/// estimator 64-128-128-8, actor 75-256-128-12, leaky ReLU on the hidden layers, linear outputs.
-/// Batch of one.
+/// The whole network: normalisation; encoder, LSTM (paper, "Controller structure") or TCN, 30 ->
+/// 64; estimator 64-128-128-8; actor 75-256-128-12, or wider where it sees the proprioception.
+/// Leaky ReLU on the hidden layers, linear outputs. Batch of one.
 ///
 /// The result has the same bits from every compiler and optimisation level: each row of each layer
 /// is a fixed chain of fused multiply-adds. Copies share the weights, which never change.
 class Network {
  public:
-  /// Packs the parameters. Throws InputError if a tensor does not have its size.
+  /// Packs the parameters. Throws InputError if a tensor does not have its size, or for a wiring
+  /// that sees the insight.
   explicit Network(const NetworkParameters& parameters);
 
   /// One step. `observation` is raw, i.e. not normalised. Real-time safe. A NaN in the observation
-  /// reaches every output and stays in `state` until that is cleared.
+  /// reaches every output and stays in `state` until that is cleared (of a TCN: for 53 steps).
   void step(const std::array<float, kObservationSize>& observation, NetworkState& state,
             NetworkOutput& output) const noexcept;
 
@@ -45,7 +72,7 @@ class Network {
   void touch_weights() const noexcept;
 
   /// Bytes that a step reads of its weights, as packed.
-  static std::size_t weight_bytes() noexcept;
+  std::size_t weight_bytes() const noexcept;
 
  private:
   struct PackedWeights;

@@ -16,9 +16,9 @@ inline constexpr int kPackedLanes = 8;  // in an AVX register
 /// forward stream through memory: panels of up to 64 rows; in each the bias, then one column after
 /// the other.
 ///
-/// A panel is summed in eight registers, which hide the latency of the fused multiply-add. Narrow
-/// layers have fewer rows than that: there `kChains` sums share the columns (column j goes to sum j
-/// mod kChains).
+/// A panel is summed in eight registers (40 rows: five), which hide the latency of the fused
+/// multiply-add. Narrow layers have fewer rows than that: there `kChains` sums share the columns
+/// (column j goes to sum j mod kChains).
 template <int kInputs, int kOutputs>
 struct PackedLayer {
   static constexpr int kVectors = std::min(8, (kOutputs + kPackedLanes - 1) / kPackedLanes);
@@ -26,7 +26,7 @@ struct PackedLayer {
   static constexpr int kRows = kVectors * kPackedLanes;
   static constexpr int kPanels = (kOutputs + kRows - 1) / kRows;
   static constexpr int kPaddedOutputs = kPanels * kRows;
-  static_assert(kInputs % kChains == 0 && kVectors * kChains == 8);
+  static_assert(kInputs % kChains == 0);
 
   alignas(64) float panel[kPanels][1 + kInputs][kRows];
 };

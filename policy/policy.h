@@ -64,8 +64,13 @@ class Policy {
   /// One step at kPolicyHz. `observation` is raw; estimator/observation.h builds it. Real-time
   /// safe. NaN in, NaN out, until reset().
   PolicyStep step(const std::array<float, kObservationSize>& observation) noexcept {
+    return step(observation, state_);
+  }
+  /// The same with a memory of the caller's: for many robots.
+  PolicyStep step(const std::array<float, kObservationSize>& observation,
+                  NetworkState& state) const noexcept {
     NetworkOutput output;
-    network_.step(observation, state_, output);
+    network_.step(observation, state, output);
     return policy_step(spec_, output.action, output.estimate_raw);
   }
 

@@ -28,6 +28,12 @@ LockstepState Lockstep::state() noexcept {
   return s;
 }
 
+void Lockstep::add_to(StateHash& hash) noexcept {
+  hash.add(policy_.newest());
+  hash.add(loop_.controller().state());
+  sandrunner::add_to(hash, policy_.network());
+}
+
 void Lockstep::restore(const LockstepState& state, std::uint64_t next_tick) noexcept {
   policy_.restore(state.policy_output, state.network);
   loop_.restore(state.controller);

@@ -40,7 +40,7 @@ class Lockstep {
   LockstepState state() noexcept;
   void restore(const LockstepState& state, std::uint64_t next_tick) noexcept;
   /// Adds controller, network and the exchange between them to `hash`.
-  void add_to(StateHash& hash) noexcept { hash.add(state()); }
+  void add_to(StateHash& hash) noexcept;
 
  private:
   PolicyRunner& policy_;

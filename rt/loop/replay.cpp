@@ -17,6 +17,10 @@ namespace {
 
 constexpr std::string_view kStateMagic = "SRSTATE1";
 constexpr std::size_t kStateHead_bytes = 16;
+// What a TCN remembers follows the rest, and only if there is something.
+constexpr std::size_t kPastAt = offsetof(ReplayState, network) + offsetof(NetworkState, past);
+constexpr std::size_t kRestAt = kPastAt + sizeof(TcnPast);
+constexpr std::size_t kUsual_bytes = sizeof(ReplayState) - sizeof(TcnPast);
 
 std::string value_of(std::size_t word, std::uint64_t bits) {
   return tick_field_of(word).kind == 'd'
@@ -41,10 +45,13 @@ std::optional<ReplayDifference> first_difference(const TickRecord& recorded,
 }  // namespace
 
 std::string replay_state_bytes(const ReplayState& state) {
-  const std::uint64_t size = sizeof state;
+  const bool has_past = state.network.past.steps > 0;
+  const std::uint64_t size = has_past ? sizeof state : kUsual_bytes;
+  const char* const at = reinterpret_cast<const char*>(&state);
   std::string bytes(kStateMagic);
   bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
-  bytes.append(reinterpret_cast<const char*>(&state), sizeof state);
+  bytes.append(at, kPastAt).append(at + kRestAt, sizeof state - kRestAt);
+  if (has_past) bytes.append(at + kPastAt, sizeof(TcnPast));
   return bytes;
 }
 
@@ -56,13 +63,18 @@ ReplayState read_replay_state(std::string_view bytes, const std::string& name) {
   ReplayState state;
   std::uint64_t size = 0;
   if (bytes.size() >= kStateHead_bytes) std::memcpy(&size, &bytes[kStateMagic.size()], sizeof size);
-  if (size != sizeof state || bytes.size() != kStateHead_bytes + sizeof state) {
+  const bool has_past = size == sizeof state;
+  if ((!has_past && size != kUsual_bytes) || bytes.size() != kStateHead_bytes + size) {
     throw InputError(
         fmt::format("{}: {} bytes that announce {}, expected {} and {}: damaged, or "
                     "of a build that lays the state out otherwise",
-                    name, bytes.size(), size, kStateHead_bytes + sizeof state, sizeof state));
+                    name, bytes.size(), size, kStateHead_bytes + kUsual_bytes, kUsual_bytes));
   }
-  std::memcpy(&state, &bytes[kStateHead_bytes], sizeof state);
+  char* const to = reinterpret_cast<char*>(&state);
+  const char* const from = bytes.data() + kStateHead_bytes;
+  std::memcpy(to, from, kPastAt);
+  std::memcpy(to + kRestAt, from + kPastAt, sizeof state - kRestAt);
+  if (has_past) std::memcpy(to + kPastAt, from + kUsual_bytes, sizeof(TcnPast));
   if (state.released > ReplayState::kMostReleased || state.controller.mode > Mode::kFault) {
     throw InputError(
         fmt::format("{}: mode {} and {} inputs of the policy, expected up to {} and {}", name,

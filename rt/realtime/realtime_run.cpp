@@ -138,7 +138,7 @@ RealtimeEnd run_threads(const Rig& rig, const RealtimeConfig& realtime, Clock& c
   StateHash hash;
   rig.robot.add_to(hash);
   hash.add(state);
-  hash.add(rig.policy.network());
+  add_to(hash, rig.policy.network());
   end.state_hash = hash.value();
   end.gate = state.gate;
   const ControlDeadlines& done = control.deadlines();

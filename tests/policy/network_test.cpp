@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -71,11 +72,41 @@ TEST(NetworkTest, MatchesGoldenStepsOfThePublishedNetwork) {
   expect_golden_steps(folder + "reference.safetensors", folder + "golden-policy.csv");
 }
 
+const Wiring kTcnWiring = {EncoderKind::kTcn, {}};
+const Wiring kStudent = {EncoderKind::kLstm, {true, false, true, false}};
+
 TEST(NetworkTest, AgreesWithPlainDoubleEvaluation) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const PolicyFile file = random_policy_file(seed);
-    EXPECT_LT(check_golden_example("random", Network(file.parameters), file.golden), 3e-6);
+  for (const Wiring& wiring : {Wiring{}, kTcnWiring, kStudent}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const PolicyFile file = random_policy_file(seed, wiring);
+      EXPECT_LT(check_golden_example("random", Network(file.parameters), file.golden), 3e-6)
+          << wiring_text(wiring);
+    }
   }
+}
+
+TEST(NetworkTest, RunsNoNetworkThatSeesTheInsight) {
+  EXPECT_THROW(Network(random_policy_file(1, {EncoderKind::kInsight, {}}).parameters), InputError);
+}
+
+// The first step and one after a reset alike; the 53rd step after an observation forgets it.
+TEST(NetworkTest, ATcnSeesTheLast53Observations) {
+  const Network network(random_policy_file(1, kTcnWiring).parameters);
+  RandomFloats random(3);
+  NetworkState a, b;
+  NetworkOutput of_a, of_b;
+  network.step(random.observation(), a, of_a);
+  network.step(random.observation(), b, of_b);
+  for (int k = 1; k < kTcnPast + 1; ++k) {
+    const auto observation = random.observation();
+    network.step(observation, a, of_a);
+    network.step(observation, b, of_b);
+    EXPECT_NE(of_a.action, of_b.action) << k;
+  }
+  const auto observation = random.observation();
+  network.step(observation, a, of_a);
+  network.step(observation, b, of_b);
+  EXPECT_EQ(of_a.action, of_b.action);
 }
 
 void add_to_hash(const void* data, std::size_t size, std::uint64_t& hash) {
@@ -83,8 +114,8 @@ void add_to_hash(const void* data, std::size_t size, std::uint64_t& hash) {
   for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;  // FNV-1a
 }
 
-TEST(NetworkTest, GivesTheSameBitsFromEveryCompiler) {
-  const Network network(random_policy_file().parameters);
+std::uint64_t hash_of_steps(const Wiring& wiring) {
+  const Network network(random_policy_file(1, wiring).parameters);
   NetworkState state;
   NetworkOutput output;
   RandomFloats random(7);
@@ -93,29 +124,14 @@ TEST(NetworkTest, GivesTheSameBitsFromEveryCompiler) {
     network.step(random.observation(), state, output);
     add_to_hash(output.action.data(), sizeof(output.action), hash);
     add_to_hash(output.estimate_raw.data(), sizeof(output.estimate_raw), hash);
-    add_to_hash(&state, sizeof(state), hash);
+    add_to_hash(&state, offsetof(NetworkState, past), hash);
   }
-  EXPECT_EQ(hash, 0xa519fc3f859029afu) << std::hex << hash;
+  return hash;
 }
 
-TEST(NetworkTest, RestoredStateContinuesToTheSameBits) {
-  const Network network(random_policy_file().parameters);
-  RandomFloats random(3);
-  std::vector<std::array<float, kObservationSize>> observations(40);
-  for (auto& observation : observations) observation = random.observation();
-  NetworkState state;
-  NetworkState middle;
-  NetworkOutput first;
-  NetworkOutput second;
-  for (int k = 0; k < 40; ++k) {
-    if (k == 20) middle = state;
-    network.step(observations[k], state, first);
-  }
-  for (int k = 20; k < 40; ++k) network.step(observations[k], middle, second);
-  // The same bits. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
-  EXPECT_EQ(std::memcmp(&state, &middle, sizeof(state)), 0);
-  EXPECT_EQ(first.action, second.action);
-  EXPECT_EQ(first.estimate_raw, second.estimate_raw);
+TEST(NetworkTest, GivesTheSameBitsFromEveryCompiler) {
+  EXPECT_EQ(hash_of_steps({}), 0xa519fc3f859029afu);
+  EXPECT_EQ(hash_of_steps(kTcnWiring), 0x3eaeb421f9a9f35u);
 }
 
 TEST(NetworkTest, DependsOnObservationsBeyondTheClipOnlyByTheirSign) {
@@ -149,8 +165,13 @@ TEST(NetworkTest, NaNInTheObservationReachesTheOutputs) {
   }
 }
 
-TEST(NetworkTest, StepDoesNotAllocate) {
-  const Network network(random_policy_file().parameters);
+class NetworkStepTest : public testing::TestWithParam<Wiring> {};
+
+INSTANTIATE_TEST_SUITE_P(Wirings, NetworkStepTest, testing::Values(Wiring{}, kTcnWiring, kStudent),
+                         [](const auto& test) { return "Wiring" + std::to_string(test.index); });
+
+TEST_P(NetworkStepTest, DoesNotAllocate) {
+  const Network network(random_policy_file(1, GetParam()).parameters);
   NetworkState state;
   NetworkOutput output;
   RandomFloats random(5);
@@ -162,6 +183,26 @@ TEST(NetworkTest, StepDoesNotAllocate) {
   EXPECT_EQ(number_of_allocations(), before);
   ::operator delete(::operator new(8));
   EXPECT_EQ(number_of_allocations(), before + 1) << "the counter does not count";
+}
+
+TEST_P(NetworkStepTest, FromARestoredStateContinuesToTheSameBits) {
+  const Network network(random_policy_file(1, GetParam()).parameters);
+  RandomFloats random(3);
+  std::vector<std::array<float, kObservationSize>> observations(40);
+  for (auto& observation : observations) observation = random.observation();
+  NetworkState state;
+  NetworkState middle;
+  NetworkOutput first;
+  NetworkOutput second;
+  for (int k = 0; k < 40; ++k) {
+    if (k == 20) middle = state;
+    network.step(observations[k], state, first);
+  }
+  for (int k = 20; k < 40; ++k) network.step(observations[k], middle, second);
+  // The same bits. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+  EXPECT_EQ(std::memcmp(&state, &middle, sizeof(state)), 0);
+  EXPECT_EQ(first.action, second.action);
+  EXPECT_EQ(first.estimate_raw, second.estimate_raw);
 }
 
 /// How many mappings of this process the kernel may move to huge pages whenever it likes.

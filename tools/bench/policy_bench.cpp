@@ -161,7 +161,7 @@ Report run_policy_bench(int rounds) {
   std::map<std::string, std::vector<double>> times_s;
   for (int round = 0; round < rounds; ++round) {
     ours.emplace_back(parameters);
-    floors.emplace_back(Network::weight_bytes());
+    floors.emplace_back(ours.back().weight_bytes());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[(i + round) % candidates.size()];
       times_s[candidate.name].push_back(median_time_s(candidate));
@@ -172,7 +172,7 @@ Report run_policy_bench(int rounds) {
   report.facts = {
       {"processor", processor_name()},
       {"policy", fmt::format("one step of the network, {} bytes of weights as packed; {}",
-                             Network::weight_bytes(), realtime.description())},
+                             ours.back().weight_bytes(), realtime.description())},
       {"read_floor", "as many bytes, AVX2 loads into eight registers and nothing else"},
       {"l2_cold", fmt::format("after a walk through {} MiB on the same core", kWalkBytes >> 20)},
       {"cold", fmt::format("after a walk through {} MiB on the same core", kLongWalkBytes >> 20)}};

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
@@ -18,7 +19,7 @@ namespace sandrunner::evaluate {
 namespace {
 
 std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& part,
-                                                const Subject& subject, const std::string& name,
+                                                const Policy& policy, const std::string& name,
                                                 const RunnerSettings& settings) {
   std::vector<Trial> trials;
   for (const Group& group : part.groups) {
@@ -30,7 +31,7 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
         fmt::format("\r{:<8} {:<20} {:6} of {} runs ", part.name, name, done, trials.size()));
   };
   const std::vector<TrialFigures> all =
-      run_trials(study.robot(), study.foot(), subject, trials, settings,
+      run_trials(study.robot(), study.foot(), policy, trials, settings,
                  terminal ? progress : std::function<void(std::size_t)>());
   if (terminal) to_standard_error(fmt::format("\r{:60}\r", ""));
   std::vector<std::vector<TrialFigures>> groups;
@@ -47,16 +48,16 @@ int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
   const sim::Robot robot = sim::load_robot(options->robot);
-  std::vector<Subject> policies = {load_subject(options->policy_path)};
-  if (!options->against_path.empty()) policies.push_back(load_subject(options->against_path));
-  for (const Subject& policy : policies) require_joints(spec_of(policy), robot.description);
+  std::vector<Policy> policies = {load_policy(options->policy_path)};
+  if (!options->against_path.empty()) policies.push_back(load_policy(options->against_path));
+  for (const Policy& policy : policies) require_joints(policy.spec(), robot.description);
   const std::string dir = options->out_dir + "/";
   const bool out = !options->out_dir.empty();
   if (out) prepare_folder(options->out_dir, "--out");
 
   Results results;
-  for (const Subject& policy : policies) {
-    const PolicySpec& spec = spec_of(policy);
+  for (const Policy& policy : policies) {
+    const PolicySpec& spec = policy.spec();
     const bool taken = !results.policies.empty() && results.policies[0] == spec.name;
     results.policies.push_back(spec.name + (taken ? " (2)" : ""));
     results.envelopes.push_back(spec.envelope);

@@ -7,12 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <mutex>
-#include <type_traits>
 #include <utility>
 
 #include "estimator/cost_of_transport.h"
 #include "estimator/observation.h"
-#include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "rt/base/worker_pool.h"
 #include "rt/core/command_shaping.h"
@@ -28,11 +26,10 @@ namespace {
 enum Stream : std::uint64_t { kNoiseStream = 11, kPushStream = 12 };
 constexpr std::uint64_t kDrawsPerStep = 64;
 
-// The robots of one pack from start to end. Runner: one of Subject.
-template <typename Runner>
+// The robots of one pack from start to end.
 class PackRun {
  public:
-  PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, Runner& policy,
+  PackRun(const sim::Robot& robot, const sim::FootProfile<double>& foot, const Policy& policy,
           const RunnerSettings& settings, const RobotFacts& facts, const Trial* trials, int count,
           const StepObserver& observe, std::size_t first)
       : robot_(robot),
@@ -45,7 +42,6 @@ class PackRun {
         lanes_(static_cast<std::size_t>(count)) {
     sim::RobotModel<double> model = robot.model;
     model.torque_limit_nm = facts.torque_limit_nm;
-    policy_.reset();
     const PolicySpec& spec = policy.spec();
     sim::BatchDrive<float> drive;
     drive.kp = static_cast<float>(spec.kp_nmprad);
@@ -66,7 +62,6 @@ class PackRun {
       const int late_ticks = trial.a_step_late() ? kTicksPerPolicyStep : 0;
       drive.switch_tick = static_cast<float>(trial.latency_ticks - late_ticks);
       lanes_[i].drive = drive;
-      lanes_[i].memory = policy_.state();
       lanes_[i].target_rad = lanes_[i].answer_rad = robot.nominal_rad;
     }
   }
@@ -100,18 +95,13 @@ class PackRun {
  private:
   struct Lane {
     bool done = false;
-    std::decay_t<decltype(std::declval<Runner&>().state())> memory;
+    NetworkState memory;
     JointArray<double> target_rad{}, answer_rad{};  // the drives', the network's
     sim::BatchDrive<float> drive;
     TrialRecorder recorder;
     sim::TouchdownWatch touchdowns;  // of the LooseStep
     bool met = false;                // the place where it is disturbed
   };
-
-  static const NetworkState* memory_of([[maybe_unused]] const Lane& lane) {
-    if constexpr (std::is_same_v<Runner, Policy>) return &lane.memory;
-    return nullptr;
-  }
 
   static bool finished(const Trial& trial, const TrialRecorder& recorder) {
     if (recorder.time_s() < trial.duration_s) return false;
@@ -141,15 +131,13 @@ class PackRun {
     VelocityCommand command = asked;
     command.wz_radps = shape_yaw_rate(command.wz_radps, command.vx_mps, command.vy_mps,
                                       policy_.spec().yaw_command_clip_mps2);
-    policy_.set_state(lane.memory);
-    const PolicyStep answer = policy_.step(observe(trial, step, command, state));
-    lane.memory = policy_.state();
+    const PolicyStep answer = policy_.step(observe(trial, step, command, state), lane.memory);
     // What reaches the drives in this period: this answer, or, later than that, the one before.
     const JointArray<double> target_rad = trial.a_step_late() ? lane.answer_rad : answer.target_rad;
     const StateEstimate truth = sim::ground_truth(robot_.model, state, *trial.terrain);
     if (observe_) {
       observe_(first_ + static_cast<std::size_t>(i),
-               {state, truth, answer.estimate, torque_of(lane, state), memory_of(lane)});
+               {state, truth, answer.estimate, torque_of(lane, state), lane.memory});
     }
     lane.recorder.begin_period(state, truth, answer.estimate, asked, lane.target_rad, target_rad,
                                policy_.spec().kp_nmprad, policy_.spec().kd_nmsprad, facts_);
@@ -227,7 +215,7 @@ class PackRun {
   }
 
   const sim::Robot& robot_;
-  Runner& policy_;
+  const Policy& policy_;
   const RobotFacts& facts_;
   const Trial* trials_;
   const StepObserver& observe_;
@@ -237,22 +225,6 @@ class PackRun {
 };
 
 }  // namespace
-
-Subject load_subject(const std::string& path) {
-  PolicyFile file = read_policy_file(path);
-  const Wiring& wiring = file.parameters.wiring;
-  if (wiring == Wiring{}) return Policy(std::move(file.spec), Network(file.parameters));
-  if (wiring.sees_insight()) {
-    throw InputError(fmt::format(
-        "'{}': found networks wired as '{}', expected some that see what sensors measure",
-        path, wiring_text(wiring)));
-  }
-  return train::StudyModel(std::move(file));
-}
-
-const PolicySpec& spec_of(const Subject& subject) {
-  return std::visit([](const auto& runner) -> const PolicySpec& { return runner.spec(); }, subject);
-}
 
 RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
   RobotFacts facts;
@@ -274,28 +246,22 @@ RobotFacts robot_facts(const sim::Robot& robot, const PolicySpec& policy) {
 }
 
 std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootProfile<double>& foot,
-                                     const Subject& subject, const std::vector<Trial>& trials,
+                                     const Policy& policy, const std::vector<Trial>& trials,
                                      const RunnerSettings& settings,
                                      const std::function<void(std::size_t)>& progress,
                                      const StepObserver& observe) {
   const auto width = static_cast<std::size_t>(settings.width);
-  const RobotFacts facts = robot_facts(robot, spec_of(subject));
+  const RobotFacts facts = robot_facts(robot, policy.spec());
   std::vector<TrialFigures> figures(trials.size());
   WorkerPool pool(settings.threads);
-  // One for each worker.
-  std::vector<Subject> subjects(static_cast<std::size_t>(settings.threads), subject);
   std::size_t done = 0;
   std::mutex mutex;  // of `done` and the call of `progress`
-  pool.run(static_cast<int>((trials.size() + width - 1) / width), [&](int pack, int worker) {
+  pool.run(static_cast<int>((trials.size() + width - 1) / width), [&](int pack, int) {
     const std::size_t first = static_cast<std::size_t>(pack) * width;
     const std::size_t count = std::min(width, trials.size() - first);
-    std::visit(
-        [&](auto& runner) {
-          PackRun(robot, foot, runner, settings, facts, trials.data() + first,
-                  static_cast<int>(count), observe, first)
-              .run(figures.data() + first);
-        },
-        subjects[static_cast<std::size_t>(worker)]);
+    PackRun(robot, foot, policy, settings, facts, trials.data() + first, static_cast<int>(count),
+            observe, first)
+        .run(figures.data() + first);
     const std::lock_guard lock(mutex);
     done += count;
     if (progress) progress(done);

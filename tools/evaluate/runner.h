@@ -5,25 +5,14 @@
 
 #include <functional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "policy/policy.h"
 #include "sim/robot/robot_model.h"
 #include "tools/evaluate/trial.h"
 #include "tools/evaluate/trial_figures.h"
-#include "tools/train/model/study_model.h"
 
 namespace sandrunner::evaluate {
-
-/// What is measured: a policy, or a network that only a study has.
-using Subject = std::variant<Policy, train::StudyModel>;
-
-/// The subject of a file. Throws InputError, also for a network that sees what no sensor
-/// measures.
-Subject load_subject(const std::string& path);
-
-const PolicySpec& spec_of(const Subject& subject);
 
 struct RunnerSettings {
   int threads = 1;
@@ -38,7 +27,7 @@ struct ObservedStep {
   const StateEstimate& truth;
   const StateEstimate& estimate;
   const JointArray<double>& torque_nm;  ///< of the drives, under the targets until this step
-  const NetworkState* memory;           ///< after the step; null for a study model
+  const NetworkState& memory;           ///< after the step
 };
 /// `trial`: its place in the list. Called by several threads, for one trial by one of them.
 using StepObserver = std::function<void(std::size_t trial, const ObservedStep& step)>;
@@ -46,7 +35,7 @@ using StepObserver = std::function<void(std::size_t trial, const ObservedStep& s
 /// Figures of each trial, in their order; the same bits for any number of threads. `progress`, if
 /// any, is called with the number of trials done so far, by one thread at a time.
 std::vector<TrialFigures> run_trials(const sim::Robot& robot, const sim::FootProfile<double>& foot,
-                                     const Subject& subject, const std::vector<Trial>& trials,
+                                     const Policy& policy, const std::vector<Trial>& trials,
                                      const RunnerSettings& settings,
                                      const std::function<void(std::size_t done)>& progress = {},
                                      const StepObserver& observe = {});

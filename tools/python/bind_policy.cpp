@@ -135,9 +135,7 @@ class Policies {
       if (reset.data()[i] != 0) state = {};
       std::array<float, kObservationSize> row;
       std::copy_n(observation.data() + i * kObservationSize, kObservationSize, row.begin());
-      policy_.set_state(state);
-      const PolicyStep out = policy_.step(row);
-      state = policy_.state();
+      const PolicyStep out = policy_.step(row, state);
       std::ranges::copy(out.target_rad, target.mutable_data() + i * kNumJoints);
       double* const e = estimate.mutable_data() + i * kEstimateSize;
       e[0] = out.estimate.body_height_m;

@@ -154,7 +154,7 @@ int run(const Arguments& a) {
   fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
   std::fflush(stdout);
   training.run(interrupted);
-  print_end(out, a.robot_name, config.learner.network.wiring == Wiring{});
+  print_end(out, a.robot_name, !config.learner.network.wiring.sees_insight());
   return kExitOk;
 }
 

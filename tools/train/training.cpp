@@ -216,7 +216,7 @@ void Training::save() {
     best_is_written_ = true;
   }
   progress_.write(options_.out);
-  if (config_.learner.network.wiring == Wiring{}) {
+  if (!config_.learner.network.wiring.sees_insight()) {
     const PolicyFile policy = policy_file(policy_spec(now), learner_.averaged());
     pool_.run(1, [&](int, int) {
       write_file(options_.out + "/curve.html",

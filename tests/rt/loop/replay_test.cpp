@@ -127,6 +127,33 @@ TEST_F(ReplayTest, ContinuesFromTheStateOfAnotherReplay) {
   }
 }
 
+// On dry sand; the bytes of its state hold what its layers have read.
+TEST(TcnTest, WalksAndReplaysFromTheMiddle) {
+  const PolicyRunner policy(load_policy(SANDRUNNER_TCN));
+  const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
+  std::vector<TickRecord> ticks;
+  const RunResult result = simulate({.config = config,
+                                     .policy = policy,
+                                     .plan = {.walk_s = 4.0, .start_walking = true},
+                                     .at_tick = [&](const auto& tick) { ticks.push_back(tick); }});
+  EXPECT_EQ(result.fall_reason, "");
+  EXPECT_TRUE(result.survived);
+  EXPECT_NEAR(result.figures.motion.value().mean_velocity_mps[0], 1.0, 0.2);
+  Replay first(config.controller, Mode::kWalk, policy);
+  const auto middle = ticks.begin() + 8000;
+  for (auto tick = ticks.begin(); tick < middle; ++tick) ASSERT_FALSE(first.check(*tick));
+  const std::string bytes = replay_state_bytes(first.state());
+  Replay second(config.controller, Mode::kWalk, policy);
+  second.restore(read_replay_state(bytes, "state"));
+  for (auto tick = middle; tick < ticks.end(); ++tick) {
+    const auto difference = second.check(*tick);
+    ASSERT_FALSE(difference) << difference->tick << ": " << difference->what;
+  }
+  EXPECT_EQ(bytes.size(), 16 + sizeof(ReplayState));
+  Replay lstm(config.controller, Mode::kWalk, PolicyRunner(load_shipped_policy()));
+  EXPECT_EQ(replay_state_bytes(lstm.state()).size(), 16 + sizeof(ReplayState) - sizeof(TcnPast));
+}
+
 TEST_F(ReplayTest, GateCounterIsComparedAndNamed) {
   std::vector<TickRecord> spoilt(ticks().begin(), ticks().begin() + 1000);
   spoilt[100].counters.torque_clamped += 7;

@@ -67,8 +67,7 @@ void expect_clean(const std::array<WatchedDeeds, 3>& threads, const RealtimeRepo
   }
 }
 
-TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
-  PolicyRunner policy(load_shipped_policy());
+void expect_clean_run(const PolicyRunner& policy) {
   const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   unless_stalled([&](std::string& said) {
     RemoteOperator op(1200);
@@ -109,6 +108,14 @@ TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
     EXPECT_EQ(result.realtime->records_dropped, 0u);
     expect_clean(clock.deeds, *result.realtime);
   });
+}
+
+TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
+  expect_clean_run(PolicyRunner(load_shipped_policy()));
+}
+
+TEST(LoopProofTest, NoThreadDoesWithATcnEither) {
+  expect_clean_run(PolicyRunner(load_policy(SANDRUNNER_TCN)));
 }
 
 TEST(LoopProofTest, NoThreadOfARobotThatIsDrivenOverDdsDoesMoreThanWithTheSimulator) {

@@ -71,8 +71,8 @@ TEST_F(EvaluateCommandTest, MeasuresAStudyModelThatSeesWhatSensorsMeasure) {
 TEST_F(EvaluateCommandTest, RefusesAStudyModelThatSeesTheGround) {
   write_model("s", "estimate, proprioception, terrain");
   EXPECT_EQ(run("--policy s --only turn"), 2);
-  EXPECT_NE(error().find("found networks wired as 'encoder lstm, actor sees estimate, "
-                         "proprioception, terrain', expected"),
+  EXPECT_NE(error().find("needs what no robot can sense (encoder lstm, actor sees estimate, "
+                         "proprioception, terrain)"),
             std::string::npos)
       << error();
 }

@@ -120,7 +120,7 @@ sim::TerrainDescription training_ground(const Controller& controller, const sim:
 }
 
 Measured run_fairness(Lab& lab, const Model& model) {
-  if (!model.subject) return run_fairness_on_task(lab, model);
+  if (!model.policy) return run_fairness_on_task(lab, model);
   Measured measured;
   for (const double command : {1.0, 2.0, 3.0}) {
     const auto ground = training_ground(*model.controller, lab.robot());

@@ -9,19 +9,18 @@ const std::vector<Controller>& controllers() {
   constexpr const char* kTeacher = "encoder insight, actor sees encoding, proprioception";
   constexpr const char* kStudent = "encoder lstm, actor sees encoding, proprioception";
   static const std::vector<Controller> kAll = {
-      {"ours", ModelKind::kPolicy},
-      {"env-rigid", ModelKind::kPolicy},
-      {"env-quasistatic", ModelKind::kPolicy},
-      {"env-linear", ModelKind::kPolicy},
-      {"pl-gm", ModelKind::kStudyModel, kStudent},
-      {"pl-rigid", ModelKind::kStudyModel, kStudent},
-      {"teacher-gm", ModelKind::kSeesGround, kTeacher},
-      {"teacher-rigid", ModelKind::kSeesGround, kTeacher},
-      {"oracle-h", ModelKind::kSeesGround, "encoder lstm, actor sees encoding, estimate, terrain"},
-      {"oracle-o", ModelKind::kSeesGround,
-       "encoder lstm, actor sees estimate, proprioception, terrain"},
-      {"tcn", ModelKind::kStudyModel, "encoder tcn, actor sees encoding, estimate"},
-      {"published", ModelKind::kPublished},
+      {"ours"},
+      {"env-rigid"},
+      {"env-quasistatic"},
+      {"env-linear"},
+      {"pl-gm", kStudent},
+      {"pl-rigid", kStudent},
+      {"teacher-gm", kTeacher},
+      {"teacher-rigid", kTeacher},
+      {"oracle-h", "encoder lstm, actor sees encoding, estimate, terrain"},
+      {"oracle-o", "encoder lstm, actor sees estimate, proprioception, terrain"},
+      {"tcn", "encoder tcn, actor sees encoding, estimate"},
+      {.key = "published", .is_published = true},
   };
   return kAll;
 }
@@ -37,7 +36,7 @@ const std::vector<const char*>& trained_controllers() {
   static const std::vector<const char*> kKeys = [] {
     std::vector<const char*> keys;
     for (const Controller& c : controllers()) {
-      if (c.kind != ModelKind::kPublished) keys.push_back(c.key);
+      if (!c.is_published) keys.push_back(c.key);
     }
     return keys;
   }();

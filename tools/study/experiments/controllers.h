@@ -7,18 +7,11 @@
 
 namespace sandrunner::study {
 
-/// What the files of a controller are.
-enum class ModelKind {
-  kPolicy,
-  kStudyModel,  ///< other networks, which see what sensors measure
-  kSeesGround,  ///< networks that see the ground too, which only the training's environments show
-  kPublished,   ///< the authors' own policy (--published): in tables and figures, in no verdict
-};
-
 struct Controller {
   const char* key;  ///< of its files and in results.json
-  ModelKind kind;
   const char* wiring = "encoder lstm, actor sees encoding, estimate";  ///< wiring_text
+  bool is_published =
+      false;  ///< the authors' own (--published): in tables and figures, in no verdict
 };
 
 /// All of them, in the order of the tables.

@@ -84,7 +84,7 @@ std::vector<Ran> Lab::run(const Model& model, const std::vector<evaluate::Trial>
   const auto observe = [&](std::size_t i, const evaluate::ObservedStep& step) {
     runs[i].samples.push_back(sample_of(step, *trials[i].terrain, foot_radius_m));
     if (!with_hidden) return;
-    runs[i].hidden.push_back(step.memory->h);
+    runs[i].hidden.push_back(step.memory.h);
     Estimate& e = runs[i].estimate.emplace_back();
     e[0] = static_cast<float>(step.estimate.body_height_m);
     for (int k = 0; k < 3; ++k) e[1 + k] = static_cast<float>(step.estimate.velocity_mps[k]);
@@ -92,7 +92,7 @@ std::vector<Ran> Lab::run(const Model& model, const std::vector<evaluate::Trial>
       e[4 + l] = static_cast<float>(step.estimate.foot_height_m[l]);
   };
   const std::vector<evaluate::TrialFigures> figures =
-      evaluate::run_trials(study_.robot(), study_.foot(), model.subject.value(), trials,
+      evaluate::run_trials(study_.robot(), study_.foot(), model.policy.value(), trials,
                            {settings_.threads, true}, {}, observe);
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i].figures = figures[i];
   return runs;

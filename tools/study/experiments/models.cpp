@@ -52,12 +52,6 @@ FileName read_name(const std::filesystem::path& path) {
 
 Model load_model(const FileName& name, const train::PolicySettings& task, const sim::Robot& robot) {
   const std::string bytes = read_input_file(name.path, "a policy file");
-  std::optional<evaluate::Subject> subject;
-  if (name.controller->kind == ModelKind::kPolicy) {
-    subject = load_policy_text(bytes, name.path);
-  } else if (name.controller->kind == ModelKind::kStudyModel) {
-    subject = evaluate::load_subject(name.path);
-  }
   train::TaskNetwork network = train::read_task_network(name.path, task.mode_gain);
   const learner::NetworkSizes& sizes = network.layout.sizes();
   const std::string wiring = wiring_text(sizes.wiring);
@@ -69,7 +63,9 @@ Model load_model(const FileName& name, const train::PolicySettings& task, const 
   train::require_scales(
       network.spec, network.scales, task,
       train::make_scales(robot.nominal_rad, task.body_height_m, task.observation_clip));
-  return {name.controller, name.seed, hash_of(bytes), std::move(network), std::move(subject)};
+  std::optional<Policy> policy;
+  if (!sizes.wiring.sees_insight()) policy = load_policy_text(bytes, name.path);
+  return {name.controller, name.seed, hash_of(bytes), std::move(network), std::move(policy)};
 }
 
 }  // namespace

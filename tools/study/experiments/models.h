@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "policy/policy.h"
 #include "sim/robot/robot_model.h"
-#include "tools/evaluate/runner.h"
 #include "tools/study/experiments/controllers.h"
 #include "tools/train/model/task_network.h"
 
@@ -20,8 +20,8 @@ struct Model {
   int seed;
   std::uint64_t hash;          ///< of its file
   train::TaskNetwork network;  ///< as the training's environments run it
-  /// As the runner of sandrunner-evaluate does; none of a controller that sees the ground.
-  std::optional<evaluate::Subject> subject;
+  /// As the runner of sandrunner-evaluate runs it; none of a controller that sees the ground.
+  std::optional<Policy> policy;
 };
 
 /// "ours-1"

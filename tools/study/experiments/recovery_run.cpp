@@ -24,12 +24,10 @@ constexpr double kLast_s = 0.78;  // of the paper's pictures, after the touchdow
 constexpr int kStarts = 16;
 constexpr std::size_t kMostBytes = 3'000'000;
 
-const Policy& policy_of(const Model& model) { return std::get<Policy>(model.subject.value()); }
-
 RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
   ConfigTree tree;
   sim::add_terrain_layer(tree, "dry-sand");
-  ProcessConfig config = read_process_config(tree, &policy_of(model).spec(), &lab.robot());
+  ProcessConfig config = read_process_config(tree, &model.policy.value().spec(), &lab.robot());
   sim::TerrainDescription& ground = config.simulator.terrain;
   const sim::GroundParameters sand = ground.patches[0].ground;
   sim::GroundParameters loose = sand;
@@ -38,7 +36,7 @@ RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
   ground.patches.push_back({kStripFrom_m, loose});
   ground.patches.push_back({kStripTo_m, sand});
   config.simulator.seed = static_cast<std::uint64_t>(seed);
-  PolicyRunner policy(policy_of(model));
+  PolicyRunner policy(model.policy.value());
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command("2.5,0,0");
   RunScript script(command, {.walk_s = 5.0, .start_walking = true}, true);
@@ -47,7 +45,7 @@ RunRecord run_over_strip(const Lab& lab, const Model& model, int seed) {
                           .start = Mode::kWalk,
                           .policy = policy,
                           .op = script},
-                         {.scene = scene_of(config, policy_of(model).spec().name)})
+                         {.scene = scene_of(config, model.policy.value().spec().name)})
       .record;
 }
 

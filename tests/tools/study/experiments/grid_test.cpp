@@ -40,7 +40,7 @@ TEST_F(GridExperimentTest, YieldsEachCellAndEachRobot) {
 TEST_F(GridExperimentTest, AControllerThatSeesTheGroundIsJudgedOnItsOwnGround) {
   Lab lab({.runs = 3});
   models_.at(0).controller = find_controller("oracle-h");
-  models_.at(0).subject.reset();
+  models_.at(0).policy.reset();
   const Measured measured = run_fairness(lab, models_.at(0));
   ASSERT_EQ(measured.groups.size(), 3u);
   for (const RunGroup& group : measured.groups) {

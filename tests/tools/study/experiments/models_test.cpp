@@ -50,7 +50,7 @@ TEST_F(ModelsTest, OfControllersThatSeeTheGroundRunInTheTrainingsEnvironmentsAlo
   write_random_model(folder_.path("tcn-1.safetensors"), "encoding, estimate", "tcn");
   write_random_model(folder_.path("oracle-h-1.safetensors"), "encoding, estimate, terrain");
   for (const Model& model : load_models(folder_.path(""), {}, robot_)) {
-    EXPECT_EQ(model.subject.has_value(), model_name(model) != "oracle-h-1") << model_name(model);
+    EXPECT_EQ(model.policy.has_value(), model_name(model) != "oracle-h-1") << model_name(model);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Networks of all wirings: as they answer, and as a Task runs them.
-#include "tools/train/model/study_model.h"
+#include "tools/train/model/task_network.h"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@
 #include "policy/policy_file.h"
 #include "rt/base/output_files.h"
 #include "tests/support/temporary_folder.h"
+#include "tools/train/learner/block_pass.h"
 #include "tools/train/task/leg_modes.h"
 
 namespace sandrunner::train {
@@ -34,14 +35,14 @@ PolicyFile random_file(const Wiring& wiring, std::vector<float>* trained = nullp
   return file;
 }
 
-class StudyModelTest : public testing::TestWithParam<Wiring> {
+class TaskNetworkTest : public testing::TestWithParam<Wiring> {
  protected:
   std::string path() const { return folder_.path("model.safetensors"); }
   const TemporaryFolder folder_;
 };
 
 constexpr ActorInputs kUsual, kProprioception = {true, false, true, false};
-INSTANTIATE_TEST_SUITE_P(Wirings, StudyModelTest,
+INSTANTIATE_TEST_SUITE_P(Wirings, TaskNetworkTest,
                          testing::Values(Wiring{EncoderKind::kLstm, {true, true, false, true}},
                                          Wiring{EncoderKind::kTcn, kUsual},
                                          Wiring{EncoderKind::kLstm, {false, true, true, true}},
@@ -49,7 +50,8 @@ INSTANTIATE_TEST_SUITE_P(Wirings, StudyModelTest,
                                          Wiring{EncoderKind::kLstm, kProprioception}),
                          [](const auto& test) { return "Wiring" + std::to_string(test.index); });
 
-TEST_P(StudyModelTest, AnswersInJointsWhatTheTrainingAnswersInModes) {
+TEST_P(TaskNetworkTest, APolicyAnswersInJointsWhatTheTrainingAnswersInModes) {
+  if (GetParam().sees_insight()) return;  // is no policy
   std::vector<float> trained;
   const PolicyFile file = random_file(GetParam(), &trained);
   const NetworkParameters& p = file.parameters;
@@ -61,34 +63,31 @@ TEST_P(StudyModelTest, AnswersInJointsWhatTheTrainingAnswersInModes) {
   learner::BlockPass<float> pass(layout, 1, 1, 1);
   learner::Matrix<float> memory = learner::Matrix<float>::Zero(layout.memory(), 1);
   learner::Matrix<float> normalised(kObservationSize, 1), modes(kNumJoints, 1);
-  std::array<float, kInsightSize> insight{};
+  const learner::Matrix<float> insight = learner::Matrix<float>::Zero(kInsightSize, 1);
   std::array<float, kObservationSize> raw{};
-  StudyModel model(file);
+  Policy policy(file.spec, Network(p));
   const std::uint8_t go_on = 0;
   double moved = 0.0;
-  for (int step = 0; step < 3; ++step) {
+  for (int step = 0; step < 60; ++step) {
     for (int i = 0; i < kObservationSize; ++i) {
       raw[i] = std::sin(static_cast<float>(7 * step + i));
       normalised(i, 0) =
           (raw[i] - p.observation_mean[i]) / std::sqrt(p.observation_variance[i] + 1e-8f);
       normalised(i, 0) = std::clamp(normalised(i, 0), -p.observation_clip, p.observation_clip);
     }
-    for (std::size_t i = 0; i < insight.size(); ++i) insight[i] = raw[i];
-    const learner::Matrix<float> seen =
-        Eigen::Map<const learner::Matrix<float>>(insight.data(), kInsightSize, 1);
-    pass.answer(weights, normalised, seen, &go_on, memory, modes);
+    pass.answer(weights, normalised, insight, &go_on, memory, modes);
     std::array<float, kNumJoints> joints{};
     joints_from_modes(kModeGain, modes.data(), 1, joints.data());
-    const PolicyStep answer = model.step(raw, insight);
+    const PolicyStep answer = policy.step(raw);
     for (int j = 0; j < kNumJoints; ++j) {
-      EXPECT_NEAR(answer.target_rad[j], file.spec.action_scale_rad * joints[j], 1e-5);
+      EXPECT_NEAR(answer.target_rad[j], file.spec.action_scale_rad * joints[j], 2e-6);
       moved += std::abs(answer.target_rad[j]);
     }
   }
   EXPECT_GT(moved, 0.1);  // answers of zero would be alike too
 }
 
-TEST_P(StudyModelTest, TaskNetworkHasTheWeightsOfTheTraining) {
+TEST_P(TaskNetworkTest, TaskNetworkHasTheWeightsOfTheTraining) {
   std::vector<float> trained;
   write_policy_file(path(), random_file(GetParam(), &trained));
   const TaskNetwork network = read_task_network(path(), kModeGain);
@@ -98,18 +97,7 @@ TEST_P(StudyModelTest, TaskNetworkHasTheWeightsOfTheTraining) {
   }
 }
 
-TEST_P(StudyModelTest, SetStateRepeatsAStep) {
-  StudyModel model(random_file(GetParam()));
-  std::array<float, kObservationSize> observation{};
-  observation.fill(0.3f);
-  const StudyModel::State start = model.state();
-  const PolicyStep first = model.step(observation);
-  model.step(observation);
-  model.set_state(start);
-  EXPECT_EQ(model.step(observation).target_rad, first.target_rad);
-}
-
-TEST(TaskNetworkTest, PolicyFileRunsOnATaskToo) {
+TEST(ShippedPolicyTest, RunsOnATaskToo) {
   const TemporaryFolder folder;
   const std::string path = folder.path("policy.safetensors");
   write_file(path, shipped_policy_text());
