@@ -356,6 +356,22 @@ void write_policy_file(const std::string& path, const PolicyFile& file) {
   write_safetensors(path, content);
 }
 
+void set_in_spec(PolicyFile& file, const std::string& assignment) {
+  std::map<std::string, std::string> metadata = metadata_of(file);
+  const std::size_t equals = std::min(assignment.find('='), assignment.size());
+  const auto found = metadata.find("sandrunner." + assignment.substr(0, equals));
+  if (found == metadata.end() || equals == assignment.size()) {
+    throw InputError(
+        fmt::format("--set: found '{}', expected KEY=VALUE with a key of policy/README.md, such as "
+                    "action_scale_rad",
+                    printable(assignment)));
+  }
+  found->second = assignment.substr(equals + 1);
+  const std::string origin = "--set " + assignment;
+  Metadata values(origin, std::move(metadata));
+  read_spec(values, origin, file);
+}
+
 PolicyFile read_bare_weights(const std::string& path) {
   TensorFile content = read_safetensors(path);
   PolicyFile file;

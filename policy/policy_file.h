@@ -40,6 +40,10 @@ std::string_view shipped_policy_text(const std::string& robot = "raibo");
 /// InputError.
 void write_policy_file(const std::string& path, const PolicyFile& file);
 
+/// Changes what a file says of a policy: "KEY=VALUE", a key of the metadata without "sandrunner.".
+/// Throws InputError.
+void set_in_spec(PolicyFile& file, const std::string& assignment);
+
 /// Reads the layout in which others publish such networks: the same tensors without a golden
 /// example; whatever metadata they have becomes the provenance. The rest of the result is left at
 /// its defaults. Throws InputError.

@@ -23,29 +23,32 @@
 namespace sandrunner {
 namespace {
 
-/// How the published controller of Raibo is wired (compliant-gym; Choi et al. 2023, "Controller
-/// structure").
-void set_raibo_conventions(PolicySpec& spec) {
-  const sim::Robot raibo = sim::load_raibo();
-  spec.joint_names = raibo.description.joint_names;
-  spec.nominal_position_rad = raibo.nominal_rad;
+struct Import {
+  std::string input, output, name, robot = "raibo";
+  std::vector<std::string> assignments;
+};
+
+/// What is not the robot's is as for the published network of Raibo (compliant-gym; Choi et al.
+/// 2023, "Controller structure").
+void import_policy(const Import& given) {
+  const sim::Robot robot = sim::load_robot(given.robot);
+  PolicyFile file = read_bare_weights(given.input);
+  PolicySpec& spec = file.spec;
+  spec.joint_names = robot.description.joint_names;
+  spec.nominal_position_rad = robot.nominal_rad;
+  spec.torque_limit_nm = *std::ranges::max_element(robot.model.torque_limit_nm);
   spec.action_scale_rad = 0.3;
-  spec.action_clip = 0.0;
   spec.kp_nmprad = 50.0;
   spec.kd_nmsprad = 0.5;
-  spec.torque_limit_nm = *std::ranges::max_element(raibo.model.torque_limit_nm);
   spec.yaw_command_clip_mps2 = 2.943;  // 0.3 g
-}
-
-void import_policy(const std::string& input, const std::string& output, const std::string& name) {
-  PolicyFile file = read_bare_weights(input);
-  set_raibo_conventions(file.spec);
-  file.spec.name = name;
-  file.spec.provenance["imported_from"] = std::filesystem::path(input).filename().string();
   file.parameters.observation_clip = 10.0f;
+  const std::filesystem::path input = given.input;
+  spec.name = given.name.empty() ? input.stem().string() : given.name;
+  spec.provenance["imported_from"] = input.filename().string();
+  for (const std::string& assignment : given.assignments) set_in_spec(file, assignment);
   file.golden = make_golden_example(file.parameters);
-  write_policy_file(output, file);
-  fmt::print("wrote {}\n", output);
+  write_policy_file(given.output, file);
+  fmt::print("wrote {}\n", given.output);
 }
 
 void set_envelope(const std::string& input, const std::string& output,
@@ -142,18 +145,27 @@ int run(int argc, char** argv) {
                "sandrunner-policy");
   app.require_subcommand(1);
 
-  std::string input;
-  std::string output;
-  std::string name;
-  CLI::App* import_command = app.add_subcommand(
-      "import", "turn published weights (bare safetensors) into a policy file for Raibo");
-  import_command->add_option("IN", input, "weights in the layout of compliant-gym")->required();
-  import_command->add_option("--out", output, "policy file to write")
+  Import given;
+  CLI::App* import_command =
+      app.add_subcommand("import", "turn bare weights (safetensors) into a policy file");
+  import_command->add_option("IN", given.input, "weights (policy/README.md)")->required();
+  import_command->add_option("--out", given.output, "policy file to write")
       ->type_name("FILE")
       ->required();
-  import_command->add_option("--name", name, "name of the policy (default: that of IN)")
+  import_command->add_option("--name", given.name, "name of the policy (default: that of IN)")
       ->type_name("NAME");
+  import_command
+      ->add_option("--robot", given.robot,
+                   "robot that ships, or a robot file: joints, nominal pose, torque limit")
+      ->type_name("NAME")
+      ->capture_default_str();
+  import_command
+      ->add_option("--set", given.assignments,
+                   "other gains, scales or limits, such as action_scale_rad=0.25")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
 
+  std::string input, output;
   CommandEnvelope envelope;
   CLI::App* envelope_command = app.add_subcommand(
       "envelope", "write into a policy file which velocity commands the policy can follow");
@@ -185,8 +197,7 @@ int run(int argc, char** argv) {
       "  sandrunner-policy import weights.safetensors --out mine.safetensors");
   if (!parse_command_line(app, argc, argv)) return kExitOk;
   if (*import_command) {
-    if (name.empty()) name = std::filesystem::path(input).stem().string();
-    import_policy(input, output, name);
+    import_policy(given);
   } else if (*envelope_command) {
     set_envelope(input, output, envelope, centripetal_mps2);
   } else if (*info_command) {

@@ -42,6 +42,23 @@ TEST_F(PolicyCommandTest, ImportsBareWeightsWithTheConventionsOfRaibo) {
   EXPECT_EQ(file.parameters.encoder_weight_hh, random_policy_file().parameters.encoder_weight_hh);
 }
 
+TEST_F(PolicyCommandTest, ImportTakesPoseAndLimitsFromTheRobotAndTheRestFromSettings) {
+  write_bare_weights("weights.safetensors");
+  ASSERT_EQ(run("import weights.safetensors --out policy.safetensors --robot go2 --name mine "
+                "--set kp_nmprad=20 --set action_clip=5"),
+            0)
+      << error();
+  const PolicyFile file = read_policy_file(folder_.path("policy.safetensors"));
+  const PolicySpec shipped = load_shipped_policy("go2").spec();
+  EXPECT_EQ(file.spec.joint_names, shipped.joint_names);
+  EXPECT_EQ(file.spec.nominal_position_rad, shipped.nominal_position_rad);
+  EXPECT_EQ(file.spec.torque_limit_nm, shipped.torque_limit_nm);
+  EXPECT_EQ(file.spec.kp_nmprad, 20.0);
+  EXPECT_EQ(file.spec.action_clip, 5.0);
+  EXPECT_EQ(file.spec.kd_nmsprad, 0.5);
+  EXPECT_EQ(file.spec.provenance.at("license"), "MIT");
+}
+
 TEST_F(PolicyCommandTest, ImportsWeightsThatOtherCodeWrote) {
   const std::string weights = SANDRUNNER_GOLDEN_DIR "/random_network.safetensors";
   ASSERT_EQ(run("import '" + weights + "' --out policy.safetensors --name golden"), 0) << error();
@@ -110,6 +127,10 @@ TEST_F(PolicyCommandTest, BadInputIsOneLineAndExitCodeTwo) {
   expect_refused("import garbage --out policy", "'garbage': ");
   expect_refused("import weights --out absent/policy",
                  "absent/policy: cannot be written (No such file");
+  expect_refused("import weights --out policy --robot absent", "absent");
+  expect_refused("import weights --out policy --set kp=50", "--set: found 'kp=50', expected KEY=");
+  expect_refused("import weights --out policy --set kp_nmprad", "--set: found 'kp_nmprad'");
+  expect_refused("import weights --out policy --set kd_nmsprad=-1", "is -1, expected at least 0");
   expect_refused("import weights --out .", ".: cannot be written (not a regular file)");
   expect_refused("import weights --out policy --name \"$(printf '\\377')\"", "UTF-8");
   EXPECT_FALSE(std::filesystem::exists(folder_.path("policy")));

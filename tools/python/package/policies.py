@@ -9,25 +9,13 @@ import numpy as np
 
 from . import _check, _native
 from .vector_env import VectorEnv
-
-_ENCODER = ("weight_ih", "weight_hh", "bias_ih", "bias_hh")
-
+from .weights import NETWORK, SCALES, torch_names
 
 class PolicyFile(NamedTuple):
     """What `read_policy` returns."""
 
     tensors: dict[str, np.ndarray]  # by their names in the file, PyTorch's layout
     spec: dict[str, Any]  # joint names, nominal pose, gains, scales, provenance, ...
-
-
-def _torch_names() -> dict[str, str]:
-    """Names of the file by those of nn.LSTM and of nn.Sequential with an activation after each layer."""
-    names = {f"encoder.{name}_l0": f"encoder.{name}" for name in _ENCODER}
-    for part in ("estimator", "actor"):
-        for layer in range(3):
-            for kind in ("weight", "bias"):
-                names[f"{part}.{2 * layer}.{kind}"] = f"{part}.{layer}.{kind}"
-    return names
 
 
 def _plain(name: str, tensor: Any) -> np.ndarray:
@@ -41,7 +29,7 @@ def _plain(name: str, tensor: Any) -> np.ndarray:
 
 def torch_state_dict(tensors: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The tensors of a policy file by PyTorch's names: those of the network of examples/ppo.py."""
-    theirs = {ours: name for name, ours in _torch_names().items()}
+    theirs = {ours: name for name, ours in torch_names().items()}
     return {theirs.get(name, name): tensor for name, tensor in tensors.items()}
 
 
@@ -66,10 +54,10 @@ def write_policy(
         raise ValueError(f"env: found {_check.shown(env)}, expected a VectorEnv")
     if not isinstance(state_dict, Mapping) or not all(isinstance(key, str) for key in state_dict):
         raise ValueError(f"state_dict: found {_check.shown(state_dict)}, expected tensors by name")
-    renamed = _torch_names()
+    renamed = torch_names()
     if "actor.4.weight" not in state_dict:
         renamed |= {ours: ours for ours in list(renamed.values())}
-    for ours in [*(f"encoder.{part}" for part in _ENCODER), "observation.mean", "observation.variance"]:
+    for ours in [*NETWORK[:4], *SCALES[:2]]:
         renamed[ours] = ours
     tensors = {renamed[key]: _plain(key, value) for key, value in state_dict.items() if key in renamed}
     if provenance is not None and not isinstance(provenance, Mapping):

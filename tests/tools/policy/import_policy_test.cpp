@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The script from_npz.py, as a user runs it on weights saved by numpy.
+// The script import_policy.py, as a user runs it on weights saved by numpy.
 #include <gtest/gtest.h>
 
 #include "policy/policy_file.h"
@@ -27,10 +27,10 @@ for change in sys.argv[1:]: exec(change)
 np.savez('policy.npz', **arrays)
 )";
 
-class FromNpzTest : public ProgramTest {
+class ImportPolicyTest : public ProgramTest {
  protected:
   /// With Debian's Python, the one that python3-numpy belongs to.
-  FromNpzTest() : ProgramTest("/usr/bin/python3") {}
+  ImportPolicyTest() : ProgramTest("/usr/bin/python3") {}
 
   void SetUp() override {
     write_policy_file(folder_.path("policy.safetensors"), random_policy_file());
@@ -44,7 +44,9 @@ class FromNpzTest : public ProgramTest {
 
   void save(const std::string& change = "") { ASSERT_EQ(run("save.py " + change), 0) << error(); }
   static std::string convert(const std::string& options) {
-    return "'" SANDRUNNER_FROM_NPZ "' policy.npz --out new.safetensors " + options;
+    return "'" SANDRUNNER_IMPORT_POLICY "' policy.npz --program '" SANDRUNNER_POLICY_PROGRAM
+           "' --out new.safetensors " +
+           options;
   }
   void expect_refused(const std::string& options, const std::string& cause) {
     ProgramTest::expect_refused(convert(options), cause);
@@ -52,7 +54,7 @@ class FromNpzTest : public ProgramTest {
   }
 };
 
-TEST_F(FromNpzTest, WritesAPolicyFileThatPassesItsGoldenExample) {
+TEST_F(ImportPolicyTest, WritesAPolicyFileThatPassesItsGoldenExample) {
   save();
   ASSERT_EQ(run(convert("--map names.txt --name mine --set kp_nmprad=40 --set observation_clip=3")),
             0)
@@ -61,6 +63,7 @@ TEST_F(FromNpzTest, WritesAPolicyFileThatPassesItsGoldenExample) {
   PolicyFile after = read_policy_file(folder_.path("new.safetensors"));  // runs the example
   EXPECT_EQ(after.spec.name, "mine");
   EXPECT_EQ(after.spec.kp_nmprad, 40.0);
+  EXPECT_EQ(after.parameters.observation_clip, 3.0f);
   const auto expected = tensors_of(before.parameters);
   const auto found = tensors_of(after.parameters);
   ASSERT_EQ(found.size(), expected.size());
@@ -69,13 +72,24 @@ TEST_F(FromNpzTest, WritesAPolicyFileThatPassesItsGoldenExample) {
   }
 }
 
-TEST_F(FromNpzTest, BadWeightsAreOneLineAndNoFile) {
+TEST_F(ImportPolicyTest, KnowsPyTorchsNamesAndFormatsOfFiles) {
+  save("\"arrays = {k.replace('lstm.', 'encoder.'): v for k, v in arrays.items()}\"");
+  ASSERT_EQ(run(convert("")), 0) << error();
+  const std::string bare = std::string("'" SANDRUNNER_GOLDEN_DIR) + "/random_network.safetensors'";
+  ASSERT_EQ(run("'" SANDRUNNER_IMPORT_POLICY "' " + bare +
+                " --program '" SANDRUNNER_POLICY_PROGRAM "' --out golden.safetensors"),
+            0)
+      << error();
+  EXPECT_EQ(read_policy_file(folder_.path("golden.safetensors")).spec.name, "random_network");
+}
+
+TEST_F(ImportPolicyTest, BadWeightsAreOneLineAndNoFile) {
   const std::pair<const char*, const char*> cases[] = {
-      {"del arrays['actor.1.bias']", "no tensor 'actor.1.bias'"},
+      {"del arrays['actor.1.bias']", "tensor 'actor.1.bias' is missing"},
       {"arrays['actor.1.bias'] = np.zeros(7)", "shape [7], expected [128]"},
-      {"arrays['actor.1.bias'] = np.full(128, np.nan)", "not finite"},
+      {"arrays['actor.1.bias'] = np.full(128, np.nan)", "is not finite"},
       {"arrays['actor.1.bias'] = np.full(128, 'a')", "'actor.1.bias' is not of numbers"},
-      {"arrays['estimate.variance'] = np.full(8, -1.0)", "a variance below 0"},
+      {"arrays['estimate.variance'] = np.full(8, -1.0)", "expected at least 0"},
   };
   for (const auto& [change, cause] : cases) {
     save(std::string("\"") + change + "\"");
@@ -83,22 +97,22 @@ TEST_F(FromNpzTest, BadWeightsAreOneLineAndNoFile) {
   }
 }
 
-TEST_F(FromNpzTest, BadOptionsAndFilesAreOneLineAndNoFile) {
+TEST_F(ImportPolicyTest, BadOptionsAndFilesAreOneLineAndNoFile) {
   save();
   for (const char* bad : {"kp_nmprad=4O", "kd_nmsprad=-1", "action_scale_rad=0",
                           "torque_limit_nm=", "observation_clip=nan", "action_clip=1_0"}) {
     expect_refused(std::string("--map names.txt --set ") + bad, bad);
   }
   write_file(folder_.path("latin"), "actor.1.bias \xe9\n");
-  expect_refused("--map latin", "latin: not a text file");
+  expect_refused("--map latin", "latin: found no text file");
   const std::string whole = read_file(folder_.path("policy.npz"));
   write_file(folder_.path("policy.npz"), whole.substr(0, whole.size() / 2));
-  expect_refused("--map names.txt", "policy.npz: not an npz of arrays");
+  expect_refused("--map names.txt", "policy.npz: found no npz of arrays");
 }
 
-TEST_F(FromNpzTest, WithoutNumpyOneLineSaysWhatToInstall) {
+TEST_F(ImportPolicyTest, WithoutNumpyOneLineSaysWhatToInstall) {
   // -S: Python without the folders that packages are installed to.
-  ProgramTest::expect_refused("-S " + convert(""), "from_npz.py: needs numpy");
+  ProgramTest::expect_refused("-S " + convert(""), "import_policy.py: needs numpy");
 }
 
 }  // namespace
