@@ -11,7 +11,7 @@
 namespace sandrunner {
 namespace {
 
-/// Whoever adds bytes gets them appended to a text, as gzip and base64, a piece at a time.
+/// Appends bytes to a text, as gzip and base64, a piece at a time.
 class PackedText {
  public:
   explicit PackedText(std::string& text) : text_(text) {
