@@ -46,12 +46,12 @@ MakeSpoil imu(const std::function<void(ImuSample&, double t_s)>& change) {
     };
   };
 }
-/// The attitude of `ticks` ago.
+/// The attitude of `ticks` ago; at first of less, as no attitude is to stay the same.
 MakeSpoil late_attitude(std::size_t ticks) {
   return [=] {
     return [=, past = std::vector<Rotation>()](SensorFrame& fresh, std::uint64_t) mutable {
       past.push_back(fresh.imu.orientation_wxyz);
-      fresh.imu.orientation_wxyz = past[past.size() - 1 - std::min(ticks, past.size() - 1)];
+      fresh.imu.orientation_wxyz = past[past.size() - 1 - std::min(ticks, past.size() / 2)];
     };
   };
 }
@@ -108,11 +108,12 @@ const std::vector<std::string> kGrounds = {"dry-sand",    "rigid",       "grass"
                                            "wet-sand",    "vinyl",       "athletic-track",
                                            "memory-foam", "air-mattress"};
 
-/// A walk of 25 s from Stand: a new corner of the envelope every 2.5 s, a push every 5 s.
+/// 10 s of Stand, then a walk: a new corner of the envelope every 2.5 s, a push every 5 s.
 Outcome random_walk(const World& world, const Snapshot& at, std::uint64_t seed,
                     const MakeSpoil& spoil, double duration_s) {
   AttackLoop loop(world, Drives::kGains, at);
   if (spoil) loop.robot.spoil = spoil();
+  loop.run(10.0);  // an offset of the gyroscope is not new with the first step
   const CommandEnvelope& most = world.config.controller.shaping.envelope;
   sim::Draw draw(seed);
   const auto corner = [&](double low, double high) {
