@@ -89,7 +89,8 @@ void report(const RunResult& result, const RunInfo& info, const Options& options
   } catch (const InputError&) {
     not_written = std::current_exception();
   }
-  written += recording.report() + robot.report();
+  const std::uint64_t never_seen = result.realtime ? result.realtime->records_dropped : 0;
+  written += recording.report(never_seen) + robot.report();
   // A terminal that was stopped must not keep the process, which holds the buses, from its end.
   if (isatty(STDOUT_FILENO) == 0 || takes_output(STDOUT_FILENO, kLastWords_ms)) {
     fmt::print("{}{}", summary_table(result, info), written);

@@ -105,10 +105,13 @@ void RunRecording::add_to(std::vector<TickSink*>& sinks) {
   if (ticks_) sinks.push_back(&*ticks_);
 }
 
-std::string RunRecording::report() const {
+std::string RunRecording::report(std::uint64_t never_seen) const {
   std::string lines;
-  if (recorder_) lines += recording_line(recorder_->result(), ticks_->result().dropped, path_);
-  if (black_box_) lines += black_box_lines(black_box_->result()) + replay_lines(ticks_->result());
+  if (!ticks_) return lines;
+  ReplayedResult replayed = ticks_->result();
+  replayed.dropped += never_seen;
+  if (recorder_) lines += recording_line(recorder_->result(), replayed.dropped, path_);
+  if (black_box_) lines += black_box_lines(black_box_->result()) + replay_lines(replayed);
   return lines;
 }
 

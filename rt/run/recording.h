@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,8 +28,8 @@ class RunRecording {
   void add_to(std::vector<TickSink*>& sinks);
 
   // After the run:
-  /// A line for each file and for all that went wrong.
-  std::string report() const;
+  /// A line for each file and for all that went wrong; `never_seen`: ticks that came to no sink.
+  std::string report(std::uint64_t never_seen) const;
   /// Throws InputError if the recording is not there or was cut by the disk.
   void require_whole() const;
 
