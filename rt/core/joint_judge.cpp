@@ -70,11 +70,13 @@ bool ignores_target(const GateConfig& config, const JointState& joints, int j,
   } else if (std::fabs(target_rad - m.frozen_target_rad[j]) > config.frozen_commanded_rad) {
     m.frozen_ticks[j] += ticks;
   }
+  const double still_target_rad =
+      context.mode == Mode::kWalk ? kStillTargetInWalk_rad : kStillTarget_rad;
   if (!context.stiff || std::fabs(joints.position_rad[j] - m.still_rad[j]) > kStill_rad) {
     m.still_rad[j] = joints.position_rad[j];
     m.still_target_rad[j] = target_rad;
     m.still_ticks[j] = 0;
-  } else if (std::fabs(target_rad - m.still_target_rad[j]) > kStillTarget_rad) {
+  } else if (std::fabs(target_rad - m.still_target_rad[j]) > still_target_rad) {
     m.still_ticks[j] += ticks;
   }
   return m.frozen_ticks[j] >= config.frozen_ticks || m.still_ticks[j] >= ticks_from_s(kStill_s);

@@ -22,9 +22,10 @@ inline constexpr double kNotFollowing_rad = 0.6;
 inline constexpr double kNotFollowing_s = 0.05;  ///< ... for this long
 /// Fault: a joint stays within this, a count of a coarse encoder, ...
 inline constexpr double kStill_rad = 0.0005;
-inline constexpr double kStillTarget_rad = 0.2;  ///< ... while its target is this far away from
-                                                 ///< where it was when the joint came to rest, ...
-inline constexpr double kStill_s = 0.1;          ///< ... for this long.
+/// ... while its target is this far away from where it was when the joint came to rest; a robot
+/// that stands up may press against something; ...
+inline constexpr double kStillTarget_rad = 0.4, kStillTargetInWalk_rad = 0.2;
+inline constexpr double kStill_s = 0.1;  ///< ... for this long.
 /// Fault in Stand: another joint of a leg is pushed away by this much, while one stays the same to
 /// the bit, ...
 inline constexpr double kPushed_rad = 0.04;
