@@ -172,6 +172,17 @@ bool was_folded(const GateConfig& config, const JointState& joints, JointMemory&
   return newest - m.folded_tick >= ticks_from_s(kFolded_s);
 }
 
+/// Whether a sample comes after a silence in which the joint may have lost its zero. In a short
+/// stall of the loop drives go on.
+bool was_silent(std::uint64_t tick, std::uint64_t before, const JointContext& context) noexcept {
+  const std::uint64_t gap = tick - before;
+  const std::uint64_t stalled =
+      before < context.stall_end_tick
+          ? std::min({context.stall_ticks, context.stall_end_tick - before, gap})
+          : 0;
+  return gap > kRestart_ticks || gap - stalled > kSilent_ticks;
+}
+
 /// A joint that comes back after a silence may have lost its zero.
 void doubt(int j, JointMemory& m) noexcept {
   const std::uint64_t joint = std::uint64_t{1} << j;
@@ -219,7 +230,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       return found;
     };
     if (m.seen != 0) {
-      if (joints.tick[j] - m.sample_tick[j] > kSilent_ticks) doubt(j, m);
+      if (was_silent(joints.tick[j], m.sample_tick[j], context)) doubt(j, m);
       const double way_rad = std::fabs(joints.position_rad[j] - m.position_rad[j]);
       const double reach_rad =
           config.encoder_jump_rad +

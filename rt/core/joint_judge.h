@@ -41,8 +41,9 @@ inline constexpr double kRest_radps = 0.05;
 /// A gap between two samples that is longer than this, and longer than joints_fault_ticks, is a
 /// stall of the loop.
 inline constexpr std::uint64_t kShortestGap_ticks = 8;
-/// A joint that was silent for longer than this may have lost its zero.
-inline constexpr std::uint64_t kSilent_ticks = 200;
+/// A joint that was silent for longer than this while the loop ran may have lost its zero, and so
+/// may every joint after a stall in which a drive has time to restart.
+inline constexpr std::uint64_t kSilent_ticks = 200, kRestart_ticks = 1000;
 /// A doubt ends when all joints have stayed within this of where they are, in the lying pose, ...
 inline constexpr double kFoldedStill_rad = 0.01;
 inline constexpr double kFolded_s = 0.5;  ///< ... for this long, the drives off.
@@ -90,6 +91,8 @@ struct JointContext {
   const ImuSample* imu = nullptr;      ///< null: not usable, or the robot hangs
   bool stiff = false;                  ///< the last command had stiffness
   const JointArray<double>& sent_rad;  ///< its positions
+  /// Tick that ended the latest stall of the loop, and the ticks that it took.
+  std::uint64_t stall_end_tick = 0, stall_ticks = 0;
 };
 
 struct JointVerdict {

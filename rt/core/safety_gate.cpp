@@ -160,7 +160,9 @@ GateVerdict SafetyGate::judge(const GateInput& input, Mode mode, GateState& stat
                        .mode_before = state.mode,
                        .imu = imu_usable && !config_.hanging ? &sensors.imu : nullptr,
                        .stiff = state.sent != 0,
-                       .sent_rad = state.sent_rad},
+                       .sent_rad = state.sent_rad,
+                       .stall_end_tick = state.stall_end_tick,
+                       .stall_ticks = state.stall_ticks},
                       state.joints);
     found |= verdict.faults;
     at_fault |= verdict.joints;

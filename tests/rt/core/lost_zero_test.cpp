@@ -98,5 +98,30 @@ TEST_F(LostZeroTest, IsForgivenOnceTheJointWasWhereItShouldBe) {
   EXPECT_TRUE(loop.output.command.enabled());
 }
 
+/// Mode of a robot that is armed again after a stall of the loop in Fault, in which it sank: a
+/// joint is 0.5 rad from where it was.
+Mode armed_after_stall(std::uint64_t ticks) {
+  FakeLoop loop;
+  loop.reach(Mode::kStand);
+  loop.robot.now.emergency_stop = 1;
+  loop.run_s(0.01);
+  loop.robot.now.emergency_stop = 0;
+  loop.robot.now.tick += ticks;
+  loop.run_s(2.5);
+  loop.request(ModeRequest::kResetFault);
+  EXPECT_EQ(loop.output.mode, Mode::kPassive);
+  for (int n = 0; n < 4000; ++n) {
+    loop.robot.now.joints.position_rad[kJoint] -= 0.5 / 4000.0;
+    loop.tick();
+  }
+  loop.request(ModeRequest::kArm);
+  return loop.output.mode;
+}
+
+TEST(LostZeroAfterStallTest, DrivesGoOnInAShortStallOfTheLoopAndMayRestartInALongOne) {
+  EXPECT_EQ(armed_after_stall(220), Mode::kDamping);
+  EXPECT_EQ(armed_after_stall(kRestart_ticks + 1), Mode::kFault);
+}
+
 }  // namespace
 }  // namespace sandrunner
