@@ -166,7 +166,7 @@ void to_policy(const ParameterLayout& layout, const std::vector<float>& paramete
   policy.encoder_weight_ih = columns(0, kProprioceptionSize);
   policy.encoder_weight_hh = columns(kProprioceptionSize + 1, hidden);
   policy.encoder_bias_ih = columns(kProprioceptionSize, 1);
-  policy.encoder_bias_hh.assign(static_cast<std::size_t>(4 * hidden), 0.0f);
+  policy.encoder_bias_hh.assign(policy.encoder_bias_ih.size(), 0.0f);
 }
 
 void from_policy(const NetworkParameters& policy, const ParameterLayout& layout,
