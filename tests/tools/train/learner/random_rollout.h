@@ -42,7 +42,8 @@ BasicRollout<Scalar> random_rollout(const RolloutShape& shape, int memory) {
   // If it ends in the number of observations that count, a TCN's: few, some and all.
   if (memory == kTcnPast * kProprioceptionSize + 1) {
     for (int env = 0; env < shape.envs; ++env) {
-      rollout.initial_memory(0)(memory - 1, env) = static_cast<Scalar>((env % 3) * kTcnPast / 2);
+      const int observations = env % 3 * kTcnPast / 2;
+      rollout.initial_memory(0)(memory - 1, env) = static_cast<Scalar>(observations);
     }
   }
   for (int k = 0; k < kActionSize; ++k) {
