@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -50,9 +49,10 @@ sim::TerrainDescription read(const WantedGround& wanted, const std::string& sett
     throw InputError(fmt::format("terrain: '{}', expected one of {}", one_line(wanted.preset),
                                  fmt::join(sim::terrain_preset_names(), ", ")));
   }
-  const auto keys = std::views::keys(kOffered);
+  std::vector<std::string_view> keys;
+  for (const auto& [key, member] : kOffered) keys.emplace_back(key);
   for (const auto& [key, value] : wanted.set) {
-    if (std::ranges::find(keys, std::string_view(key)) == keys.end()) {
+    if (std::ranges::count(keys, key) == 0) {
       throw InputError(
           fmt::format("terrain: '{}', expected one of {}", one_line(key), fmt::join(keys, ", ")));
     }
