@@ -27,6 +27,13 @@ double distance(const JointArray<double>& a, const JointArray<double>& b) noexce
 /// it, and a push by 0.8 m/s is over sooner.
 constexpr double kLeaning = 0.06, kLeaning_s = 0.5;
 
+/// In Walk, knees that give less than this share of what they gave in Stand, low-passed over this
+/// time, do not carry the robot. Sound robots give 0.46 and more on all presets, lifted ones 0.
+constexpr double kLifted = 0.3, kLifted_s = 0.5;
+/// In Stand they settle for this long, and then give at least this share of their limits, or they
+/// say nothing.
+constexpr double kStood_s = 0.5, kStoodShare = 0.03;
+
 /// Tilted by more than 20 degrees: stiff legs would topple a robot that is to lie down.
 bool leans(const ImuSample& imu) noexcept {
   constexpr double kCosine = 0.93969262078590838;
@@ -179,6 +186,33 @@ void Controller::watch_lean(const ImuSample& imu, std::uint64_t tick) noexcept {
   }
 }
 
+void Controller::watch_load(const JointState& joints) noexcept {
+  if ((kCarrying & mode_set(state_.mode)) == 0) {
+    state_.knee_nm = state_.stood_nm = {};
+    state_.stood_ticks = 0;
+    return;
+  }
+  double carried = 0.0, carried_in_stand = 0.0, least = 0.0;
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    const int knee = kJointsPerLeg * leg + 2;
+    double& knee_nm = state_.knee_nm[leg];
+    knee_nm += (joints.torque_nm[knee] - knee_nm) * kControlPeriod_s / kLifted_s;
+    const double least_nm = kStoodShare * config_.gate.torque_limit_nm[knee];
+    carried += knee_nm * state_.stood_nm[leg];
+    carried_in_stand += state_.stood_nm[leg] * state_.stood_nm[leg];
+    least += least_nm * least_nm;
+  }
+  const bool stood = state_.stood_ticks == ticks_from_s(kStood_s);
+  if (state_.mode == Mode::kStand && !stood) {
+    ++state_.stood_ticks;
+    state_.stood_nm = state_.knee_nm;
+  }
+  if (state_.mode == Mode::kWalk && stood && carried_in_stand > least &&
+      carried < kLifted * carried_in_stand) {
+    state_.warnings |= warning_bit(Warning::kLifted);
+  }
+}
+
 bool Controller::drives_on(std::uint64_t tick) const noexcept {
   return tick < state_.disable_tick && state_.fault_steps < ticks_from_s(config_.damping.fault_s);
 }
@@ -241,6 +275,7 @@ Mode Controller::after_time(Mode mode, const ControllerInput& input) noexcept {
   const std::uint64_t tick = input.sensors.tick;
   if (mode != state_.mode) return mode;
   watch_lean(input.sensors.imu, tick);
+  watch_load(input.sensors.joints);
   if (state_.warnings != 0) {
     const Mode next = lie(mode, tick);
     if (next != mode) return next;

@@ -110,7 +110,10 @@ struct ControllerState {
   // Stand.
   Vector3 stood_up{};        ///< the vertical in the body's frame, when its motion had ended
   std::uint64_t stands = 0;  ///< 1: it has
-  std::uint64_t leans_since_tick = 0;  ///< since when the body has leaned away from that
+  std::uint64_t leans_since_tick = 0;       ///< since when the body has leaned away from that
+  std::array<double, kNumLegs> knee_nm{};   ///< low-passed torques while the robot carries itself
+  std::array<double, kNumLegs> stood_nm{};  ///< these after half a second of Stand
+  std::uint64_t stood_ticks = 0;            ///< of that half second
 
   // Walk.
   VelocityCommand command;     ///< inside the envelope, after the slew, before the yaw clip
@@ -132,7 +135,8 @@ struct ControllerState {
   GateState gate;
 };
 static_assert(std::is_trivially_copyable_v<ControllerState>);
-static_assert(sizeof(ControllerState) == 8 * (26 + 3 * kNumJoints) + sizeof(GateState),
+static_assert(sizeof(ControllerState) ==
+                  8 * (27 + 3 * kNumJoints + 2 * kNumLegs) + sizeof(GateState),
               "no padding");
 
 struct ControllerInput {
@@ -181,6 +185,7 @@ class Controller {
   void pause_motion(std::uint64_t tick) noexcept;
   void yield_to_heat(const JointState& joints) noexcept;
   void watch_lean(const ImuSample& imu, std::uint64_t tick) noexcept;
+  void watch_load(const JointState& joints) noexcept;
   bool drives_on(std::uint64_t tick) const noexcept;
   bool standing(const SensorFrame& sensors) const noexcept;
   std::uint64_t lost_ticks(const OperatorCommand& command, std::uint64_t tick) const noexcept;

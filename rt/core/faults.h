@@ -152,8 +152,9 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
      "a drive reports another torque than it was commanded, by 15 % of its limit", "drives",
      kDriven, "40 ms"},
     {Fault::kNotFollowing, "not_following",
-     "a joint is 0.6 rad away from its target: something holds it", "drives", kStandUpOnly,
-     "50 ms"},
+     "something holds a joint: it is 0.6 rad away from its target, or it stays in its place in "
+     "Walk while its target moves by 0.3 rad",
+     "drives", kStandUpOnly | kWalkOnly, "50 ms, in Walk 0.2 s"},
     {Fault::kSpeedMismatch, "speed_mismatch",
      "a joint's position does not change as its speed says", "drives", kDriven, "0.3 rad"},
     {Fault::kJointMisplaced, "joint_misplaced",

@@ -58,28 +58,36 @@ bool frozen_in_motion(const GateConfig& config, const JointState& joints, int j,
   return moves && !(may_rest && speed_radps <= kRest_radps);
 }
 
+/// For how many ticks, in all that count, joint j has stayed within `within_rad` of a place while
+/// its target has been farther than `away_rad` from where it was when the joint came there.
+std::uint64_t rest_ticks(const JointState& joints, int j, double target_rad, bool counts,
+                         double within_rad, double away_rad, const JointMemory& m,
+                         JointRest& rest) noexcept {
+  if (!counts || std::fabs(joints.position_rad[j] - rest.rad[j]) > within_rad) {
+    rest.rad[j] = joints.position_rad[j];
+    rest.target_rad[j] = target_rad;
+    rest.ticks[j] = 0;
+  } else if (std::fabs(target_rad - rest.target_rad[j]) > away_rad) {
+    rest.ticks[j] += joints.tick[j] - m.sample_tick[j];
+  }
+  return rest.ticks[j];
+}
+
 /// Whether joint j has stayed where it is for long since its target moved away: to the bit, or to a
 /// count of an encoder that is stuck.
 bool ignores_target(const GateConfig& config, const JointState& joints, int j,
                     const JointContext& context, JointMemory& m) noexcept {
-  const std::uint64_t ticks = joints.tick[j] - m.sample_tick[j];
   const double target_rad = context.sent_rad[j];
   if (!context.stiff || m.changed_tick[j] == joints.tick[j]) {
     m.frozen_target_rad[j] = target_rad;
     m.frozen_ticks[j] = 0;
   } else if (std::fabs(target_rad - m.frozen_target_rad[j]) > config.frozen_commanded_rad) {
-    m.frozen_ticks[j] += ticks;
+    m.frozen_ticks[j] += joints.tick[j] - m.sample_tick[j];
   }
-  const double still_target_rad =
-      context.mode == Mode::kWalk ? kStillTargetInWalk_rad : kStillTarget_rad;
-  if (!context.stiff || std::fabs(joints.position_rad[j] - m.still_rad[j]) > kStill_rad) {
-    m.still_rad[j] = joints.position_rad[j];
-    m.still_target_rad[j] = target_rad;
-    m.still_ticks[j] = 0;
-  } else if (std::fabs(target_rad - m.still_target_rad[j]) > still_target_rad) {
-    m.still_ticks[j] += ticks;
-  }
-  return m.frozen_ticks[j] >= config.frozen_ticks || m.still_ticks[j] >= ticks_from_s(kStill_s);
+  const double away_rad = context.mode == Mode::kWalk ? kStillTargetInWalk_rad : kStillTarget_rad;
+  const std::uint64_t still =
+      rest_ticks(joints, j, target_rad, context.stiff, kStill_rad, away_rad, m, m.still);
+  return m.frozen_ticks[j] >= config.frozen_ticks || still >= ticks_from_s(kStill_s);
 }
 
 /// Whether joint j has stayed the same to the bit while something pushes the other joints of its
@@ -135,14 +143,18 @@ bool torque_missing(const GateConfig& config, const JointState& joints, int j,
   return ticks > ticks_from_s(kTorqueMissing_s);
 }
 
-/// Whether something has long held joint j away from its target.
+/// Whether something has long held joint j away from its target, or in its place.
 bool not_following(const JointState& joints, int j, const JointContext& context,
                    JointMemory& m) noexcept {
+  const double target_rad = context.sent_rad[j];
   const bool behind = context.mode == Mode::kStandUp && context.stiff &&
-                      std::fabs(context.sent_rad[j] - joints.position_rad[j]) > kNotFollowing_rad;
+                      std::fabs(target_rad - joints.position_rad[j]) > kNotFollowing_rad;
   std::uint64_t& ticks = m.behind_ticks[j];
   ticks = behind ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
-  return ticks > ticks_from_s(kNotFollowing_s);
+  const bool walks = context.mode == Mode::kWalk && context.stiff;
+  const std::uint64_t held =
+      rest_ticks(joints, j, target_rad, walks, kHeld_rad, kHeldTarget_rad, m, m.held);
+  return ticks > ticks_from_s(kNotFollowing_s) || held > ticks_from_s(kHeld_s);
 }
 
 bool near(double a_rad, double b_rad) noexcept {
@@ -247,7 +259,7 @@ JointVerdict judge_samples(const GateConfig& config, const JointState& joints,
       find(not_following(joints, j, context, m), Fault::kNotFollowing);
     } else {
       m.changed_tick[j] = joints.tick[j];
-      m.still_rad[j] = joints.position_rad[j];
+      m.still.rad[j] = m.held.rad[j] = joints.position_rad[j];
     }
     if (faults != 0) verdict.joints |= joint;
     verdict.faults |= faults;

@@ -20,6 +20,11 @@ inline constexpr double kTorqueMissing_s = 0.04;  ///< ... for this long
 /// Fault in StandUp: a joint is this far from its target ...
 inline constexpr double kNotFollowing_rad = 0.6;
 inline constexpr double kNotFollowing_s = 0.05;  ///< ... for this long
+/// Fault in Walk: a joint stays within this ...
+inline constexpr double kHeld_rad = 0.01;
+/// ... while its target is this far away from where it was when the joint came to rest, ...
+inline constexpr double kHeldTarget_rad = 0.3;
+inline constexpr double kHeld_s = 0.2;  ///< ... for this long. Sound robots walk with 0.13 at most.
 /// Fault: a joint stays within this, a count of a coarse encoder, ...
 inline constexpr double kStill_rad = 0.0005;
 /// ... while its target is this far away from where it was when the joint came to rest; a robot
@@ -51,6 +56,13 @@ inline constexpr double kFolded_s = 0.5;  ///< ... for this long, the drives off
 /// pose, rad. One turn of a motor moves the zero of a 6.75:1 drive by 0.93 rad.
 inline constexpr double kMisplaced_rad = 0.3;
 
+/// Joints that rest while they are commanded elsewhere.
+struct JointRest {
+  JointArray<double> rad{};           ///< position near which the joint rests
+  JointArray<double> target_rad{};    ///< commanded position when it came there
+  JointArray<std::uint64_t> ticks{};  ///< for which that has been far away
+};
+
 /// What is remembered of the joints. All members 64 bits wide.
 struct JointMemory {
   double body_motion = 0.0;     ///< of the body since a joint last changed; 1 is too much
@@ -63,9 +75,8 @@ struct JointMemory {
   JointArray<std::uint64_t> changed_tick{};  ///< sample since which they have had the same bits
   JointArray<double> frozen_target_rad{};    ///< commanded position at the last change
   JointArray<std::uint64_t> frozen_ticks{};  ///< for which it has been far from that
-  JointArray<double> still_rad{};            ///< position near which the joint rests
-  JointArray<double> still_target_rad{};     ///< commanded position when it came there
-  JointArray<std::uint64_t> still_ticks{};   ///< for which that has been far away
+  JointRest still;                           ///< of an encoder that is stuck
+  JointRest held;                            ///< of a joint that something holds
   /// Of each joint's leg, while the joint rests: low-passed positions and commanded positions.
   JointArray<LegJoints<double>> leg_position_rad{}, leg_target_rad{};
   std::uint64_t stand_tick = 0;              ///< newest sample outside Stand
@@ -82,7 +93,7 @@ struct JointMemory {
   JointArray<double> folded_rad{};  ///< where all joints are still, in the lying pose, ...
   std::uint64_t folded_tick = 0;    ///< ... and since when
 };
-static_assert(sizeof(JointMemory) == 8 * (8 + 22 * kNumJoints), "no padding");
+static_assert(sizeof(JointMemory) == 8 * (8 + 25 * kNumJoints), "no padding");
 
 /// What a judgement of joints rests on besides their values.
 struct JointContext {

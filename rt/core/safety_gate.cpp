@@ -352,8 +352,9 @@ SafeCommand SafetyGate::pass(const JointCommand& wanted, bool enabled, const Joi
     state.sent_rad = asked_rad;
     if (!stiff_before) {
       state.joints.changed_tick = joints.tick;
-      state.joints.still_rad = joints.position_rad;
-      state.joints.still_target_rad = state.joints.frozen_target_rad = asked_rad;
+      state.joints.still.rad = state.joints.held.rad = joints.position_rad;
+      state.joints.still.target_rad = state.joints.held.target_rad = asked_rad;
+      state.joints.frozen_target_rad = asked_rad;
     }
   }
   return SafeCommand{allowed, true, 0};

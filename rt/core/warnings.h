@@ -17,8 +17,9 @@ enum class Warning : std::uint64_t {
   kHeating = 1u << 1,
   kImuLate = 1u << 2,
   kLeaning = 1u << 3,
+  kLifted = 1u << 4,
 };
-inline constexpr int kNumWarnings = 4;
+inline constexpr int kNumWarnings = 5;
 
 constexpr std::uint64_t warning_bit(Warning warning) noexcept {
   return static_cast<std::uint64_t>(warning);
@@ -46,6 +47,10 @@ inline constexpr std::array<WarningRow, kNumWarnings> kWarningTable = {{
      "in Stand the body has leaned for half a second by 3.5 degrees from how it came to stand: the "
      "ground gives way",
      "past 45 and 60 degrees: `tilt`"},
+    {Warning::kLifted, "lifted",
+     "in Walk the knees have given less than 0.3 of what they gave in Stand for half a second: "
+     "the robot is held up",
+     "let go: `free_fall`, `tilt`"},
 }};
 
 // From the first limit to the second: time to stop and to lie down.
@@ -61,8 +66,8 @@ constexpr bool warnings_in_order() noexcept {
 }
 static_assert(warnings_in_order());
 
-/// Stable name of the lowest of these bits: "drive_warning", "heating", "imu_late", "leaning";
-/// "none".
+/// Stable name of the lowest of these bits: "drive_warning", "heating", "imu_late", "leaning",
+/// "lifted"; "none".
 constexpr const char* warning_name(std::uint64_t warnings) noexcept {
   const int bit = std::countr_zero(warnings);
   return bit < kNumWarnings ? kWarningTable[bit].name : "none";

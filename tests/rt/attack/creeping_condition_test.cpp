@@ -46,7 +46,7 @@ Landing landing(const World& world, const Snapshot& at, double wait_s, const Rep
   Landing seen;
   seen.walked_mps = length(loop.truth().velocity_mps);
   if (report != nullptr) {
-    loop.robot.spoil = [report](SensorFrame& fresh, std::uint64_t) { report->add_to(fresh); };
+    loop.robot.spoil = [report](SensorFrame& fresh, auto&&...) { report->add_to(fresh); };
   } else {
     loop.ask(request);
   }

@@ -21,8 +21,8 @@ Outcome drifting(const World& world, const Snapshot& at, const Vector3& axis, do
   AttackLoop loop(world, Drives::kGains, at);
   loop.command.velocity.vx_mps = 1.0;
   const double drift_rad = drift_deg * std::numbers::pi / 180.0;
-  loop.robot.spoil = [&](SensorFrame& fresh, std::uint64_t tick) {
-    const double since_s = static_cast<double>(tick - at.next_tick) * kControlPeriod_s;
+  loop.robot.spoil = [&](SensorFrame& fresh, const SensorFrame&, std::uint64_t n) {
+    const double since_s = static_cast<double>(n) * kControlPeriod_s;
     const double angle_rad =
         std::copysign(std::min(rate_radps * since_s, std::fabs(drift_rad)), drift_rad);
     fresh.imu.orientation_wxyz = turned(fresh.imu.orientation_wxyz, axis, angle_rad);

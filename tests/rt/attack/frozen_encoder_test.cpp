@@ -21,10 +21,10 @@ Outcome pushed(const World& world, const Snapshot& at, Drives drives, Frozen fro
                double vx_mps, double vy_mps) {
   AttackLoop loop(world, drives, at);
   loop.run(0.1);
-  const SensorFrame held = loop.loop.record().input.sensors;
+  const SensorFrame held = loop.record.input.sensors;
   if (frozen == Frozen::kEncoder) loop.robot.drive_is_misled = std::uint64_t{1} << joint;
   if (frozen != Frozen::kNothing) {
-    loop.robot.spoil = [held, joint](SensorFrame& fresh, std::uint64_t) {
+    loop.robot.spoil = [held, joint](SensorFrame& fresh, auto&&...) {
       fresh.joints.position_rad[joint] = held.joints.position_rad[joint];
       fresh.joints.velocity_radps[joint] = held.joints.velocity_radps[joint];
     };

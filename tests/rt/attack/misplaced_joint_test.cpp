@@ -36,8 +36,8 @@ class SupplyCut {
     loop.robot.limp = kAllJoints;
     bool silent = true;
     loop.step();
-    const JointState last = loop.loop.record().input.sensors.joints;
-    loop.robot.spoil = [&](SensorFrame& fresh, std::uint64_t) {
+    const JointState last = loop.record.input.sensors.joints;
+    loop.robot.spoil = [&](SensorFrame& fresh, auto&&...) {
       if (silent) {
         fresh.joints = last;
       } else if (!sound) {

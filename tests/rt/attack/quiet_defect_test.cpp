@@ -23,45 +23,15 @@ Outcome with_defect(const World& world, Drives drives, const Snapshot& at, doubl
   return watch(loop, duration_s);
 }
 
-/// Something holds these joints where they are, with a millimetre of give.
-Acts hold(std::uint64_t joints) {
-  return [joints](AttackLoop& loop) {
-    const JointArray<double> at_rad = loop.simulator.state().robot.rigid.q;
-    loop.hand = [=](sim::SimulatorState& state) {
-      const double phase = 0.05 * static_cast<double>(state.tick);
-      for (int j = 0; j < kNumJoints; ++j) {
-        if ((joints >> j & 1) == 0) continue;
-        state.robot.rigid.q[j] = at_rad[j] + 1e-3 * std::sin(phase);
-        state.robot.rigid.qd[j] = 1e-3 * 0.05 * kControlHz * std::cos(phase);
-      }
-    };
-  };
-}
-/// Carries the body 0.3 m higher within a second, and holds it there, level.
-void lift(AttackLoop& loop) {
-  loop.hand = [from = loop.simulator.state().robot.rigid,
-               n = 0.0](sim::SimulatorState& state) mutable {
-    const double u = std::min(++n / kControlHz, 1.0);
-    sim::RigidState<double>& x = state.robot.rigid;
-    x.position = from.position;
-    x.position.z += 0.3 * u;
-    x.velocity = {0.0, 0.0, u < 1.0 ? 0.3 : 0.0};
-    // A hand is never quite still.
-    x.angular_velocity = 0.02 * sim::Vec3<double>{std::sin(n / 700.0), std::sin(n / 900.0), 0.0};
-    const auto& [w, i, j, k] = x.orientation;
-    const Vector3 up = rotated(inverse({w, i, j, k}), {0.0, 0.0, kGravity_mps2});
-    state.linear_acceleration_mps2 = {up[0], up[1], up[2] + 0.05 * std::sin(n / 300.0)};
-  };
-}
 Acts limp(std::uint64_t joints) {
   return [joints](AttackLoop& loop) { loop.robot.limp = joints; };
 }
 /// Stuck but for a count of the encoder, where it is now.
 Acts stuck(int joint) {
   return [joint](AttackLoop& loop) {
-    const double at_rad = loop.loop.record().input.sensors.joints.position_rad[joint];
+    const double at_rad = loop.record.input.sensors.joints.position_rad[joint];
     loop.robot.drive_is_misled = std::uint64_t{1} << joint;
-    loop.robot.spoil = [=](SensorFrame& fresh, std::uint64_t n) {
+    loop.robot.spoil = [=](SensorFrame& fresh, const SensorFrame&, std::uint64_t n) {
       fresh.joints.position_rad[joint] = at_rad + (n / 7 % 2 == 0 ? 0.0 : 0.0004);
       fresh.joints.velocity_radps[joint] = n % 2 == 0 ? 0.01 : -0.01;
     };
@@ -70,16 +40,16 @@ Acts stuck(int joint) {
 /// The speed alone.
 Acts speed_stuck(int joint) {
   return [joint](AttackLoop& loop) {
-    loop.robot.spoil = [=](SensorFrame& fresh, std::uint64_t n) {
+    loop.robot.spoil = [=](SensorFrame& fresh, const SensorFrame&, std::uint64_t n) {
       fresh.joints.velocity_radps[joint] = n % 2 == 0 ? 0.01 : -0.01;
     };
   };
 }
 Acts frozen(int joint) {
   return [joint](AttackLoop& loop) {
-    const JointState held = loop.loop.record().input.sensors.joints;
+    const JointState held = loop.record.input.sensors.joints;
     loop.robot.drive_is_misled = std::uint64_t{1} << joint;
-    loop.robot.spoil = [=](SensorFrame& fresh, std::uint64_t) {
+    loop.robot.spoil = [=](SensorFrame& fresh, auto&&...) {
       fresh.joints.position_rad[joint] = held.position_rad[joint];
       fresh.joints.velocity_radps[joint] = held.velocity_radps[joint];
     };
@@ -111,9 +81,9 @@ TEST(QuietDefectTest, CampaignOverDefects) {
       print_outcome(robot + ", " + name, with_defect(world, gains, at, duration_s, acts, vx_mps));
     };
     row("Walk, control", walk, 10.0, nullptr);
-    row("Walk, HAA held", walk, 10.0, hold(1u << 0));
-    row("Walk, HFE held", walk, 10.0, hold(1u << 1));
-    row("Walk, KFE held", walk, 10.0, hold(1u << 2));
+    row("Walk, HAA held", walk, 10.0, [](AttackLoop& loop) { hold(loop, 1u << 0); });
+    row("Walk, HFE held", walk, 10.0, [](AttackLoop& loop) { hold(loop, 1u << 1); });
+    row("Walk, KFE held", walk, 10.0, [](AttackLoop& loop) { hold(loop, 1u << 2); });
     row("Walk, lifted", walk, 9.0, lift);
     row("Walk, four HAA limp", walk, 5.0, limp(kAllHaa));
     for (const double vx_mps : {0.0, 0.5}) {

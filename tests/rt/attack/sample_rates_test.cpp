@@ -103,17 +103,10 @@ struct SensorCase {
   std::function<void(AttackLoop&)> begin;
 };
 
-using Spoil = std::function<void(SensorFrame&, const SensorFrame& held, std::uint64_t n)>;
-
-/// Spoils every frame from now on; `held` is the last good one.
-std::function<void(AttackLoop&)> sensor(const Spoil& spoil) {
-  return [spoil](AttackLoop& loop) {
-    const SensorFrame held = loop.loop.record().input.sensors;
-    const std::uint64_t begin = loop.loop.next_tick();
-    loop.robot.spoil = [=](SensorFrame& fresh, std::uint64_t tick) {
-      spoil(fresh, held, tick - begin);
-    };
-  };
+/// Spoils every frame from now on.
+std::function<void(AttackLoop&)> sensor(
+    const std::function<void(SensorFrame&, const SensorFrame& held, std::uint64_t n)>& spoil) {
+  return [spoil](AttackLoop& loop) { loop.robot.spoil = spoil; };
 }
 
 std::vector<SensorCase> every_sensor_case() {
@@ -235,18 +228,8 @@ std::map<Mode, Snapshot> snapshots_of(const Corner& corner, const World& world) 
     EXPECT_EQ(loop.mode(), mode) << corner.name();
     snapshots.emplace(mode, loop.snapshot());
   };
-  loop.run(0.1);
-  keep(Mode::kPassive);
-  loop.ask(ModeRequest::kArm);
-  loop.run(0.1);
-  keep(Mode::kDamping);
-  loop.ask(ModeRequest::kStand);
-  loop.run(1.5);
-  keep(Mode::kStandUp);
-  loop.run(2.5);
-  keep(Mode::kStand);
-  loop.walk({.vx_mps = 1.0}, 4.0);
-  keep(Mode::kWalk);
+  loop.command.velocity.vx_mps = 1.0;
+  walk_through_modes(loop, 2.5, 4.0, keep);
   loop.run(10.0);
   const bool sound = loop.fault() == Fault::kNone;
   EXPECT_TRUE(sound) << corner.name() << ", control: " << fault_name(loop.fault());

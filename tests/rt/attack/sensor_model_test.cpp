@@ -15,12 +15,12 @@
 namespace sandrunner::attack {
 namespace {
 
-using MakeSpoil = std::function<std::function<void(SensorFrame&, std::uint64_t)>()>;
+using MakeSpoil = std::function<decltype(FaultyRobot::spoil)()>;
 
 /// Low-pass of first order of a joint's speed or torque.
 MakeSpoil low_pass(JointArray<double> JointState::*values, double time_s) {
   return [=] {
-    return [=, low = JointArray<double>{}](SensorFrame& fresh, std::uint64_t) mutable {
+    return [=, low = JointArray<double>{}](SensorFrame& fresh, auto&&...) mutable {
       for (int j = 0; j < kNumJoints; ++j) {
         low[j] += kControlPeriod_s / time_s * ((fresh.joints.*values)[j] - low[j]);
       }
@@ -31,7 +31,7 @@ MakeSpoil low_pass(JointArray<double> JointState::*values, double time_s) {
 /// `known` is what hardware.drive[].reported_torque says.
 MakeSpoil torque_times(double scale, double known = 1.0) {
   return [=] {
-    return [=](SensorFrame& fresh, std::uint64_t) {
+    return [=](SensorFrame& fresh, auto&&...) {
       for (double& nm : fresh.joints.torque_nm) nm *= scale / known;
     };
   };
@@ -40,7 +40,7 @@ MakeSpoil torque_times(double scale, double known = 1.0) {
 /// Changes the IMU alone; `t_s` counts from the start of the walk.
 MakeSpoil imu(const std::function<void(ImuSample&, double t_s)>& change) {
   return [=] {
-    return [=, n = 0.0](SensorFrame& fresh, std::uint64_t) mutable {
+    return [=, n = 0.0](SensorFrame& fresh, auto&&...) mutable {
       change(fresh.imu, n * kControlPeriod_s);
       n += 1.0;
     };
@@ -49,7 +49,7 @@ MakeSpoil imu(const std::function<void(ImuSample&, double t_s)>& change) {
 /// The attitude of `ticks` ago; at first of less, as no attitude is to stay the same.
 MakeSpoil late_attitude(std::size_t ticks) {
   return [=] {
-    return [=, past = std::vector<Rotation>()](SensorFrame& fresh, std::uint64_t) mutable {
+    return [=, past = std::vector<Rotation>()](SensorFrame& fresh, auto&&...) mutable {
       past.push_back(fresh.imu.orientation_wxyz);
       fresh.imu.orientation_wxyz = past[past.size() - 1 - std::min(ticks, past.size() / 2)];
     };
@@ -58,7 +58,7 @@ MakeSpoil late_attitude(std::size_t ticks) {
 /// Speeds in steps of `step_radps`.
 MakeSpoil coarse_speed(double step_radps) {
   return [=] {
-    return [=](SensorFrame& fresh, std::uint64_t) {
+    return [=](SensorFrame& fresh, auto&&...) {
       for (double& v : fresh.joints.velocity_radps) v = step_radps * std::round(v / step_radps);
     };
   };

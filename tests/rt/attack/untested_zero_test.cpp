@@ -12,17 +12,17 @@
 namespace sandrunner::attack {
 namespace {
 
-using Breaks = std::function<void(AttackedRobot&)>;
+using Breaks = std::function<void(FaultyRobot&)>;
 
 /// The joints `joint`, `joint` + 3, ... report `scale` times their position: a gear that is wrong.
 /// They then give `scale` times the torque that they are commanded, and report the commanded one.
 Breaks wrong_gear(int joint, double scale) {
-  return [=](AttackedRobot& robot) {
+  return [=](FaultyRobot& robot) {
     for (int j = joint; j < kNumJoints; j += kJointsPerLeg) {
       robot.drive_is_misled |= std::uint64_t{1} << j;
       robot.torque_scale[j] = scale;
     }
-    robot.spoil = [=](SensorFrame& fresh, std::uint64_t) {
+    robot.spoil = [=](SensorFrame& fresh, auto&&...) {
       for (int j = joint; j < kNumJoints; j += kJointsPerLeg) {
         fresh.joints.position_rad[j] *= scale;
         fresh.joints.velocity_radps[j] *= scale;
@@ -32,11 +32,11 @@ Breaks wrong_gear(int joint, double scale) {
   };
 }
 Breaks zero_off(int joint, double offset_rad) {
-  return [=](AttackedRobot& robot) {
+  return [=](FaultyRobot& robot) {
     for (int j = joint; j < kNumJoints; j += kJointsPerLeg) {
       robot.drive_is_misled |= std::uint64_t{1} << j;
     }
-    robot.spoil = [=](SensorFrame& fresh, std::uint64_t) {
+    robot.spoil = [=](SensorFrame& fresh, auto&&...) {
       for (int j = joint; j < kNumJoints; j += kJointsPerLeg) {
         fresh.joints.position_rad[j] += offset_rad;
       }
@@ -44,9 +44,8 @@ Breaks zero_off(int joint, double offset_rad) {
   };
 }
 Breaks imu_turned(double yaw_deg) {
-  return [=](AttackedRobot& robot) {
-    robot.spoil = [yaw_rad = yaw_deg * std::numbers::pi / 180.0](SensorFrame& fresh,
-                                                                 std::uint64_t) {
+  return [=](FaultyRobot& robot) {
+    robot.spoil = [yaw_rad = yaw_deg * std::numbers::pi / 180.0](SensorFrame& fresh, auto&&...) {
       const Vector3 up{0.0, 0.0, 1.0};
       const Rotation back = turned({1.0, 0.0, 0.0, 0.0}, up, -yaw_rad);
       ImuSample& imu = fresh.imu;

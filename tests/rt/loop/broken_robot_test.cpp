@@ -28,14 +28,12 @@ class BrokenRobotTest : public EveryModeTest {
  protected:
   /// Breaks the robot in `mode` and watches it for up to `duration_s`.
   Outcome outcome(Mode mode, Drives drives, const std::function<void(DisturbedLoop&)>& breaks,
-                  double duration_s = 3.0,
-                  const std::function<void(DisturbedLoop&)>& each_tick = nullptr) {
+                  double duration_s = 3.0) {
     DisturbedLoop loop(config, policy, drives, snapshots.at(mode));
     loop.run(0.05);
     breaks(loop);
     Outcome seen;
     for (std::uint64_t n = 0; n < ticks_from_s(duration_s); ++n) {
-      if (each_tick) each_tick(loop);
       loop.step();
       const RobotTruth& truth = loop.record.truth;
       for (const double v : truth.joint_velocity_radps) {
@@ -118,28 +116,47 @@ TEST_F(BrokenRobotTest, ADriveWhoseTorqueHasTheWrongSignIsStoppedBeforeItIsFast)
   for (int joint = 0; joint < kJointsPerLeg; ++joint) {
     const auto inverted = [joint](DisturbedLoop& loop) {
       loop.robot.inverted = std::uint64_t{1} << joint;
-      loop.ask(ModeRequest::kArm);
+      loop.ask(ModeRequest::kStand);
     };
-    const auto stand = [](DisturbedLoop& loop) {
-      if (loop.record.output.mode == Mode::kDamping) loop.ask(ModeRequest::kStand);
-    };
-    const Outcome seen = outcome(Mode::kPassive, Drives::kGains, inverted, 3.0, stand);
+    const Outcome seen = outcome(Mode::kDamping, Drives::kGains, inverted);
     EXPECT_NE(seen.fault, Fault::kNone) << "joint " << joint;
     EXPECT_LT(seen.speed_radps, 30.0) << "joint " << joint;
   }
 }
 
 TEST_F(BrokenRobotTest, AJointThatIsHeldInStandUpIsAFaultAndNotPressedWithAllTorque) {
-  DisturbedLoop lying(config, policy, Drives::kGains, snapshots.at(Mode::kDamping));
-  const double knee_rad = lying.simulator.state().robot.rigid.q[2];
   for (const double gain_ramp_s : {0.0, 2.0}) {
     config.controller.stand.gain_ramp_s = gain_ramp_s;
     const Outcome seen = outcome(
-        Mode::kDamping, Drives::kGains, [](DisturbedLoop& loop) { loop.ask(ModeRequest::kStand); },
-        6.0, [&](DisturbedLoop& loop) { hold_below(loop.simulator, 2, knee_rad); });
+        Mode::kDamping, Drives::kGains,
+        [](DisturbedLoop& loop) {
+          const JointArray<double> at_rad = loop.simulator.state().robot.rigid.q;
+          loop.hand = hold(1u << 2, all_joints(-10.0), at_rad);
+          loop.ask(ModeRequest::kStand);
+        },
+        6.0);
     EXPECT_EQ(seen.fault, Fault::kNotFollowing);
     EXPECT_LE(seen.torque_nm, 0.65 * config.robot.model.torque_limit_nm[2] + 1e-9);
   }
+}
+
+TEST_F(BrokenRobotTest, AJointThatIsHeldInWalkIsAFault) {
+  for (const int joint : {1, 2, 11}) {
+    const Outcome seen = outcome(
+        Mode::kWalk, Drives::kGains, [&](DisturbedLoop& loop) { hold(loop, 1u << joint); }, 5.0);
+    EXPECT_EQ(seen.fault, Fault::kNotFollowing) << "joint " << joint;
+    EXPECT_LT(seen.tilt_rad, 0.3) << "joint " << joint;
+  }
+}
+
+TEST_F(BrokenRobotTest, ALiftedRobotEndsItsWalkWithoutAFault) {
+  DisturbedLoop loop(config, policy, Drives::kGains, snapshots.at(Mode::kWalk));
+  lift(loop);
+  loop.run(1.5);
+  EXPECT_EQ(loop.record.output.warnings, warning_bit(Warning::kLifted));
+  loop.run(4.0);
+  EXPECT_EQ(loop.record.output.mode, Mode::kDamping);
+  EXPECT_EQ(loop.record.output.faults, 0u);
 }
 
 TEST_F(BrokenRobotTest, AnEncoderThatIsStuckButForACountIsAFault) {

@@ -5,82 +5,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 
-#include "rt/core/joint_pd.h"
+#include "faulty_robot.h"
+#include "rt/core/rotation.h"
 #include "rt/loop/control_loop.h"
-#include "tests/rt/support.h"
-#include "tests/sim/support.h"
 
 namespace sandrunner {
-
-enum class Drives { kGains, kTorque };
-
-/// The simulated robot, with a fault in its sensors or without.
-class FaultyRobot final : public RobotIo {
- public:
-  FaultyRobot(sim::Simulator& simulator, Drives drives) : simulator_(simulator), drives_(drives) {}
-
-  void read(std::uint64_t tick, SensorFrame& frame) noexcept override {
-    simulator_.read(tick, frame);
-    if (spoil) {
-      spoil(frame, good_, since_++);
-    } else {
-      good_ = frame;
-    }
-    seen_ = frame;
-  }
-  void write(const SafeCommand& command) noexcept override {
-    last = command;
-    simulator_.write(as_driven(command));
-  }
-  void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
-    simulator_.skip(ticks, as_driven(held));
-  }
-  void cut_drives() noexcept override { simulator_.cut_drives(); }
-  bool truth(RobotTruth& truth) const noexcept override { return simulator_.truth(truth); }
-  void shut_down() noexcept override {}
-
-  /// What happens to each frame; `good` is the last one before, `n` counts from 0.
-  std::function<void(SensorFrame& frame, const SensorFrame& good, std::uint64_t n)> spoil;
-  SafeCommand last;
-  std::uint64_t limp = 0;      ///< these drives give no torque, bit j for joint j
-  std::uint64_t inverted = 0;  ///< these give it in the wrong direction
-
- private:
-  // What reaches the drives. The driver of torque drives evaluates the law on what it has read, and
-  // gives no torque where that is not to be trusted.
-  SafeCommand as_driven(const SafeCommand& command) const {
-    if (!command.enabled() || (drives_ == Drives::kGains && limp == 0 && inverted == 0)) {
-      return command;
-    }
-    const sim::RigidState<double>& state = simulator_.state().robot.rigid;
-    JointCommand driven = command.joints();
-    for (int j = 0; j < kNumJoints; ++j) {
-      const bool is_inverted = (inverted >> j & 1) != 0, is_limp = (limp >> j & 1) != 0;
-      if (drives_ == Drives::kGains && !is_inverted && !is_limp) continue;
-      const bool host = drives_ == Drives::kTorque;
-      const double position_rad = host ? seen_.joints.position_rad[j] : state.q[j];
-      const double velocity_radps = host ? seen_.joints.velocity_radps[j] : state.qd[j];
-      const double nm = joint_torque(position_rad, velocity_radps, driven.position_rad[j],
-                                     driven.velocity_radps[j], driven.kp_nmprad[j],
-                                     driven.kd_nmsprad[j], driven.feedforward_nm[j]);
-      const bool blind = (command.blind_joints() >> j & 1) != 0;
-      driven.kp_nmprad[j] = driven.kd_nmsprad[j] = 0.0;
-      driven.feedforward_nm[j] = blind || is_limp ? 0.0 : is_inverted ? -nm : nm;
-    }
-    return sim::pass_gate(driven);
-  }
-
-  sim::Simulator& simulator_;
-  Drives drives_;
-  SensorFrame good_, seen_;
-  std::uint64_t since_ = 0;
-};
 
 /// The policy on a thread of its own, with a fault or without.
 class FaultyPolicy final : public PolicyLink {
@@ -160,6 +96,11 @@ struct DisturbedLoop {
   }
   /// The next tick, after `skipped` missed ones.
   void step(std::uint64_t skipped = 0) {
+    if (hand) {
+      sim::SimulatorState state = simulator.state();
+      hand(state);
+      simulator.restore(state);
+    }
     tick += skipped;
     command.tick = tick;
     loop.tick({.number = tick++, .skipped = skipped}, command, record);
@@ -176,18 +117,65 @@ struct DisturbedLoop {
   OperatorCommand command;
   std::uint64_t tick = 0;  ///< of the next step
   TickRecord record;
+  /// Moves the robot before each tick, as a person does who takes hold of it.
+  std::function<void(sim::SimulatorState&)> hand;
 };
 
-/// Something holds a joint below this position, with a millimetre of give. Before each step.
-inline void hold_below(sim::Simulator& simulator, int joint, double upper_rad) {
-  sim::SimulatorState state = simulator.state();
-  const double phase = 0.05 * static_cast<double>(state.tick);
-  const double most_rad = upper_rad + 1e-3 * std::sin(phase);
-  double& position_rad = state.robot.rigid.q[joint];
-  if (position_rad < most_rad) return;
-  position_rad = most_rad;
-  state.robot.rigid.qd[joint] = 1e-3 * 0.05 * kControlHz * std::cos(phase);
-  simulator.restore(state);
+/// From lying to Walk. Calls `in(mode)` where the robot is in each mode on the way, but Fault.
+inline void walk_through_modes(DisturbedLoop& loop, double stand_s, double walk_s,
+                               const std::function<void(Mode)>& in) {
+  loop.run(0.1);
+  in(Mode::kPassive);
+  loop.ask(ModeRequest::kArm);
+  loop.run(0.1);
+  in(Mode::kDamping);
+  loop.ask(ModeRequest::kStand);
+  loop.run(1.5);
+  in(Mode::kStandUp);
+  loop.run(stand_s);
+  in(Mode::kStand);
+  loop.ask(ModeRequest::kWalk);
+  loop.run(walk_s);
+  in(Mode::kWalk);
+}
+
+/// Something holds these joints between these positions, with a millimetre of give.
+inline auto hold(std::uint64_t joints, const JointArray<double>& least_rad,
+                 const JointArray<double>& most_rad) {
+  return [=](sim::SimulatorState& state) {
+    const double phase = 0.05 * static_cast<double>(state.tick);
+    const double give_rad = 1e-3 * std::sin(phase);
+    for (int j = 0; j < kNumJoints; ++j) {
+      double& position_rad = state.robot.rigid.q[j];
+      const double held_rad =
+          std::clamp(position_rad, least_rad[j] + give_rad, most_rad[j] + give_rad);
+      if ((joints >> j & 1) == 0 || position_rad == held_rad) continue;
+      position_rad = held_rad;
+      state.robot.rigid.qd[j] = 1e-3 * 0.05 * kControlHz * std::cos(phase);
+    }
+  };
+}
+/// The same where they are.
+inline void hold(DisturbedLoop& loop, std::uint64_t joints) {
+  const JointArray<double> at_rad = loop.simulator.state().robot.rigid.q;
+  loop.hand = hold(joints, at_rad, at_rad);
+}
+
+/// Carries the body 0.3 m higher within a second, and holds it there, level.
+inline void lift(DisturbedLoop& loop) {
+  loop.hand = [from = loop.simulator.state().robot.rigid,
+               n = 0.0](sim::SimulatorState& state) mutable {
+    const double u = std::min(++n / kControlHz, 1.0);
+    sim::RigidState<double>& x = state.robot.rigid;
+    x.position = from.position;
+    x.position.z += 0.3 * u;
+    x.velocity = {0.0, 0.0, u < 1.0 ? 0.3 : 0.0};
+    // A hand is never quite still.
+    x.angular_velocity = 0.02 * sim::Vec3<double>{std::sin(n / 700.0), std::sin(n / 900.0), 0.0};
+    const auto& [w, i, j, k] = x.orientation;
+    const Vector3 up = rotated(inverse({w, i, j, k}), {0.0, 0.0, kGravity_mps2});
+    state.linear_acceleration_mps2 = {up[0], up[1], up[2] + 0.05 * std::sin(n / 300.0)};
+  };
 }
 
 /// Has the robot in each mode.
@@ -203,19 +191,7 @@ class EveryModeTest : public testing::Test {
       ASSERT_EQ(loop.record.output.mode, mode);
       snapshots[mode] = loop.snapshot();
     };
-    loop.run(0.1);
-    keep(Mode::kPassive);
-    loop.ask(ModeRequest::kArm);
-    loop.run(0.1);
-    keep(Mode::kDamping);
-    loop.ask(ModeRequest::kStand);
-    loop.run(1.5);
-    keep(Mode::kStandUp);
-    loop.run(2.0);
-    keep(Mode::kStand);
-    loop.ask(ModeRequest::kWalk);
-    loop.run(2.0);
-    keep(Mode::kWalk);
+    walk_through_modes(loop, 2.0, 2.0, keep);
     loop.robot.spoil = [](SensorFrame& frame, const SensorFrame&, std::uint64_t) {
       frame.joints.drive_fault[0] = 1;
     };

@@ -48,9 +48,10 @@ class Nearest {
             share(joints.torque_missing_ticks[j], ticks_from_s(kTorqueMissing_s)));
       raise(Fault::kEncoderFrozen, share(joints.pushed_ticks[j], ticks_from_s(kPushed_s)));
       if (gate.sent != 0) {
-        raise(Fault::kEncoderFrozen, share(joints.still_ticks[j], ticks_from_s(kStill_s)));
+        raise(Fault::kEncoderFrozen, share(joints.still.ticks[j], ticks_from_s(kStill_s)));
         raise(Fault::kEncoderFrozen, share(joints.frozen_ticks[j], limits.frozen_ticks));
       }
+      raise(Fault::kNotFollowing, share(joints.held.ticks[j], ticks_from_s(kHeld_s)));
       if (gate.sent != 0 && mode == Mode::kStandUp) {
         raise(Fault::kNotFollowing,
               (gate.sent_rad[j] - joints.position_rad[j]) / kNotFollowing_rad);
