@@ -31,8 +31,8 @@ Vector3 turn_between(const Rotation& from, const Rotation& to) noexcept {
 /// force stands away from the vertical. So drifts of any speed add up. What lasts without such an
 /// angle is an offset of the gyroscope. (A Luenberger observer of both, critically damped.)
 void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess_rad, double felt,
-                       double step_s, ImuMemory& memory) noexcept {
-  constexpr double kRate = 1.0 / kTiltCompare_s;
+                       double step_s, double compare_s, ImuMemory& memory) noexcept {
+  const double rate = 1.0 / compare_s;
   const Vector3& felt_mps2 = memory.felt_mps2;
   const double per_felt = 1.0 / felt, mean_share = std::min(step_s * (1.0 / kTiltMean_s), 1.0);
   const std::array<double, 2> leans_rad = {-felt_mps2[1] * per_felt, felt_mps2[0] * per_felt};
@@ -44,13 +44,13 @@ void follow_tilt_error(const std::array<Vector3, 3>& axes, const Vector3& excess
   for (int i = 0; i < 2; ++i) {
     double& error_rad = memory.tilt_error_rad[i];
     miss_rad[i] = leans_rad[i] - error_rad;
-    error_rad += turned_rad[i] + step_s * 2.0 * kRate * miss_rad[i];
+    error_rad += turned_rad[i] + step_s * 2.0 * rate * miss_rad[i];
     double& mean_rad = memory.mean_error_rad[i];
     mean_rad += mean_share * (error_rad - mean_rad);
   }
   for (int i = 0; i < 3; ++i) {
     const double body_rad = axes[i][0] * miss_rad[0] + axes[i][1] * miss_rad[1];
-    offset_radps[i] = clamp_to(offset_radps[i] + step_s * kRate * kRate * body_rad,
+    offset_radps[i] = clamp_to(offset_radps[i] + step_s * rate * rate * body_rad,
                                -kGyroOffset_radps, kGyroOffset_radps);
   }
 }
@@ -69,13 +69,11 @@ std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool com
   if (!first && imu.tick <= before.tick) return found;  // no new sample
   memory.seen = 1;
   memory.sample = imu;
-  if (first || !comparing) {
+  if (first) return found;
+  if (!comparing) {
     memory.same_samples.fill(0);
     memory.lean_ticks = 0;
     memory.turn_error_rad = {};
-    memory.tilt_error_rad = memory.mean_error_rad = {};
-    memory.felt_mps2 = {0.0, 0.0, kGravity_mps2};
-    return found;
   }
 
   const bool same[] = {same_bits(imu.orientation_wxyz, before.orientation_wxyz),
@@ -84,7 +82,7 @@ std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool com
   for (int i = 0; i < 3; ++i) {
     const std::uint64_t repeats = i == 0 ? 2 * (config.imu_attitude_samples - 1) : 0;
     std::uint64_t& count = memory.same_samples[i];
-    count = same[i] ? count + 1 : 0;
+    count = same[i] && comparing ? count + 1 : 0;
     if (count >= kImuFrozenSamples + repeats) found |= fault_bit(Fault::kImuFrozen);
   }
 
@@ -105,17 +103,20 @@ std::uint64_t judge_imu(const GateConfig& config, const ImuSample& imu, bool com
     error_rad += excess_rad[i] - share * error_rad;
     memory.felt_mps2[i] += share * (felt_mps2[i] - memory.felt_mps2[i]);
   }
-  if (squared(memory.turn_error_rad) > kGyroDisagrees_rad * kGyroDisagrees_rad) {
+  if (comparing && squared(memory.turn_error_rad) > kGyroDisagrees_rad * kGyroDisagrees_rad) {
     found |= fault_bit(Fault::kImuGyro);
   }
   // Falling there is no direction to judge, and a fall is another fault.
   const double felt = std::sqrt(squared(memory.felt_mps2));
   const bool falls = felt <= 0.5 * kGravity_mps2;
-  if (!falls) follow_tilt_error(axes, excess_rad, felt, step_s, memory);
-  const bool leans = !falls && memory.felt_mps2[2] < kLeanCosine * felt;
+  if (!comparing) memory.rest_s = std::min(memory.rest_s + step_s, kTiltRest_s);
+  const double compare_s = comparing ? kTiltCompare_s : memory.rest_s;
+  if (!falls) follow_tilt_error(axes, excess_rad, felt, step_s, compare_s, memory);
+  const bool leans = comparing && !falls && memory.felt_mps2[2] < kLeanCosine * felt;
   memory.lean_ticks = leans ? memory.lean_ticks + ticks : 0;
   const auto& [x_rad, y_rad] = memory.mean_error_rad;
-  const bool drifts = x_rad * x_rad + y_rad * y_rad > kTiltDisagrees_rad * kTiltDisagrees_rad;
+  const bool drifts =
+      comparing && x_rad * x_rad + y_rad * y_rad > kTiltDisagrees_rad * kTiltDisagrees_rad;
   if (drifts || memory.lean_ticks > ticks_from_s(kLean_s)) {
     found |= fault_bit(Fault::kImuAttitude);
   }

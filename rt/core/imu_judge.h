@@ -32,8 +32,10 @@ inline constexpr double kLean_s = 0.5;                     ///< ... for this lon
 /// much, rad (11 degrees). A policy still walks with 13, and on sand falls over from 14 on. A turn
 /// or a start at the limit of acceleration counts as 0.1 rad.
 inline constexpr double kTiltDisagrees_rad = 0.19;
-/// Time in which the accelerometer corrects what the gyroscope says of that.
-inline constexpr double kTiltCompare_s = 8.0;
+/// Time in which the accelerometer corrects what the gyroscope says of that. Of a robot at rest it
+/// is the time since the start between the other two: it knows the offset of its gyroscope when it
+/// stands up.
+inline constexpr double kTiltCompare_s = 8.0, kTiltRestFirst_s = 0.5, kTiltRest_s = 2.0;
 inline constexpr double kTiltMean_s = 0.05;
 /// No gyroscope has a larger offset.
 inline constexpr double kGyroOffset_radps = 0.1;
@@ -52,8 +54,9 @@ struct ImuMemory {
   std::array<double, 2> tilt_error_rad{};      ///< of the attitude, about the world's x and y
   std::array<double, 2> mean_error_rad{};      ///< the same, low-passed: attitudes have noise
   Vector3 gyro_offset_radps{};                 ///< learnt with it
+  double rest_s = kTiltRestFirst_s;            ///< time in which a robot at rest is corrected
 };
-static_assert(sizeof(ImuMemory) == 8 * (1 + 11 + 3 + 1 + 3 + 3 + 4 + 3), "no padding");
+static_assert(sizeof(ImuMemory) == 8 * (1 + 11 + 3 + 1 + 3 + 3 + 4 + 3 + 1), "no padding");
 
 /// Judges a usable sample (finite, unit quaternion) and remembers it; the bits of the faults
 /// kImuFrozen, kImuRange, kImuAttitude and kImuGyro that it shows, whatever the mode. The same

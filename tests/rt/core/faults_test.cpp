@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fake_robot.h"
+#include "rt/core/rotation.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner {
@@ -210,12 +211,17 @@ TEST_F(ResetTest, RefusedWhileTheConditionHolds) {
 }
 
 TEST_F(ResetTest, RefusedWhileTheRobotLiesOnItsSide) {
-  loop.spoil = [](ControllerInput& seen) { seen.sensors.imu.orientation_wxyz = tilted(90.0); };
+  loop.spoil = [](ControllerInput& seen) {
+    ImuSample& imu = seen.sensors.imu;
+    imu.orientation_wxyz = tilted(90.0);
+    imu.linear_acceleration_mps2 =
+        rotated(inverse(imu.orientation_wxyz), imu.linear_acceleration_mps2);
+  };
   loop.run_s(2.1);
   loop.request(ModeRequest::kResetFault);
   EXPECT_EQ(loop.output.mode, Mode::kFault);
   loop.spoil = nullptr;
-  loop.tick();
+  loop.run_s(15.0);  // it turned without a sign of the gyroscope
   loop.request(ModeRequest::kResetFault);
   EXPECT_EQ(loop.output.mode, Mode::kPassive);
 }

@@ -181,7 +181,7 @@ TEST_F(ImuJudgeTest, ALeanThatEndsIsForgotten) {
   }
 }
 
-TEST_F(ImuJudgeTest, ARobotThatDoesNotCarryItselfMayLeanAsItLikes) {
+TEST_F(ImuJudgeTest, AnAttitudeThatIsWrongAtRestIsAFaultWhenTheRobotCarriesItself) {
   run_s(0.1);
   lean(60.0);
   run_s(0.7);
@@ -189,7 +189,9 @@ TEST_F(ImuJudgeTest, ARobotThatDoesNotCarryItselfMayLeanAsItLikes) {
   EXPECT_EQ(next(false), 0u);
   EXPECT_EQ(memory.lean_ticks, 0u);
   EXPECT_EQ(run_s(5.0, false), 0u);
-  // What it did then does not count.
+  EXPECT_EQ(next(), kAttitude);
+  lean(0.0);
+  EXPECT_EQ(run_s(15.0, false), 0u);
   EXPECT_EQ(run_s(0.3), 0u);
 }
 
