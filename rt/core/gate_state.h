@@ -61,7 +61,7 @@ struct GateState {
   std::uint64_t blind_joints = 0;  ///< whose values a latched fault makes untrustworthy
   std::uint64_t tick = 0;          ///< of the latest judgement
   std::uint64_t judged = 0;        ///< judgements since the start
-  std::uint64_t stall_end_tick = 0, stall_ticks = 0;  ///< of the latest stall of the loop
+  Stall stall;
   std::uint64_t missed_ticks = 0;   ///< by the loop, less one for each that it ran since
   std::uint64_t tilted_ticks = 0;   ///< how long tilted past the limit
   std::uint64_t falling_ticks = 0;  ///< how long without weight

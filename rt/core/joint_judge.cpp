@@ -188,11 +188,7 @@ bool was_folded(const GateConfig& config, const JointState& joints, JointMemory&
 /// stall of the loop drives go on.
 bool was_silent(std::uint64_t tick, std::uint64_t before, const JointContext& context) noexcept {
   const std::uint64_t gap = tick - before;
-  const std::uint64_t stalled =
-      before < context.stall_end_tick
-          ? std::min({context.stall_ticks, context.stall_end_tick - before, gap})
-          : 0;
-  return gap > kRestart_ticks || gap - stalled > kSilent_ticks;
+  return gap > kRestart_ticks || gap - std::min(context.stall.since(before), gap) > kSilent_ticks;
 }
 
 /// A joint that comes back after a silence may have lost its zero.

@@ -3,6 +3,7 @@
 // motion say, and drives give the torque that they are commanded.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "rt/core/gate_config.h"
@@ -95,6 +96,16 @@ struct JointMemory {
 };
 static_assert(sizeof(JointMemory) == 8 * (8 + 25 * kNumJoints), "no padding");
 
+/// The latest stall of the loop.
+struct Stall {
+  std::uint64_t end_tick = 0, ticks = 0;
+
+  /// How many of its ticks came after `tick`.
+  std::uint64_t since(std::uint64_t tick) const noexcept {
+    return tick < end_tick ? std::min(ticks, end_tick - tick) : 0;
+  }
+};
+
 /// What a judgement of joints rests on besides their values.
 struct JointContext {
   Mode mode = Mode::kPassive;
@@ -102,8 +113,7 @@ struct JointContext {
   const ImuSample* imu = nullptr;      ///< null: not usable, or the robot hangs
   bool stiff = false;                  ///< the last command had stiffness
   const JointArray<double>& sent_rad;  ///< its positions
-  /// Tick that ended the latest stall of the loop, and the ticks that it took.
-  std::uint64_t stall_end_tick = 0, stall_ticks = 0;
+  Stall stall = {};
 };
 
 struct JointVerdict {

@@ -48,10 +48,7 @@ bool usable(const ImuSample& imu) noexcept {
 /// the future is an error of its source: it gets an age without bound.
 std::uint64_t age(std::uint64_t sampled, const GateState& state) noexcept {
   if (sampled > state.tick) return ~std::uint64_t{0};
-  const std::uint64_t stalled = sampled < state.stall_end_tick
-                                    ? std::min(state.stall_ticks, state.stall_end_tick - sampled)
-                                    : 0;
-  return state.tick - sampled - stalled;
+  return state.tick - sampled - state.stall.since(sampled);
 }
 
 /// Cosine for thresholds, from arithmetic alone so that it has the same bits everywhere: series at
@@ -161,8 +158,7 @@ GateVerdict SafetyGate::judge(const GateInput& input, Mode mode, GateState& stat
                        .imu = imu_usable && !config_.hanging ? &sensors.imu : nullptr,
                        .stiff = state.sent != 0,
                        .sent_rad = state.sent_rad,
-                       .stall_end_tick = state.stall_end_tick,
-                       .stall_ticks = state.stall_ticks},
+                       .stall = state.stall},
                       state.joints);
     found |= verdict.faults;
     at_fault |= verdict.joints;
@@ -202,8 +198,7 @@ std::uint64_t SafetyGate::judge_time(std::uint64_t tick, Mode mode,
     return 0;
   }
   ++state.counters.stalled;
-  state.stall_end_tick = tick;
-  state.stall_ticks = skipped;
+  state.stall = {.end_tick = tick, .ticks = skipped};
   // Saturate one past the threshold, so that misses in unjudged ticks decay quickly.
   missed = std::min(missed + std::min(skipped, config_.stall_fault_ticks + 1),
                     config_.stall_fault_ticks + 1);

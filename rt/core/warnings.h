@@ -50,7 +50,7 @@ inline constexpr std::array<WarningRow, kNumWarnings> kWarningTable = {{
     {Warning::kLifted, "lifted",
      "in Walk the knees have given less than 0.3 of what they gave in Stand for half a second: "
      "the robot is held up",
-     "let go: `free_fall`, `tilt`"},
+     "released: `free_fall`, `tilt`"},
 }};
 
 // From the first limit to the second: time to stop and to lie down.
