@@ -15,7 +15,7 @@ for word; do
 done
 here=$(cd "$(dirname "$0")" && pwd)
 program=${SANDRUNNER_TRAIN:-$here/../../build/release/bin/sandrunner-train}
-transitions=${TRANSITIONS:-60e6}
+transitions=${TRANSITIONS:-120e6}
 if [ $# -lt 2 ]; then
   echo "train.sh: found $# arguments, expected DIR SEED [NAME ...]" >&2
   exit 2

@@ -44,9 +44,13 @@ std::string wiring_of(const std::map<std::string, std::string>& settings) {
 }
 
 TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListedAndIsWiredAsItsController) {
+  const std::map<std::string, std::string> rigid = {{"ground.rigid_envs", "64"},
+                                                    {"ground.patchy_envs", "0"},
+                                                    {"ground.rigid_uneven_share", "1.0"},
+                                                    {"ground.roughness_m", "0.05"}};
   std::map<std::string, std::map<std::string, std::string>> expected = {
       {"ours", {}},
-      {"env-rigid", {{"ground.rigid_envs", "64"}, {"ground.patchy_envs", "0"}}},
+      {"env-rigid", rigid},
       {"env-quasistatic", {{"ground.inertial_high", "0.0"}}},  // the low end is 0 anyway
       {"env-linear", {{"ground.yielding", "\"linear\""}}},
       {"tcn", {{"network.encoder", "\"tcn\""}}},
@@ -59,13 +63,12 @@ TEST(TrainingsTest, EachDiffersFromTheBuiltInSettingsAsListedAndIsWiredAsItsCont
       {"teacher-rigid",
        {{"network.encoder", "\"insight\""},
         {"network.actor", "\"encoding, proprioception\""},
-        {"learner.estimate_weight", "0.0"},
-        {"ground.rigid_envs", "64"},
-        {"ground.patchy_envs", "0"}}},
+        {"learner.estimate_weight", "0.0"}}},
   };
+  expected["teacher-rigid"].insert(rigid.begin(), rigid.end());
   for (const auto& [name, more] :
        {std::pair<std::string, std::map<std::string, std::string>>{"pl-gm", {}},
-        {"pl-rigid", {{"ground.rigid_envs", "64"}, {"ground.patchy_envs", "0"}}}}) {
+        {"pl-rigid", rigid}}) {
     auto& student = expected[name] = more;
     student.insert({{"network.actor", "\"encoding, proprioception\""},
                     {"learner.estimate_weight", "0.0"},
