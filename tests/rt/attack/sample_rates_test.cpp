@@ -151,7 +151,7 @@ std::vector<SensorCase> every_sensor_case() {
       {Fault::kFreeFall, "no weight", all, 0.4, sensor([](F f, H, N n) {
          f.imu.linear_acceleration_mps2 = {0.5, 0.5, 0.1 + 1e-6 * static_cast<double>(n)};
        })},
-      {Fault::kImuFrozen, "all of it", all, 0.2, sensor([](F f, H held, N) {
+      {Fault::kImuFrozen, "all of it", all, 0.25, sensor([](F f, H held, N) {
          const std::uint64_t fresh = f.imu.tick;
          f.imu = held.imu;
          f.imu.tick = fresh;
