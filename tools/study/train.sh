@@ -6,6 +6,7 @@
 # NAME-SEED.safetensors, NAME-SEED.csv. (Not the best policy of the battery: for some controllers
 # that is one of before the late penalties, so their training would differ in length and reward.) A
 # student (pl-*) imitates the teacher of this seed in DIR.
+# All have windows of 128 steps and 256 robots (NOTES.md of tools/train, 23).
 # TRANSITIONS: length of each training, the same for all controllers that are compared; a teacher
 # has three fifths of it, its student the other two.
 # THREADS: worker threads of a training, without it all cores; weights do not depend on it.
@@ -47,7 +48,8 @@ for name in "$@"; do
   esac
   resume=
   [ ! -f "$run/checkpoint.bin" ] || resume=--resume
-  "$program" --config "$here/trainings/$name.toml" --set run.transitions="$length" \
+  "$program" --config "$here/trainings/$name.toml" --set learner.window=128 --set run.envs=256 \
+    --set run.transitions="$length" \
     ${teacher:+--set "imitation.teacher=$teacher"} --seed "$seed" ${THREADS:+--threads "$THREADS"} --out "$run" $resume
   if ! awk -F, -v all="$length" 'END { exit !($2 + 0 >= all + 0) }' "$run/curve.csv"; then
     echo "train.sh: $run is not complete: run the same command again" >&2

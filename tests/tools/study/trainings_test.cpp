@@ -19,6 +19,7 @@ namespace sandrunner::train {
 namespace {
 
 const std::string kStudy = SANDRUNNER_STUDY_FOLDER;
+const std::string kWindows = " --set learner.window=128 --set run.envs=256";  // of all trainings
 
 /// All settings of a training by their key.
 std::map<std::string, std::string> settings_of(const std::string& file) {
@@ -141,9 +142,8 @@ TEST_F(TrainScriptTest, TrainsContinuesAndKeepsThePolicyOfTheEndWithAShortCurve)
             "command_speed_mps,ground_open\n10,1,2,3,4,5,6,7\n210,1,2,3,4,5,6,7\n"
             "300,1,2,3,4,5,6,7\n");
   const auto line = [&](const std::string& name, const std::string& more) {
-    return "--config " + kStudy + "/trainings/" + name +
-           ".toml --set run.transitions=300 --seed 2 --out " + out + "/" + name + "-2" + more +
-           "\n";
+    return "--config " + kStudy + "/trainings/" + name + ".toml" + kWindows +
+           " --set run.transitions=300 --seed 2 --out " + out + "/" + name + "-2" + more + "\n";
   };
   EXPECT_EQ(read_file(folder_.path("log")),
             line("env-rigid", "") + line("env-rigid", " --resume") + line("ours", ""));
@@ -159,10 +159,10 @@ TEST_F(TrainScriptTest, ATeacherHasThreeFifthsOfTheLengthAndItsStudentTheOtherTw
   const Ended ended = run(20, {out, "2", "pl-gm"});
   EXPECT_EQ(ended.code, 0) << ended;
   EXPECT_EQ(read_file(folder_.path("log")),
-            "--config " + kStudy +
-                "/trainings/teacher-gm.toml --set run.transitions=180 --seed 2 --out " + out +
-                "/teacher-gm-2\n--config " + kStudy +
-                "/trainings/pl-gm.toml --set run.transitions=120 --set "
+            "--config " + kStudy + "/trainings/teacher-gm.toml" + kWindows +
+                " --set run.transitions=180 --seed 2 --out " + out + "/teacher-gm-2\n--config " +
+                kStudy + "/trainings/pl-gm.toml" + kWindows +
+                " --set run.transitions=120 --set "
                 "imitation.teacher=" +
                 out + "/teacher-gm-2.safetensors --seed 2 --out " + out + "/pl-gm-2\n");
 }
