@@ -34,6 +34,8 @@ constexpr double kLifted = 0.3, kLifted_s = 0.5;
 /// say nothing.
 constexpr double kStood_s = 0.5, kStoodShare = 0.03;
 
+constexpr int knee_of(int leg) noexcept { return kJointsPerLeg * leg + 2; }
+
 /// Tilted by more than 20 degrees: stiff legs would topple a robot that is to lie down.
 bool leans(const ImuSample& imu) noexcept {
   constexpr double kCosine = 0.93969262078590838;
@@ -51,6 +53,10 @@ Controller::Controller(const ControllerConfig& config, Mode start)
       stop_step_mps_(config.walk.stop_deceleration_mps2 * kControlPeriod_s),
       stop_step_radps_(config.walk.stop_yaw_deceleration_radps2 * kControlPeriod_s) {
   for (int j = 0; j < kNumJoints; ++j) fold_rad_[j] = config.stand.fold_rad[j % kJointsPerLeg];
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    const double least_nm = kStoodShare * config.gate.torque_limit_nm[knee_of(leg)];
+    least_stood_n2m2_ += least_nm * least_nm;
+  }
   state_.mode = start;
 }
 
@@ -192,22 +198,19 @@ void Controller::watch_load(const JointState& joints) noexcept {
     state_.stood_ticks = 0;
     return;
   }
-  double carried = 0.0, carried_in_stand = 0.0, least = 0.0;
+  double carried = 0.0, carried_in_stand = 0.0;
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    const int knee = kJointsPerLeg * leg + 2;
     double& knee_nm = state_.knee_nm[leg];
-    knee_nm += (joints.torque_nm[knee] - knee_nm) * kControlPeriod_s / kLifted_s;
-    const double least_nm = kStoodShare * config_.gate.torque_limit_nm[knee];
+    knee_nm += (joints.torque_nm[knee_of(leg)] - knee_nm) * kControlPeriod_s / kLifted_s;
     carried += knee_nm * state_.stood_nm[leg];
     carried_in_stand += state_.stood_nm[leg] * state_.stood_nm[leg];
-    least += least_nm * least_nm;
   }
   const bool stood = state_.stood_ticks == ticks_from_s(kStood_s);
   if (state_.mode == Mode::kStand && !stood) {
     ++state_.stood_ticks;
     state_.stood_nm = state_.knee_nm;
   }
-  if (state_.mode == Mode::kWalk && stood && carried_in_stand > least &&
+  if (state_.mode == Mode::kWalk && stood && carried_in_stand > least_stood_n2m2_ &&
       carried < kLifted * carried_in_stand) {
     state_.warnings |= warning_bit(Warning::kLifted);
   }

@@ -210,6 +210,7 @@ class Controller {
   double max_step_radps_;
   double stop_step_mps_;  // of the slew while stopping
   double stop_step_radps_;
+  double least_stood_n2m2_ = 0.0;  // of the knees in Stand, or they say nothing of a lift
   ControllerState state_;
 };
 

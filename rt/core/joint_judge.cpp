@@ -58,19 +58,22 @@ bool frozen_in_motion(const GateConfig& config, const JointState& joints, int j,
   return moves && !(may_rest && speed_radps <= kRest_radps);
 }
 
-/// For how many ticks, in all that count, joint j has stayed within `within_rad` of a place while
-/// its target has been farther than `away_rad` from where it was when the joint came there, and
-/// farther than `push_rad` from the joint.
+/// A joint rests within `within_rad` of a place, its target farther than `away_rad` from where it
+/// was when the joint came there, and at least `push_rad` from the joint.
+struct RestLimits {
+  double within_rad, away_rad, push_rad;
+};
+
+/// For how many ticks, in all that count, joint j has rested so.
 std::uint64_t rest_ticks(const JointState& joints, int j, double target_rad, bool counts,
-                         double within_rad, double away_rad, double push_rad, const JointMemory& m,
-                         JointRest& rest) noexcept {
+                         const RestLimits& limits, const JointMemory& m, JointRest& rest) noexcept {
   const double position_rad = joints.position_rad[j];
-  if (!counts || std::fabs(position_rad - rest.rad[j]) > within_rad) {
+  if (!counts || std::fabs(position_rad - rest.rad[j]) > limits.within_rad) {
     rest.rad[j] = position_rad;
     rest.target_rad[j] = target_rad;
     rest.ticks[j] = 0;
-  } else if (std::fabs(target_rad - rest.target_rad[j]) > away_rad &&
-             std::fabs(target_rad - position_rad) >= push_rad) {
+  } else if (std::fabs(target_rad - rest.target_rad[j]) > limits.away_rad &&
+             std::fabs(target_rad - position_rad) >= limits.push_rad) {
     rest.ticks[j] += joints.tick[j] - m.sample_tick[j];
   }
   return rest.ticks[j];
@@ -89,7 +92,7 @@ bool ignores_target(const GateConfig& config, const JointState& joints, int j,
   }
   const double away_rad = context.mode == Mode::kWalk ? kStillTargetInWalk_rad : kStillTarget_rad;
   const std::uint64_t still =
-      rest_ticks(joints, j, target_rad, context.stiff, kStill_rad, away_rad, 0.0, m, m.still);
+      rest_ticks(joints, j, target_rad, context.stiff, {kStill_rad, away_rad, 0.0}, m, m.still);
   return m.frozen_ticks[j] >= config.frozen_ticks || still >= ticks_from_s(kStill_s);
 }
 
@@ -155,8 +158,8 @@ bool not_following(const JointState& joints, int j, const JointContext& context,
   std::uint64_t& ticks = m.behind_ticks[j];
   ticks = behind ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
   const bool walks = context.mode == Mode::kWalk && context.stiff;
-  const std::uint64_t held = rest_ticks(joints, j, target_rad, walks, kHeld_rad, kHeldTarget_rad,
-                                        kHeldTarget_rad, m, m.held);
+  const std::uint64_t held = rest_ticks(joints, j, target_rad, walks,
+                                        {kHeld_rad, kHeldTarget_rad, kHeldTarget_rad}, m, m.held);
   return ticks > ticks_from_s(kNotFollowing_s) || held > ticks_from_s(kHeld_s);
 }
 
