@@ -3,21 +3,12 @@
 // drifting_attitude_test.cpp.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "tests/rt/loop/disturbed_loop.h"
 
 namespace sandrunner::attack {
-
-/// Angle between the body's and the world's z axis.
-inline double tilt_rad(const RobotTruth& truth) {
-  return std::acos(std::clamp(body_axes(truth.orientation_wxyz)[2][2], -1.0, 1.0));
-}
-inline double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
 
 /// A robot, its policy and the ground that it is on.
 struct World {
@@ -56,12 +47,6 @@ class AttackLoop : public DisturbedLoop {
     ask(ModeRequest::kWalk);
     run(duration_s);
   }
-
-  const RobotTruth& truth() const { return record.truth; }
-  const ControllerOutput& output() const { return record.output; }
-  Mode mode() const { return output().mode; }
-  /// That which holds the latch now.
-  Fault fault() const { return output().faults != 0 ? output().first_fault : Fault::kNone; }
 };
 
 /// The robot in Stand, or walking at `velocity` for 4 s.

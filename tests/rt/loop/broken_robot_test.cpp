@@ -9,20 +9,11 @@
 #include <optional>
 #include <string>
 
-#include "disturbed_loop.h"
 #include "rt/core/rotation.h"
+#include "watch.h"
 
 namespace sandrunner {
 namespace {
-
-/// What became of a robot that broke.
-struct Outcome {
-  Fault fault = Fault::kNone;  ///< the first one
-  double after_s = 0.0;        ///< until then
-  double tilt_rad = 0.0;       ///< of the body, at the fault or the end
-  double torque_nm = 0.0;      ///< largest until then
-  double speed_radps = 0.0;    ///< fastest joint until half a second later
-};
 
 class BrokenRobotTest : public EveryModeTest {
  protected:
@@ -32,27 +23,10 @@ class BrokenRobotTest : public EveryModeTest {
     DisturbedLoop loop(config, policy, drives, snapshots.at(mode));
     loop.run(0.05);
     breaks(loop);
-    Outcome seen;
-    for (std::uint64_t n = 0; n < ticks_from_s(duration_s); ++n) {
-      loop.step();
-      const RobotTruth& truth = loop.record.truth;
-      for (const double v : truth.joint_velocity_radps) {
-        seen.speed_radps = std::max(seen.speed_radps, std::fabs(v));
-      }
-      if (seen.fault != Fault::kNone) continue;
-      for (const double nm : truth.joint_torque_nm) {
-        seen.torque_nm = std::max(seen.torque_nm, std::fabs(nm));
-      }
-      seen.tilt_rad = std::acos(std::min(body_axes(truth.orientation_wxyz)[2][2], 1.0));
-      if (loop.record.output.faults != 0) {
-        seen.fault = loop.record.output.first_fault;
-        seen.after_s = static_cast<double>(n + 1) * kControlPeriod_s;
-        duration_s = std::min(duration_s, seen.after_s + 0.5);
-      }
-    }
+    const Outcome seen = watch(loop, duration_s, 0.5);
     std::printf("  %-9s %-6s %-16s after %5.3f s, tilt %4.2f rad, %4.1f N m, then %4.1f rad/s\n",
                 mode_name(mode), drives == Drives::kGains ? "gains" : "torque",
-                fault_name(seen.fault), seen.after_s, seen.tilt_rad, seen.torque_nm,
+                fault_name(seen.fault), seen.after_s, seen.tilt_rad, seen.fault_torque_nm,
                 seen.speed_radps);
     return seen;
   }
@@ -136,7 +110,7 @@ TEST_F(BrokenRobotTest, AJointThatIsHeldInStandUpIsAFaultAndNotPressedWithAllTor
         },
         6.0);
     EXPECT_EQ(seen.fault, Fault::kNotFollowing);
-    EXPECT_LE(seen.torque_nm, 0.65 * config.robot.model.torque_limit_nm[2] + 1e-9);
+    EXPECT_LE(seen.fault_torque_nm, 0.65 * config.robot.model.torque_limit_nm[2] + 1e-9);
   }
 }
 
@@ -198,8 +172,8 @@ TEST_F(BrokenRobotTest, TorqueDrivesWhoseEncodersFreezeAtRestAreAFaultWhenTheBod
 }
 
 /// Switches the supply off for 3 s in Stand, and on again; the joint comes back by `offset_rad`.
-Outcome after_supply_cut(const ProcessConfig& config, const Policy& policy, const Snapshot& stand,
-                         int joint, double offset_rad) {
+Fault after_supply_cut(const ProcessConfig& config, const Policy& policy, const Snapshot& stand,
+                       int joint, double offset_rad) {
   DisturbedLoop loop(config, policy, Drives::kGains, stand);
   bool cut = true;
   loop.robot.spoil = [&](SensorFrame& f, const SensorFrame& good, std::uint64_t) {
@@ -216,19 +190,18 @@ Outcome after_supply_cut(const ProcessConfig& config, const Policy& policy, cons
   loop.run(0.1);
   loop.ask(ModeRequest::kArm);
   loop.run(0.1);
-  return {.fault = loop.record.output.faults != 0 ? loop.record.output.first_fault : Fault::kNone};
+  return loop.fault();
 }
 
 TEST_F(BrokenRobotTest, AJointThatComesBackAMotorTurnAwayIsNotArmed) {
   constexpr double kMotorTurn_rad = 2.0 * 3.14159265358979 / 6.75;
   for (const double turn_rad : {-kMotorTurn_rad, kMotorTurn_rad}) {
     for (int joint = 0; joint < kJointsPerLeg; ++joint) {
-      const Outcome seen =
+      const Fault seen =
           after_supply_cut(config, policy, snapshots.at(Mode::kStand), joint, turn_rad);
       // A knee may be past its stop, which is a fault at once.
-      EXPECT_TRUE(seen.fault == Fault::kJointMisplaced ||
-                  (joint == 2 && seen.fault != Fault::kNone))
-          << fault_name(seen.fault) << ", joint " << joint << " by " << turn_rad;
+      EXPECT_TRUE(seen == Fault::kJointMisplaced || (joint == 2 && seen != Fault::kNone))
+          << fault_name(seen) << ", joint " << joint << " by " << turn_rad;
     }
   }
 }
@@ -242,7 +215,7 @@ Fault armed_with(const ProcessConfig& config, const Policy& policy, int joint, d
   loop.run(0.1);
   loop.ask(ModeRequest::kArm);
   loop.run(0.1);
-  return loop.record.output.faults != 0 ? loop.record.output.first_fault : Fault::kNone;
+  return loop.fault();
 }
 
 TEST_F(BrokenRobotTest, ARobotThatStartsIsArmedOnlyInTheLyingPose) {

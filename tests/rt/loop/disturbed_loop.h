@@ -109,6 +109,12 @@ struct DisturbedLoop {
     for (std::uint64_t n = ticks_from_s(duration_s); n > 0; --n) step();
   }
 
+  const RobotTruth& truth() const { return record.truth; }
+  const ControllerOutput& output() const { return record.output; }
+  Mode mode() const { return output().mode; }
+  /// That which holds the latch now.
+  Fault fault() const { return output().faults != 0 ? output().first_fault : Fault::kNone; }
+
   sim::Simulator simulator;
   FaultyRobot robot;
   FaultyPolicy policy;

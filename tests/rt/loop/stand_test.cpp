@@ -7,8 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "disturbed_loop.h"
-#include "rt/core/rotation.h"
+#include "watch.h"
 
 namespace sandrunner {
 namespace {
@@ -27,15 +26,13 @@ class StandTest : public testing::Test {
     int tenths = 0;
     do {
       loop.run(0.1);
-      largest_rad =
-          std::max(largest_rad,
-                   std::acos(std::min(body_axes(loop.record.truth.orientation_wxyz)[2][2], 1.0)));
+      largest_rad = std::max(largest_rad, tilt_rad(loop.truth()));
       end_ = loop.record.output.mode;
     } while (++tenths < 300 && (end_ == Mode::kStandUp || end_ == Mode::kStand));
     loop.run(2.0);
     EXPECT_EQ(loop.record.output.faults, 0u) << terrain;
     std::printf("  %-15s %s after %4.1f s, tilt at most %4.1f degrees\n", terrain.c_str(),
-                mode_name(end_), 0.1 * tenths, largest_rad * 180.0 / 3.14159265358979);
+                mode_name(end_), 0.1 * tenths, degrees(largest_rad));
     return largest_rad;
   }
   const Policy policy_ = load_shipped_policy();
