@@ -20,10 +20,10 @@ inline bool stalled(const std::string& printed) {
 }
 
 /// Does `attempt`, which is to set `said` to what its run said at the end, even if an assertion
-/// ends it; anew where this computer stalled, whose failures then do not count. Five in a row are
+/// ends it; anew where this computer stalled, whose failures then do not count. Ten in a row are
 /// no chance.
 inline void unless_stalled(const std::function<void(std::string& said)>& attempt) {
-  for (int left = 4;; --left) {
+  for (int left = 9;; --left) {
     std::string said;
     testing::TestPartResultArray results;
     {

@@ -18,6 +18,8 @@ namespace {
 
 using testing::HasSubstr;
 
+const std::string kWalk_s = "10";  // standing up included
+
 class UnitreeLoopbackTest : public testing::Test {
  protected:
   UnitreeLoopbackTest() {
@@ -44,7 +46,7 @@ class UnitreeLoopbackTest : public testing::Test {
   /// Speed of the same walk in the program's own simulator, m/s.
   double speed_in_process() const {
     const Ended ended = run({SANDRUNNER_PROGRAM, "--robot", "go2", "--command", "1,0,0",
-                             "--duration", "20", "--out", "alone"});
+                             "--duration", kWalk_s, "--out", "alone"});
     EXPECT_EQ(ended.code, 0) << ended;
     return ended.code == 0 ? figure(json("alone/summary.json"), "/mean_velocity_mps/0") : 0.0;
   }
@@ -63,11 +65,11 @@ TEST_F(UnitreeLoopbackTest, ChecksStandsWalksAndReplaysAsInProcess) {
   ASSERT_FALSE(HasFailure());
   unless_stalled([&](std::string& said) {
     ChildProcess robot(
-        {SANDRUNNER_HIL, "--hardware", "robot.toml", "--walk", "20", "--out", "bench.json"},
+        {SANDRUNNER_HIL, "--hardware", "robot.toml", "--walk", kWalk_s, "--out", "bench.json"},
         {.folder = folder_.path("")});
     const Ended check = run({SANDRUNNER_PROGRAM, "check", "robot.toml"});
     const Ended walk = run({SANDRUNNER_PROGRAM, "--hardware", "robot.toml", "--arm", "--command",
-                            "1,0,0", "--duration", "20", "--record", "recording"});
+                            "1,0,0", "--duration", kWalk_s, "--record", "recording"});
     robot.signal(SIGINT);
     const Ended bench = robot.wait();
     // The processes first: figures of a walk that was none say nothing.
