@@ -1,46 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """tools/include_graph.py [ROOT]: prints which folder includes which, from the bottom up. Exit code 1, and a line for
-each, if an include points up or to a sibling, if files include each other in a circle, or if what has to know no
-simulator reaches one, by whatever way."""
+each, if folders or files include each other in a circle, or if what has to know no simulator reaches one, by whatever
+way. What a folder may include stands in its CMakeLists.txt, under DEPENDS, and nothing else resolves."""
 
 import argparse
-import fnmatch
 import graphlib
 import pathlib
 import re
 import sys
 
-# From the bottom up. A folder may include those of the lines below its own, not its siblings;
-# "drivers/drives/*" are all folders in drivers/drives that no line names.
-LAYERS = [
-    ["rt/core"],
-    ["rt/base"],
-    ["rt/dds", "policy", "estimator", "drivers/can", "drivers/imu"],
-    ["drivers/drives"],
-    ["drivers/drives/*"],
-    ["drivers/robot"],
-    ["drivers/check", "drivers/*"],
-    ["drivers"],
-    ["sim/lanes"],
-    ["sim/robot"],
-    ["sim/ground"],
-    ["sim/step"],
-    ["sim/batch", "sim"],
-    ["rt/loop"],
-    ["rt/operator", "rt/realtime", "rt/telemetry", "rt/telemetry/mcap"],
-    ["rt/telemetry/dds", "rt/telemetry/recording", "rt/report"],
-    ["rt/telemetry/view"],
-    ["rt/run"],
-    ["rt"],
-    ["tools/bench/mujoco", "tools/train/data", "tools/train/kernels"],
-    ["tools/train/learner", "tools/train/task"],
-    ["tools/train/model"],
-    ["tools/evaluate", "tools/hil/emulated", "tools/study/simulated"],
-    ["tools/study/experiments"],
-    ["tools/bench", "tools/ctl", "tools/hil", "tools/policy", "tools/replay", "tools/study", "tools/train"],
-    ["tools/python"],
-]
 # The loop, telemetry and report know a robot, never the simulator.
 NO_SIMULATOR = ("drivers/", "rt/core/", "rt/loop/", "rt/operator/", "rt/realtime/", "rt/report/", "rt/telemetry/")
 TOP_FOLDERS = ("rt", "drivers", "policy", "estimator", "sim", "tools")
@@ -61,14 +30,21 @@ def read_includes(root):
     return includes
 
 
-def layers(includes):
-    """LAYERS with each pattern replaced by the folders of the tree that it matches."""
-    named = {name for layer in LAYERS for name in layer}
-    folders = sorted({folder(file) for file in includes} - named)
+def folder_graph(includes):
+    """The folders that each folder includes, without itself."""
+    graph = {folder(file): set() for file in includes}
+    for file, found in includes.items():
+        graph[folder(file)].update({folder(other) for other in found} - {folder(file)})
+    return graph
 
-    def matches(pattern):
-        return [f for f in fnmatch.filter(folders, pattern) if f.count("/") == pattern.count("/")]
-    return [[f for name in layer for f in (matches(name) if "*" in name else [name])] for layer in LAYERS]
+
+def circle(graph):
+    """Members of a circle in `graph`, each includes the next; [] if there is none."""
+    try:
+        graphlib.TopologicalSorter(graph).prepare()
+    except graphlib.CycleError as error:
+        return error.args[1][::-1]
+    return []
 
 
 def way_to(target, start, includes):
@@ -85,36 +61,28 @@ def way_to(target, start, includes):
 
 
 def mistakes(includes):
-    level = {name: i for i, layer in enumerate(layers(includes)) for name in layer}
-    for name in sorted({folder(file) for file in includes} - level.keys()):
-        yield f"{name}: a folder that is not among LAYERS of tools/include_graph.py"
-    for file, found in includes.items():
-        for other in found:
-            here, there = folder(file), folder(other)
-            if here != there and level.get(there, len(LAYERS)) >= level.get(here, len(LAYERS)):
-                yield f"{file}: includes {other}, which does not lie below it"
+    for graph in (includes, folder_graph(includes)):
+        if found := circle(graph):
+            yield f"a circle: {' -> '.join(found)}"
+    for file in includes:
         if file.startswith(NO_SIMULATOR) and (way := way_to("sim/", file, includes)):
             yield f"{file}: reaches the simulator: {' -> '.join(way)}"
-    try:
-        graphlib.TopologicalSorter(includes).prepare()
-    except graphlib.CycleError as error:
-        yield f"a circle: {' -> '.join(reversed(error.args[1]))}"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("root", metavar="ROOT", nargs="?", type=pathlib.Path,
                         default=pathlib.Path(__file__).parent.parent)
-    root = parser.parse_args().root
-    includes = read_includes(root)
-    for layer in layers(includes):
-        for name in layer:
-            used = {folder(f) for file, found in includes.items() if folder(file) == name for f in found} - {name}
-            print(f"{name} -> {' '.join(sorted(used)) or 'nothing'}")
+    includes = read_includes(parser.parse_args().root)
     wrong = list(mistakes(includes))
     for line in wrong:
         print(f"include_graph.py: {line}", file=sys.stderr)
-    return 1 if wrong else 0
+    if wrong:
+        return 1
+    graph = folder_graph(includes)
+    for name in graphlib.TopologicalSorter(graph).static_order():
+        print(f"{name} -> {' '.join(sorted(graph[name])) or 'nothing'}")
+    return 0
 
 
 if __name__ == "__main__":

@@ -27,17 +27,9 @@ class IncludeGraphTest(unittest.TestCase):
     def test_arrows_down_are_fine(self):
         self.assertEqual(errors({"rt/loop/a.cpp": ["rt/loop/a.h"], "rt/loop/a.h": ["rt/core/b.h"], "rt/core/b.h": []}), "")
 
-    def test_an_arrow_up_is_named(self):
-        self.assertIn("rt/core/a.h: includes rt/base/b.h", errors({"rt/core/a.h": ["rt/base/b.h"], "rt/base/b.h": []}))
-
-    def test_siblings_do_not_include_each_other(self):
-        self.assertIn("policy/a.h: includes estimator/b.h", errors({"policy/a.h": ["estimator/b.h"], "estimator/b.h": []}))
-
-    def test_families_of_drives_are_siblings_above_what_they_share(self):
-        shared = {"drivers/drives/a.h": [], "drivers/drives/b/c.h": ["drivers/drives/a.h"]}
-        self.assertEqual(errors(shared), "")
-        said = errors(shared | {"drivers/drives/d/e.h": ["drivers/drives/b/c.h"]})
-        self.assertIn("drivers/drives/d/e.h: includes drivers/drives/b/c.h", said)
+    def test_a_circle_of_folders_is_named(self):
+        said = errors({"rt/core/a.h": ["rt/base/b.h"], "rt/base/b.h": [], "rt/base/c.h": ["rt/core/d.h"], "rt/core/d.h": []})
+        self.assertRegex(said, "a circle: rt/(core -> rt/base -> rt/core|base -> rt/core -> rt/base)")
 
     def test_a_circle_within_a_folder_is_named(self):
         said = errors({"rt/base/a.h": ["rt/base/b.h"], "rt/base/b.h": ["rt/base/a.h"]})
@@ -50,13 +42,6 @@ class IncludeGraphTest(unittest.TestCase):
             "sim/c.h": [],
         })
         self.assertIn("rt/loop/a.h -> rt/base/b.h -> sim/c.h", said)
-
-    def test_a_new_folder_needs_a_layer(self):
-        self.assertIn("rt/new: a folder that is not among LAYERS", errors({"rt/new/a.h": []}))
-
-    def test_a_new_driver_has_one(self):
-        self.assertEqual(errors({"drivers/new/a.h": ["rt/base/b.h"], "rt/base/b.h": [], "drivers/c.h": ["drivers/new/a.h"]}), "")
-        self.assertIn("drivers/new/a.h: includes drivers/c.h", errors({"drivers/new/a.h": ["drivers/c.h"], "drivers/c.h": []}))
 
 
 if __name__ == "__main__":
