@@ -150,7 +150,7 @@ GateVerdict SafetyGate::judge(const GateInput& input, Mode mode, GateState& stat
   if (joints_usable) {
     // Drives that are off may lie as they like, but they cool and they move.
     found |= judge_heat(sensors.joints, elapsed, mode, state, at_fault, warnings);
-    if (mode != Mode::kPassive) found |= judge_joints(sensors.joints, mode, state, at_fault);
+    found |= judge_joints(sensors.joints, mode, state, at_fault);
     const JointVerdict verdict =
         judge_samples(config_, sensors.joints,
                       {.mode = mode,
@@ -168,7 +168,6 @@ GateVerdict SafetyGate::judge(const GateInput& input, Mode mode, GateState& stat
     const bool carries = (kCarrying & mode_set(mode)) != 0;
     found |= judge_imu(config_, sensors.imu, carries, state.imu);
   }
-  if (mode == Mode::kPassive) state.torque_over_ticks.fill(0);
   if (judged_in(mode, Fault::kTilt) && imu_usable && !config_.hanging) {
     found |= judge_body(sensors.imu, elapsed, state);
   } else {
@@ -241,6 +240,10 @@ std::uint64_t SafetyGate::judge_ages(const GateInput& input, Mode mode, GateStat
 std::uint64_t SafetyGate::judge_joints(const JointState& joints, Mode mode, GateState& state,
                                        std::uint64_t& at_fault) const noexcept {
   std::uint64_t found = 0;
+  if (!judged_in(mode, Fault::kJointSpeed)) {
+    state.torque_over_ticks.fill(0);
+    return found;
+  }
   // Legs that run may be as fast as that for a moment after Walk, whatever follows it.
   const bool runs = mode == Mode::kWalk || mode == Mode::kFault ||
                     (state.walked != 0 && state.tick - state.walk_tick < kRunsOut_ticks);
