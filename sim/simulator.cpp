@@ -203,14 +203,16 @@ void Simulator::write(const SafeCommand& command) noexcept {
   if (cut_.load(std::memory_order_relaxed)) acting = SafeCommand{};
   const JointCommand& c = acting.joints();
   RigidState<double>& x = state_.robot.rigid;
-  const DriveLine<double>& line = line_;
   for (int j = 0; j < kNumJoints; ++j) {
-    state_.torque_nm[j] =
-        acting.enabled()
-            ? drive_torque(x.q[j], x.qd[j], c.position_rad[j], c.velocity_radps[j], c.kp_nmprad[j],
-                           c.kd_nmsprad[j], c.feedforward_nm[j], robot_.model.torque_limit_nm[j],
-                           line.stall_torque_nm[j % 3], line.inverse_no_load_speed[j % 3])
-            : 0.0;
+    state_.torque_nm[j] = acting.enabled()
+                              ? drive_torque<double>(j, x.q[j], x.qd[j],
+                                                     {.q = c.position_rad[j],
+                                                      .qd = c.velocity_radps[j],
+                                                      .kp = c.kp_nmprad[j],
+                                                      .kd = c.kd_nmsprad[j],
+                                                      .feedforward_nm = c.feedforward_nm[j]},
+                                                     robot_.model.torque_limit_nm[j], line_)
+                              : 0.0;
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
   stepper_.step(robot_.model, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,

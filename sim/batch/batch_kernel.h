@@ -26,10 +26,9 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
     for (int j = 0; j < kNumJoints; ++j) {
       const S q = r.state.rigid.q[j], qd = r.state.rigid.qd[j];
       const S desired = select(arrived, r.drive.target[j], r.drive.target_before[j]);
-      torque[j] = r.drive.torque_scale * drive_torque(q, qd, desired, zero, r.drive.kp, r.drive.kd,
-                                                      zero, r.model.torque_limit_nm[j],
-                                                      r.drive.line.stall_torque_nm[j % 3],
-                                                      r.drive.line.inverse_no_load_speed[j % 3]);
+      torque[j] = r.drive.torque_scale *
+                  drive_torque<S>(j, q, qd, {.q = desired, .kp = r.drive.kp, .kd = r.drive.kd},
+                                  r.model.torque_limit_nm[j], r.drive.line);
       const S as_haa = r.drive.heat_factor[j % 3] * torque[j];
       sums.torque_squared = fma(as_haa, as_haa, sums.torque_squared);
       sums.power = fma(torque[j], qd, sums.power);

@@ -24,13 +24,21 @@ DriveLine<S> drive_line(const TorqueSpeedLine& line) noexcept {
   return drive;
 }
 
-/// Torque of a joint drive, N m: the PD law, clamped to +-`limit_nm` and, with a stall torque above
-/// 0, to the drive's TorqueSpeedLine (sim/robot/robot_model.h). Positions rad, rates rad/s, kp
-/// N m/rad, kd N m s/rad, `inverse_no_load_speed` s/rad.
+/// What a joint drive is commanded: rad, rad/s, N m/rad, N m s/rad, N m.
 template <typename S>
-inline S drive_torque(S q, S qd, S q_desired, S qd_desired, S kp, S kd, S feedforward_nm,
-                      S limit_nm, S stall_torque_nm, S inverse_no_load_speed) noexcept {
-  const S wanted = joint_torque<S>(q, qd, q_desired, qd_desired, kp, kd, feedforward_nm);
+struct DriveTarget {
+  S q{}, qd{}, kp{}, kd{}, feedforward_nm{};
+};
+
+/// Torque of the drive of joint j at `q` rad and `qd` rad/s, N m: the PD law, clamped to
+/// +-`limit_nm` and, with a stall torque above 0, to the drive's line.
+template <typename S>
+inline S drive_torque(int j, S q, S qd, const DriveTarget<S>& target, S limit_nm,
+                      const DriveLine<S>& of_leg) noexcept {
+  const S wanted =
+      joint_torque<S>(q, qd, target.q, target.qd, target.kp, target.kd, target.feedforward_nm);
+  const S stall_torque_nm = of_leg.stall_torque_nm[j % kJointsPerLeg];
+  const S inverse_no_load_speed = of_leg.inverse_no_load_speed[j % kJointsPerLeg];
   S upper = limit_nm, lower = -limit_nm;
   const Mask<S> line = stall_torque_nm > S(0.0);
   if (any(line)) {

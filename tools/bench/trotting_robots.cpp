@@ -136,10 +136,9 @@ void TrottingRobot::advance(int periods) {
       const JointArray<double>& target = tick < kDelay_ticks ? target_before_ : target_;
       JointArray<double> torque_nm;
       for (int j = 0; j < kNumJoints; ++j) {
-        torque_nm[j] = sim::drive_torque(state_.rigid.q[j], state_.rigid.qd[j], target[j], 0.0,
-                                         kTrotKp, kTrotKd, 0.0, robot_.model.torque_limit_nm[j],
-                                         line.stall_torque_nm[j % kJointsPerLeg],
-                                         line.inverse_no_load_speed[j % kJointsPerLeg]);
+        torque_nm[j] = sim::drive_torque<double>(j, state_.rigid.q[j], state_.rigid.qd[j],
+                                                 {.q = target[j], .kp = kTrotKp, .kd = kTrotKd},
+                                                 robot_.model.torque_limit_nm[j], line);
       }
       stepper_.step(robot_.model, foot_, terrain_, {}, torque_nm, state_, report_);
     }

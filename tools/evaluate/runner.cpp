@@ -155,10 +155,9 @@ class PackRun {
     JointArray<double> torque_nm{};
     for (int j = 0; j < kNumJoints; ++j) {
       torque_nm[j] = sim::drive_torque<float>(
-          state.rigid.q[j], state.rigid.qd[j], static_cast<float>(lane.target_rad[j]), 0.0f,
-          drive.kp, drive.kd, 0.0f, static_cast<float>(facts_.torque_limit_nm[j]),
-          drive.line.stall_torque_nm[j % kJointsPerLeg],
-          drive.line.inverse_no_load_speed[j % kJointsPerLeg]);
+          j, state.rigid.q[j], state.rigid.qd[j],
+          {.q = static_cast<float>(lane.target_rad[j]), .kp = drive.kp, .kd = drive.kd},
+          static_cast<float>(facts_.torque_limit_nm[j]), drive.line);
     }
     return torque_nm;
   }

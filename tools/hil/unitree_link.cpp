@@ -148,10 +148,10 @@ const JointArray<DriveMoment>& UnitreeLink::step(double now_s, EmulatedRobot& ro
     const sim::RigidState<double>& x = robot.state();
     for (int j = 0; j < kNumJoints; ++j) {
       const Drive& d = drives_[j];
-      const auto in_leg = static_cast<std::size_t>(j % kJointsPerLeg);
-      torque_nm[j] = sim::drive_torque(x.q[j], x.qd[j], d.q_rad, d.dq_radps, d.kp, d.kd, d.tau_nm,
-                                       torque_limit_nm_[j], line_.stall_torque_nm[in_leg],
-                                       line_.inverse_no_load_speed[in_leg]);
+      torque_nm[j] = sim::drive_torque<double>(
+          j, x.q[j], x.qd[j],
+          {.q = d.q_rad, .qd = d.dq_radps, .kp = d.kp, .kd = d.kd, .feedforward_nm = d.tau_nm},
+          torque_limit_nm_[j], line_);
     }
     robot.step(torque_nm);
   }

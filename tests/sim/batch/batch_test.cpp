@@ -337,6 +337,7 @@ TEST(BatchTest, AgreesWithTheStepInDouble) {
     BatchDrive<float> drive;
     drive.kp = 60.0f;
     drive.kd = 1.0f;
+    const auto line = drive_line<double>(raibo().torque_speed_line);
     drive.line = drive_line<float>(raibo().torque_speed_line);
     drive.switch_tick = 120.0f;
     for (int j = 0; j < kNumJoints; ++j) {
@@ -360,9 +361,10 @@ TEST(BatchTest, AgreesWithTheStepInDouble) {
       std::array<double, kNumJoints> torque_nm;
       for (int j = 0; j < kNumJoints; ++j) {
         const auto& target = tick < 120 ? drive.target_before : drive.target;
-        torque_nm[j] = drive_torque(x.rigid.q[j], x.rigid.qd[j], static_cast<double>(target[j]),
-                                    0.0, 60.0, 1.0, 0.0, model.torque_limit_nm[j], 256.0,
-                                    static_cast<double>(drive.line.inverse_no_load_speed[0]));
+        torque_nm[j] =
+            drive_torque<double>(j, x.rigid.q[j], x.rigid.qd[j],
+                                 {.q = static_cast<double>(target[j]), .kp = 60.0, .kd = 1.0},
+                                 model.torque_limit_nm[j], line);
         squared += torque_nm[j] * torque_nm[j];
       }
       stepper.step(model, foot(), terrain, {}, torque_nm, x, report);

@@ -55,10 +55,9 @@ Walk walk(Policy policy, const Robot& robot, double vx_mps,
     std::array<double, kNumJoints> torque_nm;
     double square = 0.0;
     for (int j = 0; j < kNumJoints; ++j) {
-      torque_nm[j] = drive_torque(
-          x.q[j], x.qd[j], target_rad[j], 0.0, spec.kp_nmprad, spec.kd_nmsprad, 0.0,
-          std::min(robot.model.torque_limit_nm[j], spec.torque_limit_nm),
-          line.stall_torque_nm[j % kJointsPerLeg], line.inverse_no_load_speed[j % kJointsPerLeg]);
+      torque_nm[j] = drive_torque<double>(
+          j, x.q[j], x.qd[j], {.q = target_rad[j], .kp = spec.kp_nmprad, .kd = spec.kd_nmsprad},
+          std::min(robot.model.torque_limit_nm[j], spec.torque_limit_nm), line);
       square += torque_nm[j] * torque_nm[j];
     }
     step(torque_nm);
