@@ -162,6 +162,18 @@ double worst(const std::string& file, int step, const char* what, const Values& 
   return largest;
 }
 
+/// `step`: of a network, from an observation and an insight to its output.
+template <typename Step>
+double worst(const std::string& file, const GoldenExample& golden, Step step) {
+  double largest = 0.0;
+  for (int k = 0; k < kGoldenSteps; ++k) {
+    const auto output = step(&golden.observation[k * kObservationSize], insight_at(golden, k));
+    largest = std::max({largest, worst(file, k, "action", output.action, golden.action),
+                        worst(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
+  }
+  return largest;
+}
+
 }  // namespace
 
 GoldenExample make_golden_example(const NetworkParameters& parameters) {
@@ -191,17 +203,14 @@ GoldenExample make_golden_example(const NetworkParameters& parameters) {
 
 double check_golden_example(const std::string& file, const Network& network,
                             const GoldenExample& golden) {
-  double largest = 0.0;
   NetworkState state;
-  NetworkOutput output;
-  for (int k = 0; k < kGoldenSteps; ++k) {
-    std::array<float, kObservationSize> observation;
-    std::copy_n(&golden.observation[k * kObservationSize], kObservationSize, observation.begin());
-    network.step(observation, state, output);
-    largest = std::max({largest, worst(file, k, "action", output.action, golden.action),
-                        worst(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
-  }
-  return largest;
+  return worst(file, golden, [&](const float* observation, const float*) {
+    std::array<float, kObservationSize> input;
+    std::copy_n(observation, kObservationSize, input.begin());
+    NetworkOutput output;
+    network.step(input, state, output);
+    return output;
+  });
 }
 
 double check_golden_example(const std::string& file, const NetworkParameters& parameters,
@@ -209,15 +218,10 @@ double check_golden_example(const std::string& file, const NetworkParameters& pa
   if (!parameters.wiring.sees_insight()) {
     return check_golden_example(file, Network(parameters), golden);
   }
-  double largest = 0.0;
   PlainNetwork network(parameters);
-  for (int k = 0; k < kGoldenSteps; ++k) {
-    const auto output =
-        network.step(&golden.observation[k * kObservationSize], insight_at(golden, k));
-    largest = std::max({largest, worst(file, k, "action", output.action, golden.action),
-                        worst(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
-  }
-  return largest;
+  return worst(file, golden, [&](const float* observation, const float* insight) {
+    return network.step(observation, insight);
+  });
 }
 
 }  // namespace sandrunner
