@@ -157,6 +157,10 @@ std::span<const LinkFault<CanLink>> CanLink::faults() {
            [](CanLink& l, F f) { l.faults(f).temperature_degc = f.value; }},
           {{"reversed", Takes::kJoint, "JOINT: its torque acts the other way"},
            [](CanLink& l, F f) { l.faults(f).reversed = true; }},
+          {{"untimed", Takes::kNothing, "no drive has a time-out: each keeps to its last command"},
+           [](CanLink& l, F) {
+             for (EmulatedDrive& drive : l.drives_) drive.faults().untimed = true;
+           }},
           {{"foreign", Takes::kJointAndNumber,
             "JOINT N: another program sends it N set-points, at 1 kHz"},
            [](CanLink& l, F f) { l.foreign_left_[f.first] = static_cast<int>(f.value); }},

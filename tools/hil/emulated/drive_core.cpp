@@ -17,7 +17,8 @@ void DriveCore::command(const SetPoint& wanted, double most_nm, double wanted_ti
 
 void DriveCore::look_at_clock(double now_s) noexcept {
   if (faults.code != 0 && state == State::kOn) state = State::kFault;
-  if (state != State::kOn || timeout_s <= 0.0 || now_s - commanded_s <= timeout_s) return;
+  const bool can_time_out = state == State::kOn && timeout_s > 0.0 && !faults.untimed;
+  if (!can_time_out || now_s - commanded_s <= timeout_s) return;
   ++time_outs;
   state = State::kTimedOut;
 }

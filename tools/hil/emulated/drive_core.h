@@ -15,6 +15,7 @@ struct DriveFaults {
   double offset_rad = 0.0;  ///< its encoder says so much more, at its output
   double temperature_degc = 35.0;
   bool reversed = false;      ///< its torque acts the other way than it says
+  bool untimed = false;       ///< it never times out: it keeps to its last command
   double control_mode = 1.0;  ///< a Damiao's: in another than 1 it heeds no set-points
 };
 
