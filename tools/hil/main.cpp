@@ -48,6 +48,7 @@ struct Arguments {
   std::string hardware, terrain = "dry-sand", imu, out;
   std::vector<std::string> config_files, assignments, faults, only;
   double walk_s = 0.0;
+  bool list_faults = false;
   RunPlace can, unitree;
   double unitree_mps = 1.0;
 };
@@ -120,8 +121,8 @@ int play_unitree_runs(const Arguments& a) {
 void add_run_options(CLI::App& runs, RunPlace& place, std::vector<std::string>& only) {
   runs.add_option("--controller", place.controller, "the program")->type_name("FILE");
   runs.add_option("--out", place.out_dir, "folder for a folder of each run")->required();
-  runs.add_option("--terrain", place.terrain, "ground");
-  runs.add_option("--walk", place.walk_s, "s of the walks");
+  runs.add_option("--terrain", place.terrain, "ground")->type_name("PRESET|FILE");
+  runs.add_option("--walk", place.walk_s, "s of the walks")->type_name("S");
   runs.add_option("--set", place.assignments, "one setting, for both; may be repeated")
       ->allow_extra_args(false);
   runs.add_option("--only", only, "these runs only")->delimiter(',');
@@ -139,7 +140,8 @@ int run(int argc, char** argv) {
   app.add_option("--hardware", a.hardware, "hardware file, the same as the controller's")
       ->type_name("FILE")
       ->always_capture_default(false);
-  app.add_option("--terrain", a.terrain, "ground: a preset or a TOML file");
+  app.add_option("--terrain", a.terrain, "ground: a preset or a TOML file")
+      ->type_name("PRESET|FILE");
   app.add_option("--config", a.config_files, "TOML file with settings; may be repeated")
       ->type_name("FILE")
       ->always_capture_default(false);
@@ -157,6 +159,7 @@ int run(int argc, char** argv) {
                  "be repeated")
       ->allow_extra_args(false)
       ->always_capture_default(false);
+  app.add_flag("--faults", a.list_faults, "list the kinds of faults, and end");
   app.add_option("--walk", a.walk_s, "s of the walk whose speed is measured; 0: all")
       ->type_name("S");
   app.add_option("--out", a.out, "file for the report, JSON")->type_name("FILE");
@@ -177,10 +180,14 @@ int run(int argc, char** argv) {
   unitree_runs->add_option("--speed", a.unitree_mps,
                            "m/s commanded to walk; kept to 5 % as in process");
   add_run_options(*unitree_runs, a.unitree, a.only);
-  app.footer(fault_kinds_help() +
-             "Example:\n  sandrunner-hil --hardware moteus.toml --set hardware.imu.device=/tmp/imu "
-             "--fault \"8 silent LF_KFE\"");
+  app.footer(
+      "Example:\n  sandrunner-hil --hardware moteus.toml --set hardware.imu.device=/tmp/imu "
+      "--fault \"8 silent LF_KFE\"");
   if (!parse_command_line(app, argc, argv)) return kExitOk;
+  if (a.list_faults) {
+    fmt::print("{}", fault_kinds_help());
+    return kExitOk;
+  }
   flush_denormals_to_zero();
   if (runs->parsed()) return play_can_runs(a);
   if (unitree_runs->parsed()) return play_unitree_runs(a);
