@@ -347,12 +347,12 @@ ConfigTree ConfigTree::element(const Found& array, const std::string& path, std:
 
 bool ConfigTree::has(const std::string& path) const { return find(path).node != nullptr; }
 
-void ConfigTree::reject_unknown() const {
-  std::vector<std::string> known;
+void ConfigTree::reject_unknown(const std::set<std::string>& also) const {
+  std::vector<std::string> known(also.begin(), also.end());
   for (const auto& [path, text] : record_->values) known.push_back(path);
   for (const auto& [path, tables] : record_->tables) known.push_back(path);
   const auto is_known = [&](const std::string& path) {
-    return record_->values.count(path) != 0 || record_->tables.count(path) != 0;
+    return record_->values.contains(path) || record_->tables.contains(path) || also.contains(path);
   };
   for (const Layer& layer : layers_) {
     std::vector<Key> unknown;

@@ -19,6 +19,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,10 +71,10 @@ class ConfigTree {
   /// Whether any layer has a value or table at the path. Does not make the key known.
   bool has(const std::string& path) const;
 
-  /// Throws for the first key, in the weakest layer that has one, that was never asked for; hints
-  /// at the known key that was probably meant. Arrays of tables that a stronger layer replaced are
-  /// not looked into.
-  void reject_unknown() const;
+  /// Throws for the first key, in the weakest layer that has one, that was never asked for nor is
+  /// among `also`; hints at the known key that was probably meant. Arrays of tables that a stronger
+  /// layer replaced are not looked into.
+  void reject_unknown(const std::set<std::string>& also = {}) const;
 
   /// TOML text, sorted, of every value asked for with the value that counted; as a single layer it
   /// gives the same configuration again. Fallbacks that are not finite stand for "none" and are

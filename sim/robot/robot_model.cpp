@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <span>
 
 #include "rt/base/config_tree.h"
@@ -14,6 +15,7 @@
 #include "rt/core/gate_config.h"
 #include "sim/robot/clearance.h"
 #include "sim/robot/embedded.h"
+#include "sim/robot/inertia.h"
 #include "sim/robot/ros_description.h"
 #include "sim/robot/urdf_reader.h"
 
@@ -159,6 +161,9 @@ class Map {
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{}: {}", name_, what));
   }
+  void at_most(const char* key, double value, const char* limit_key, double limit) const {
+    if (value > limit) fail(fmt::format("{}: {} is above {}, {}", key, value, limit_key, limit));
+  }
   template <typename Settings>
   void read(const char* table, SettingRows<Settings> rows, Settings& settings) {
     for (const Setting<Settings>& row : rows) {
@@ -167,7 +172,11 @@ class Map {
       read_setting(tree_, key, row, settings);
     }
   }
-  void reject_unknown() const { tree_.reject_unknown(); }
+  void reject_unknown() const {
+    std::set<std::string> keys;
+    for (const SettingLine& line : robot_file_settings()) keys.insert(line.key);
+    tree_.reject_unknown(keys);
+  }
 
  private:
   std::string name_;
@@ -206,6 +215,10 @@ void read_figures(Map& map, const RobotFile& file, Robot& robot) {
   map.read("pose", kHeight, robot);
   map.read("gains", kGains, robot);
   map.read("gains", std::array{damping(robot.kd_limit_nmsprad)}, robot);
+  map.at_most("gains.stand_kp_nmprad", robot.stand_kp_nmprad, "gains.kp_limit_nmprad",
+              robot.kp_limit_nmprad);
+  map.at_most("gains.stand_kd_nmsprad", robot.stand_kd_nmsprad, "gains.kd_limit_nmsprad",
+              robot.kd_limit_nmsprad);
   map.read("limits", kLimits, robot);
   map.read("motor", kMotor, robot);
   const TorqueSpeedLine& line = robot.torque_speed_line;
@@ -228,11 +241,16 @@ Vec read_joint(const UrdfReader& urdf, const Names& names, int l, int j, const s
   Vec place_m;
   const urdf::Joint& joint = urdf.joint(name, parent, child, place_m);
   const Vec wanted = j == 0 ? Vec{1, 0, 0} : Vec{0, 1, 0};
-  if (joint.type != urdf::Joint::REVOLUTE ||
-      std::fabs(dot(to_vec(joint.axis), wanted) - 1.0) > 1e-6) {
+  if (joint.type != urdf::Joint::REVOLUTE) {
+    urdf.fail(
+        fmt::format("joint '{}' is {}, expected revolute, with stops", name,
+                    joint.type == urdf::Joint::CONTINUOUS ? "continuous" : "of another type"));
+  }
+  const Vec axis = to_vec(joint.axis);
+  if (std::fabs(dot(axis, wanted) - 1.0) > 1e-6) {
     urdf.fail(fmt::format(
-        "joint '{}' is not revolute about {}; the joints of a leg are HAA (x), HFE (y), KFE (y)",
-        name, j == 0 ? "x" : "y"));
+        "joint '{}': found axis {} {} {}, expected {}; a leg has HAA (x), HFE (y), KFE (y)", name,
+        axis.x, axis.y, axis.z, j == 0 ? "1 0 0" : "0 1 0"));
   }
   if (!joint.limits || !(joint.limits->lower < joint.limits->upper) ||
       !(joint.limits->effort > 0.0) || !(joint.limits->velocity > 0.0)) {
@@ -268,13 +286,11 @@ void read_foot(const UrdfReader& urdf, const Names& names, int l, const std::str
   }
 }
 
-// A link that moves by itself and weighs next to nothing is a slip (g for kg), and one that the
-// simulator's step cannot resolve. A foot weighs as a part of its shank.
+// A foot weighs as a part of its shank.
 void check_mass(const UrdfReader& urdf, const std::string& link, const Body<double>& body) {
-  constexpr double kLeast_kg = 1e-3;
-  if (body.mass >= kLeast_kg) return;
-  urdf.fail(
-      fmt::format("link '{}' has mass {} kg, expected at least {}", link, body.mass, kLeast_kg));
+  if (body.mass >= kLeastMass_kg) return;
+  urdf.fail(fmt::format("link '{}' has mass {} kg, expected at least {}", link, body.mass,
+                        kLeastMass_kg));
 }
 
 void read_leg(const UrdfReader& urdf, const Names& names, int l, Robot& robot) {
@@ -318,6 +334,7 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
                   const std::string& urdf_text, const std::string& urdf_name) {
   Map map(map_text, map_name);
   const UrdfReader urdf(urdf_text, urdf_name);
+  map.reject_unknown();  // a key that is misspelt is not one that is missing
   const RobotFile file = read_file(map);
   const Names names = names_in(file);
   Robot robot;
@@ -326,7 +343,6 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   robot.description.leg_names = names.legs;
   robot.map = map_text;
   read_figures(map, file, robot);
-  map.reject_unknown();
 
   read_base(urdf, names.base, robot.model);
   if (urdf.moving_joints() != kNumJoints) {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "rt/base/errors.h"
+#include "sim/robot/inertia.h"
 #include "sim/robot/urdf_text.h"
 
 namespace sandrunner::sim {
@@ -37,24 +38,6 @@ Sym3<double> rotated(const Sym3<double>& m, const urdf::Rotation& q) {
   const Mat3<double> r = rotation_matrix(Quaternion<double>{q.w, q.x, q.y, q.z});
   const Vec a = m * r.r0, b = m * r.r1, c = m * r.r2;
   return {dot(r.r0, a), dot(r.r0, b), dot(r.r0, c), dot(r.r1, b), dot(r.r1, c), dot(r.r2, c)};
-}
-
-// Above 0 in every direction.
-bool is_positive_definite(const Sym3<double>& m) {
-  const double d2 = m.xx * m.yy - m.xy * m.xy;
-  const double d3 = m.xx * (m.yy * m.zz - m.yz * m.yz) - m.xy * (m.xy * m.zz - m.yz * m.xz) +
-                    m.xz * (m.xy * m.yz - m.yy * m.xz);
-  return m.xx > 0.0 && d2 > 0.0 && d3 > 0.0;
-}
-
-// The moment about an axis is the mass's spread along the two others: an inertia J belongs to a
-// body if its spread, trace(J)/2 - J, is not negative in any direction. A plate has none across;
-// rounded figures may be a thousandth below.
-bool is_inertia_of_a_body(const Sym3<double>& m) {
-  const double trace = m.xx + m.yy + m.zz;
-  const double half = (0.5 + 1e-3) * trace;
-  return is_positive_definite(m) &&
-         is_positive_definite({half - m.xx, -m.xy, -m.xz, half - m.yy, -m.yz, half - m.zz});
 }
 
 bool is_rotated(const urdf::Joint& joint) {

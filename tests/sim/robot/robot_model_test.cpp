@@ -244,7 +244,7 @@ TEST(RobotModelTest, RefusesOtherAxesAndRotatedJoints) {
   expect_refused(edited(urdf, "joint name=\"LF_HAA\"", "axis xyz=\"1 0 0\"", "axis xyz=\"0 1 0\""),
                  "LF_HAA");
   expect_refused(edited(urdf, "joint name=\"RH_HFE\"", "axis xyz=\"0 1 0\"", "axis xyz=\"0 -1 0\""),
-                 "RH_HFE");
+                 "RH_HFE': found axis 0 -1 0, expected 0 1 0");
   expect_refused(edited(urdf, "joint name=\"LF_KFE\"", "rpy=\"0 0 0\"", "rpy=\"0 0.1 0\""),
                  "LF_KFE");
   expect_refused(edited(urdf, "joint name=\"LF_S2F\"", "rpy=\"0 0 0\"", "rpy=\"0 0 0.3\""),
@@ -387,6 +387,22 @@ TEST(RobotModelTest, RefusesUnknownAndWrongKeysOfTheMap) {
     EXPECT_NE(what(map).find(key), std::string::npos) << what(map);
   }
   EXPECT_THROW(load_robot("/nonexistent/robot.toml"), InputError);
+}
+
+TEST(RobotModelTest, AKeyThatIsMisspeltIsNotOneThatIsMissing) {
+  EXPECT_NE(refusal(shipped_urdf(), edited(shipped_map(), "\n", "lying_rad", "liyng_rad"))
+                .find("unknown key 'pose.liyng_rad', did you mean 'pose.lying_rad'?"),
+            std::string::npos);
+}
+
+TEST(RobotModelTest, GainsOfStandAreAtMostThoseThatDrivesAreGiven) {
+  const std::string map = shipped_map();
+  const std::size_t at = map.find("stand_kp_nmprad = ");
+  ASSERT_NE(at, std::string::npos);
+  const std::string line = map.substr(at, map.find('\n', at) - at);
+  EXPECT_NE(refusal(shipped_urdf(), edited(map, "\n", line, "stand_kp_nmprad = 3000"))
+                .find("gains.stand_kp_nmprad: 3000 is above gains.kp_limit_nmprad, "),
+            std::string::npos);
 }
 
 TEST(RobotModelTest, EveryFigureOfTheMapIsNeeded) {
