@@ -2,12 +2,15 @@
 #include "rt/base/command_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <memory>
+#include <regex>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rt/base/build.h"
@@ -72,6 +75,18 @@ void collect_names(CLI::App& app, std::vector<std::string>& names) {
   }
 }
 
+/// What other trainers and simulators call it: their option, ours, and what to say.
+struct Elsewhere {
+  const char *theirs, *ours, *say;
+};
+constexpr Elsewhere kElsewhere[] = {
+    {"--num-envs", "--threads", "the number of robots is a setting: --set run.envs=N"},
+    {"--num_envs", "--threads", "the number of robots is a setting: --set run.envs=N"},
+    {"--device", "--threads", "training runs on the processor: --threads N"},
+    {"--gui", "--view", "--view shows the run in a browser"},
+    {"--headless", "--view", "without --view nothing is shown"},
+};
+
 [[noreturn]] void fail_for_unexpected(CLI::App& app, const std::vector<std::string>& unexpected) {
   const auto option = std::find_if(unexpected.begin(), unexpected.end(),
                                    [](const std::string& word) { return word.starts_with("-"); });
@@ -83,10 +98,40 @@ void collect_names(CLI::App& app, std::vector<std::string>& names) {
         "command line: unexpected '{}': several numbers of one option need commas, as in 1,0,0",
         word));
   }
+  const std::string name = word.substr(0, word.find('='));
+  for (const Elsewhere& other : kElsewhere) {
+    if (name != other.theirs || !app.get_option_no_throw(other.ours)) continue;
+    throw InputError(fmt::format("command line: unexpected '{}': {}", word, other.say));
+  }
   std::vector<std::string> names;
   collect_names(app, names);
-  throw InputError(fmt::format("command line: unexpected '{}'{}", word,
-                               did_you_mean(word.substr(0, word.find('=')), names)));
+  throw InputError(fmt::format("command line: unexpected '{}'{}", word, did_you_mean(name, names)));
+}
+
+/// CLI11's message, as the other messages of our programs are.
+std::string in_our_words(const CLI::App& app, std::string message) {
+  if (message == "A subcommand is required") {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(command->get_name());
+    }
+    const std::vector<std::string> words = app.remaining(true);
+    return fmt::format("command line: found {}, expected {}",
+                       words.empty() ? "no command" : "'" + words.front() + "'",
+                       fmt::join(names, ", "));
+  }
+  const std::pair<std::regex, const char*> kWords[] = {
+      {std::regex("Could not convert: (\\S+) = (.*)"), "$1: found '$2', expected a number"},
+      {std::regex("(\\S+): At Most 1 required but received (\\d+)"),
+       "$1: found $2 of them, expected one"},
+      {std::regex("(\\S+): 1 required (\\S+) missing"), "$1: found no value, expected $2"},
+      {std::regex("(\\S+): (.*) not in \\{(.*)\\}"), "$1: found '$2', expected one of $3"},
+  };
+  for (const auto& [theirs, ours] : kWords) {
+    std::smatch found;
+    if (std::regex_match(message, found, theirs)) return found.format(ours);
+  }
+  return "command line: " + message;
 }
 
 void set_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
@@ -137,7 +182,7 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv) {
   } catch (const CLI::ExtrasError&) {
     fail_for_unexpected(app, app.remaining(true));
   } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("command line: {}", error.what()));
+    throw InputError(in_our_words(app, error.what()));
   }
   reject_missing_values(app);
   return true;

@@ -75,6 +75,14 @@ TEST_F(BadInputTest, WhatWasProbablyMeantIsSaid) {
   expect_refused("--set controller.walk.kp=3", "did you mean 'controller.walk.kp_nmprad'?");
 }
 
+TEST_F(BadInputTest, ValuesThatDoNotFitAreRefusedInOurWords) {
+  expect_refused("--duration 20s", "--duration: found '20s', expected a number");
+  expect_refused("--policy good --policy good", "--policy: found 2 of them, expected one");
+  expect_refused("--clock fast", "--clock: found 'fast', expected one of lockstep,realtime");
+  expect_refused("--duration", "--duration: found no value, expected S");
+  expect_refused("--gui", "unexpected '--gui': --view shows the run in a browser");
+}
+
 TEST_F(BadInputTest, SeedsOutOfRangeAreRefused) {
   expect_refused("--seed -1", "-1");
   expect_refused("--seed 99999999999999999999", "99999999999999999999");

@@ -45,7 +45,7 @@ TEST(CtlProgramTest, BadInputIsOneLineAndExitCodeTwo) {
   const DdsConfig config = test_config();
   expect_error(run({"mode", "jump"}, config), 2, "mode: found 'jump'");
   expect_error(run({"cmd", "nan", "0", "0"}, config), 2, "VX: found nan");
-  expect_error(run({}, config), 2, "subcommand");
+  expect_error(run({}, config), 2, "found no command, expected status");
   expect_error(run({"drive"}, config), 2, "not a terminal");
   expect_error(run({"status", "--once", "--security", "/nowhere"}, config), 2, "/nowhere/");
   expect_error(run({"status", "--once", "--interface", "nosuch0"}, config), 2,

@@ -54,8 +54,8 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
     std::vector<const char*> words;
     const char* part;
   } kCases[] = {
-      {{}, "subcommand"},
-      {{"fly"}, "subcommand"},
+      {{}, "found no command, expected status, cmd, mode, drive"},
+      {{"fly"}, "found 'fly', expected status, cmd, mode, drive"},
       {{"status", "--domain", "231"}, "--domain: found 231, expected 0 to 230"},
       {{"status", "--domain", "x"}, "--domain"},
       {{"status", "--interface", ""}, "--interface"},

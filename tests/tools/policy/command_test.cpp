@@ -115,8 +115,8 @@ TEST_F(PolicyCommandTest, InfoPrintsSettingsOneInEachLine) {
 TEST_F(PolicyCommandTest, BadInputIsOneLineAndExitCodeTwo) {
   write_bare_weights("weights");
   write_file(folder_.path("garbage"), "garbage");
-  expect_refused("", "subcommand is required");
-  expect_refused("convert x", "subcommand is required");
+  expect_refused("", "found no command, expected import, ");
+  expect_refused("convert x", "found 'convert', expected import, ");
   expect_refused("import weights", "--out");
   expect_refused("info", "FILE");
   expect_refused("info weights weights", "unexpected");
