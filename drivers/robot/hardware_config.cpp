@@ -26,7 +26,7 @@ constexpr Setting<H> kExchange[] = {
     {"mode", words<&H::mode>(kModes),
      "gains: the drive closes the joint's loop; torque: this program does."},
     {"rate_hz", &H::rate_hz, kLeastRate_hz, kControlHz,
-     "Exchanges with every drive; a whole part of 4000."},
+     "Exchanges with every drive; a divisor of 4000."},
 };
 // A drive that closes no loop holds its last torque until then.
 constexpr Setting<H> drive_timeout(DriveMode mode) {
@@ -314,7 +314,7 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
   read_settings(config, "hardware", kExchange, h);
   if (kControlHz % h.rate_hz != 0) {
     throw InputError(
-        fmt::format("hardware.rate_hz: {}, expected a whole part of {} (4000, 2000, "
+        fmt::format("hardware.rate_hz: {}, expected a divisor of {} (4000, 2000, "
                     "1000, 800, 500, ...)",
                     h.rate_hz, kControlHz));
   }

@@ -330,8 +330,9 @@ class ViewServer::Implementation {
     if (!error) {
       acceptors_.push_back(std::move(acceptor));
     } else if (error == asio::error::address_in_use || address.is_v4()) {
-      throw InputError(fmt::format("view.port: {} of {}: {}, expected a port that is free", port,
-                                   address.to_string(), error.message()));
+      throw InputError(fmt::format(
+          "view.port: {} of {}: {}, expected a port that is free, as any is with --set view.port=0",
+          port, address.to_string(), error.message()));
     }  // else this computer has no IPv6
   }
 

@@ -99,7 +99,7 @@ TEST(HardwareConfigTest, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal("mit", "sign = 1", "sign = 0"), HasSubstr("sign 0"));
   EXPECT_THAT(refusal("mit", "sign = 1", "position_rad = 2.0"),
               HasSubstr("rad from its zero needed"));
-  EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate_hz = 900"), HasSubstr("whole part of 4000"));
+  EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate_hz = 900"), HasSubstr("a divisor of 4000"));
   EXPECT_THAT(refusal("mit", "baud = 921600", "baud = 115200"), HasSubstr("115200"));
   EXPECT_THAT(refusal("mit", "device = \"/dev/ttyS1\"", ""), HasSubstr("hardware.imu.device"));
   EXPECT_THAT(

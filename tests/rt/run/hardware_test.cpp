@@ -44,7 +44,7 @@ struct Refusal {
 
 constexpr Refusal kRefusals[] = {
     {"mit.toml", "rate_hz = 800", "rate_hz = 1000", "hardware.bus can0: 3 drives at 1000 Hz"},
-    {"mit.toml", "rate_hz = 800", "rate_hz = 900", "hardware.rate_hz: 900, expected a whole part"},
+    {"mit.toml", "rate_hz = 800", "rate_hz = 900", "hardware.rate_hz: 900, expected a divisor"},
     {"mit.toml", "\"LF_HFE\"", "\"LF_HAA\"", "hardware.drive: joint LF_HAA stands twice"},
     {"mit.toml", "\"LF_HFE\"", "\"LF_HEF\"", "hardware.drive: joint 'LF_HEF', expected one of"},
     {"mit.toml", "id = 2", "id = 1", "hardware.drive of LF_HFE: id 1 on can0 is that of LF_HAA"},
