@@ -72,7 +72,21 @@ void add_stances(const RunRecord& record, const std::vector<std::size_t>& steady
   if (m.stances > 0) m.sinkage_mean_m = sinkage_m / m.stances;
 }
 
+constexpr double kYawLength_m = 0.5;        // a yaw rate as a speed
+constexpr double kLeastCommand_mps = 0.05;  // below it there is nothing to follow
+
 }  // namespace
+
+std::optional<double> RunFigures::followed() const noexcept {
+  const std::array<double, 3> asked{mean_command_mps[0], mean_command_mps[1],
+                                    kYawLength_m * mean_yaw_command_radps};
+  const double asked2 = square(asked[0]) + square(asked[1]) + square(asked[2]);
+  if (!motion || asked2 < square(kLeastCommand_mps)) return std::nullopt;
+  const double done = asked[0] * motion->mean_velocity_mps[0] +
+                      asked[1] * motion->mean_velocity_mps[1] +
+                      asked[2] * kYawLength_m * motion->mean_yaw_rate_radps;
+  return done / asked2;
+}
 
 RunFigures run_figures(const RunRecord& record) {
   RunFigures f;

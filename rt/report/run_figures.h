@@ -43,6 +43,10 @@ struct RunFigures {
   std::int64_t speed_limit_steps = 0;  ///< ticks with a joint above its speed limit
   std::optional<MotionFigures> motion;
   std::optional<EstimateErrors> estimate;
+
+  /// How much of the mean command the mean motion was: 1 follows it, 0 stands, -1 goes backward; a
+  /// yaw rate counts as the speed at half a metre. None without a command, or without the truth.
+  std::optional<double> followed() const noexcept;
 };
 
 /// Of the second half of the rows that count.

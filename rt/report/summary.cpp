@@ -16,6 +16,9 @@ namespace sandrunner {
 
 namespace {
 
+/// A robot that follows less of the command than this did not do what was asked.
+constexpr double kFollows = 0.5;
+
 double us(std::uint64_t ns) { return 1e-3 * static_cast<double>(ns); }
 
 nlohmann::ordered_json histogram_json(const LogHistogram& h) {
@@ -92,6 +95,21 @@ std::vector<std::string> joints_in(std::uint64_t bits, const RobotDescription& r
   return names;
 }
 
+/// What came of the run, in terms of what was asked.
+std::string how_it_ended(const RunResult& r) {
+  if (!r.has_truth) {
+    return std::string(r.interrupted ? "interrupted, ended in damping"
+                                     : "finished without a fault") +
+           "; whether it fell is not known, there is no ground truth";
+  }
+  if (r.interrupted) return "interrupted, ended in damping";
+  const std::optional<double> followed = r.figures.followed();
+  if (!followed) return "finished on its feet";
+  return fmt::format("{} followed {} % of the command",
+                     *followed < kFollows ? "stayed up, but" : "finished on its feet,",
+                     fixed_text(100.0 * *followed, 0));
+}
+
 }  // namespace
 
 std::string summary_table(const RunResult& r, const RunInfo& info) {
@@ -103,10 +121,7 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
   const auto of = [](const char* unit, double value, double commanded) {
     return fmt::format("{:>6} {}   of {:>6}", fixed_text(value, 3), unit, fixed_text(commanded, 3));
   };
-  std::string end = r.interrupted ? "interrupted, ended in damping"
-                    : r.has_truth ? "finished on its feet"
-                                  : "finished without a fault";
-  if (!r.has_truth) end += "; whether it fell is not known, there is no ground truth";
+  std::string end = how_it_ended(r);
   if (!r.survived) {
     end = "FAILED: " + r.fall_reason;
     const std::vector<std::string> joints =
@@ -158,7 +173,9 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
   std::string counted;
   for (const GateCounterName& counter : kGateCounters) {
     const std::uint64_t ticks = r.end.gate.counters.*counter.ticks;
-    if (ticks > 0) {
+    // A robot that lies is past its stops; of the walk there is a row above.
+    const bool lies = r.walked_s > 0.0 && counter.ticks == &GateCounters::joint_past_stop;
+    if (ticks > 0 && !lies) {
       counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", counter.name, ticks);
     }
   }
@@ -189,6 +206,8 @@ std::string summary_json(const RunResult& r, const RunInfo& info) {
   j["interrupted"] = r.interrupted;
   j["duration_s"] = r.walked_s;
   j["command"] = info.command;
+  const std::optional<double> followed = f.followed();
+  j["followed"] = followed ? Json(*followed) : Json();
   if (f.motion) {
     const MotionFigures& m = *f.motion;
     j["mean_velocity_mps"] = m.mean_velocity_mps;

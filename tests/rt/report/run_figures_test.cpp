@@ -59,6 +59,24 @@ TEST(RunFiguresTest, OnlyRowsOfTheWalkCount) {
   EXPECT_FALSE(run_figures({}).motion);
 }
 
+TEST(RunFiguresTest, HowMuchOfTheCommandWasFollowed) {
+  RunFigures figures;
+  figures.mean_command_mps = {1.0, 0.0};
+  figures.motion.emplace();
+  EXPECT_EQ(figures.followed(), 0.0) << "it stood";
+  figures.motion->mean_velocity_mps = {0.5, 0.4};
+  EXPECT_EQ(figures.followed(), 0.5);
+  figures.motion->mean_velocity_mps = {-1.0, 0.0};
+  EXPECT_EQ(figures.followed(), -1.0);
+  figures.mean_command_mps = {0.0, 0.0};
+  EXPECT_FALSE(figures.followed());
+  figures.mean_yaw_command_radps = 1.0;
+  figures.motion->mean_yaw_rate_radps = 0.75;
+  EXPECT_EQ(figures.followed(), 0.75);
+  figures.motion.reset();
+  EXPECT_FALSE(figures.followed());
+}
+
 TEST(RunRecordTest, ARunOfAQuarterOfAnHourHasEverySecondPeriod) {
   const RunRecord record = record_of(kPeriods * kTicksPerPolicyStep, kTicksPerPolicyStep);
   ASSERT_EQ(record.rows.size(), kPeriods / 2);

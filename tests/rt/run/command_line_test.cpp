@@ -131,6 +131,7 @@ TEST_F(CommandLineTest, SummaryHasEveryKey) {
                                          "foot_clearance_iqr_mm",
                                          "mechanical_power_w",
                                          "torque_squared_nm2",
+                                         "followed",
                                          "realtime_factor",
                                          "seed",
                                          "joint_limit_steps",
