@@ -39,7 +39,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, double 
   return run_page(
       run.record, kMostBytes,
       progress.page_json(fmt::format("Training of {}: {:.2f} million transitions, {} core-hours; "
-                                     "below: its policy, asked for {} "
+                                     "below: its policy, commanded {} "
                                      "m/s on {}",
                                      file.spec.name, 1e-6 * transitions,
                                      provenance.at("core_hours"), speed_mps, kGround)));

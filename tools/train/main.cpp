@@ -26,13 +26,17 @@ constexpr const char* kDefaultRobot = "raibo";
 
 std::atomic<bool> interrupted{false};
 
-// Where the policy is, and how to go on.
-void print_end(const std::string& out, const std::string& robot, bool are_a_robots) {
+// What came of it, where the policy is, and how to go on.
+void print_end(const Training& training, const std::string& out, const std::string& robot,
+               bool are_a_robots) {
+  const std::string verdict = training.verdict();
+  if (!verdict.empty()) fmt::print("{}\n", verdict);
   std::string policy = out + "/best.safetensors";
   if (!std::filesystem::exists(policy)) policy = out + "/policy.safetensors";
   if (are_a_robots) {
     const std::string of_robot = robot == kDefaultRobot ? "" : "--robot " + robot + " ";
-    fmt::print("wrote {}: run it with sandrunner {}--policy {}\n", out, of_robot, policy);
+    fmt::print("wrote {}: look at {}/curve.html, run it with sandrunner {}--policy {}\n", out, out,
+               of_robot, policy);
   } else {
     fmt::print("wrote {}: no robot runs the networks of {}\n", out, policy);
   }
@@ -154,7 +158,7 @@ int run(const Arguments& a) {
   fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
   std::fflush(stdout);
   training.run(interrupted);
-  print_end(out, a.robot_name, !config.learner.network.wiring.sees_insight());
+  print_end(training, out, a.robot_name, !config.learner.network.wiring.sees_insight());
   return kExitOk;
 }
 

@@ -185,7 +185,7 @@ std::string Progress::line(const ProgressRow& r, double eta_s) {
   const WindowStats& w = r.window;
   return fmt::format(
       "{:6.2f} M {:3.0f} k/s {:4.1f} Hz trot {:+.2f}  alive {:.3f} error {:.2f} cost {:.2f} "
-      "fast {:.3f} late {:.2f} {:3.0f} min",
+      "fast {:.3f} late {:.2f} {:3.0f} min left",
       r.transitions / 1e6, r.transitions_per_s / 1e3, w.stride_hz, w.diagonal, r.battery.alive,
       r.battery.error, r.battery.cost_of_transport, r.battery.too_fast, r.late,
       std::max(eta_s, 0.0) / 60.0);
@@ -212,7 +212,6 @@ const char* Progress::explanation() {
          "  fast     share of time in which a joint is above its speed limit\n"
          "And of the schedule:\n"
          "  late     share of the late penalties: rises while the battery is passed\n"
-         "  min      minutes left\n"
          "curve.csv has a row for each update: all of these, the battery's figures for each\n"
          "forward speed (battery.forward_share, slowest first), reward, tracking and falls under\n"
          "noise and pushes, and each term of the reward by its name (reward_..., penalty_...);\n"

@@ -28,6 +28,9 @@ using Names = std::array<char, 1024>;
 
 constexpr int kMostFallbacks = 5;
 
+/// A policy that does so in its battery walks; whatever the thresholds of the gate are.
+constexpr double kWalksAlive = 0.8, kWalksError = 0.2;
+
 double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -271,6 +274,14 @@ void Training::run(const std::atomic<bool>& interrupted) {
     if (t2_s - saved_at_s_ > config_.run.checkpoint_interval_s) save();
   }
   if (transitions() > before) save();
+}
+
+std::string Training::verdict() const {
+  if (!battery_) return "";
+  const bool walks = figures_.alive >= kWalksAlive && figures_.error <= kWalksError;
+  return fmt::format(
+      "{:.0f} % of the battery's runs ended without a fall, velocity error {:.2f}: {}",
+      100.0 * figures_.alive, figures_.error, walks ? "it walks" : "not a gait yet");
 }
 
 // Measures the averaged policy; keeps it if it is the best so far.

@@ -56,6 +56,9 @@ class Training {
   /// and at the end. A training that was complete stays as it is.
   void run(const std::atomic<bool>& interrupted);
 
+  /// What came of it, in one line; empty without a battery.
+  std::string verdict() const;
+
  private:
   void imitate(const std::string& teacher_file);
   void save();
