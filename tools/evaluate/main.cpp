@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "policy/policy_file.h"
 #include "rt/base/errors.h"
@@ -26,6 +27,7 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
     trials.insert(trials.end(), group.trials.begin(), group.trials.end());
   }
   const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (!terminal) to_standard_error(fmt::format("{} {}: {} runs\n", part.name, name, trials.size()));
   const auto progress = [&](std::size_t done) {
     to_standard_error(
         fmt::format("\r{:<8} {:<20} {:6} of {} runs ", part.name, name, done, trials.size()));
@@ -44,6 +46,16 @@ std::vector<std::vector<TrialFigures>> run_part(const Study& study, const Part& 
   return groups;
 }
 
+// Two of the same name are called by their files: "first/best", "trained/raibo".
+void tell_apart(std::vector<std::string>& names, const std::vector<std::string>& paths) {
+  if (names.size() < 2 || names[0] != names[1]) return;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::filesystem::path path = std::filesystem::absolute(paths[i]);
+    names[i] = (path.parent_path().filename() / path.stem()).string();
+  }
+  if (names[0] == names[1]) names[1] += " (2)";
+}
+
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
@@ -57,11 +69,10 @@ int run(int argc, char** argv) {
 
   Results results;
   for (const Policy& policy : policies) {
-    const PolicySpec& spec = policy.spec();
-    const bool taken = !results.policies.empty() && results.policies[0] == spec.name;
-    results.policies.push_back(spec.name + (taken ? " (2)" : ""));
-    results.envelopes.push_back(spec.envelope);
+    results.policies.push_back(policy.spec().name);
+    results.envelopes.push_back(policy.spec().envelope);
   }
+  tell_apart(results.policies, {options->policy_path, options->against_path});
   Study study(options->study, robot);
   RunnerSettings settings;
   settings.threads = options->threads;
