@@ -103,7 +103,7 @@ std::string OperatorDesk::follow(std::string_view name, const OperatorId& who,
   const RequestDecision decision = decide(name, operator_.mode(), no_walk_);
   if (decision.refusal) return decision.refusal;
   if (!decision.calms && gate_.held(clock_ns(CLOCK_MONOTONIC)) && who != holder_) {
-    return "another operator drives the robot";
+    return kOtherOperator;
   }
   if (!decision.calms && !objected.empty()) return objected;
   if (decision.calms) {

@@ -18,6 +18,9 @@ namespace sandrunner {
 /// Who asks: a participant of DDS, a page of the view.
 using OperatorId = std::array<std::uint8_t, 16>;
 
+/// Why what an operator asks for is refused while another one holds the velocity.
+inline constexpr const char* kOtherOperator = "another operator drives the robot";
+
 /// What became of a request.
 struct RequestOutcome {
   bool accepted = false;

@@ -11,12 +11,16 @@
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
 #include "rt/core/mode_machine.h"
+#include "rt/operator/operator_desk.h"
 #include "tools/ctl/dds_io.h"
 #include "tools/ctl/errors.h"
 #include "tools/ctl/view_reader.h"
 
 namespace sandrunner::ctl {
 namespace {
+
+constexpr int kTries = 4;
+constexpr std::int64_t kHold_ns = 400 * kMs_ns;  // a little more than dds.stale_s
 
 // False: nobody reads the output any more.
 bool print(const std::string& text) {
@@ -118,9 +122,14 @@ void request_mode(const Options& options, Interrupt& interrupt) {
   }
   // The robot may find us a moment after we find it; a request before that would be lost.
   interrupt.wait(kSettle_ns);
-  client.ask(options.mode);
   std::optional<sandrunner_ModeReply> reply;
-  interrupt.wait_until(kAnswer_ns, [&] { return (reply = client.reply()).has_value(); });
+  const auto is_held = [&] { return reply && std::string_view(reply->reason) == kOtherOperator; };
+  for (int tries = 0; tries == 0 || (is_held() && tries < kTries); ++tries) {
+    // The velocity of a `cmd` that has just ended still holds.
+    if (tries > 0) interrupt.wait(kHold_ns);
+    client.ask(options.mode);
+    interrupt.wait_until(kAnswer_ns, [&] { return (reply = client.reply()).has_value(); });
+  }
   if (!reply) {
     throw RefusedError(fmt::format(
         "{}: no answer; it is not known whether the robot received the request", options.mode));

@@ -76,7 +76,7 @@ ViewOrders::Outcome ViewOrders::drive(const PageDrive& order) {
     case CommandVerdict::kAccepted:
       return {};
     case CommandVerdict::kOtherPublisher:
-      return refused("another operator drives the robot");
+      return refused(kOtherOperator);
     case CommandVerdict::kNotFinite:
     case CommandVerdict::kAbsurd:
     case CommandVerdict::kObjection:  // a page speaks to one robot: nothing is objected

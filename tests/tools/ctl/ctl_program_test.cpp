@@ -167,6 +167,16 @@ TEST(CtlProgramTest, CmdThatMovesNothingSaysSoWithExitCodeOne) {
                "sent 20 commands, none had an effect: the robot is in mode damping");
 }
 
+TEST(CtlProgramTest, AModeRightAfterCmdWaitsForTheVelocityToEnd) {
+  DdsConfig config = test_config();
+  config.stale_s = 1.0;
+  FakeRobot robot(config);
+  make_walk(robot, config);
+  EXPECT_EQ(run({"cmd", "0.5", "0", "0", "--for", "0.2"}, config).code, 0);
+  const Ended ended = run({"mode", "lie"}, config);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+}
+
 TEST(CtlProgramTest, SignalsEndTheSearchForARobotWithoutAnError) {
   const DdsConfig config = test_config();
   for (const std::vector<std::string>& words : {std::vector<std::string>{"cmd", "0.5", "0", "0"},
