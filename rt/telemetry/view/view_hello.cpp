@@ -12,11 +12,14 @@
 #include "rt/core/faults.h"
 #include "rt/core/mode_machine.h"
 #include "rt/core/warnings.h"
+#include "rt/operator/mode_requests.h"
 #include "rt/report/run_row.h"
 #include "rt/telemetry/view/view_tiles.h"
 
 namespace sandrunner {
 namespace {
+
+constexpr int kNumModes = static_cast<int>(Mode::kFault) + 1;
 
 std::array<std::string, kNumLegs> feet_links(const RobotDescription& robot) {
   std::array<std::string, kNumLegs> links;
@@ -74,7 +77,7 @@ std::string view_hello(const RunScene& scene, const std::string& note) {
       {"row_kinds", kViewRowKinds},
       {"no_truth", kNoTruthNote},
       {"urdf", robot.ros_urdf}};
-  for (int mode = 0; mode <= static_cast<int>(Mode::kFault); ++mode) {
+  for (int mode = 0; mode < kNumModes; ++mode) {
     json["modes"].push_back(mode_name(static_cast<Mode>(mode)));
   }
   for (const FaultRow& row : kFaultTable) {
@@ -82,8 +85,14 @@ std::string view_hello(const RunScene& scene, const std::string& note) {
   }
   for (const WarningRow& row : kWarningTable) json["warnings"].push_back(row.name);
   for (const RequestRow& row : kRequestTable) {
-    json["requests"].push_back(
-        {{"name", row.name}, {"key", row.key == 0 ? std::string() : std::string(1, row.key)}});
+    nlohmann::ordered_json refused = nlohmann::ordered_json::array();  // why, by mode
+    for (int mode = 0; mode < kNumModes; ++mode) {
+      const char* const why = decide(row.name, static_cast<Mode>(mode), nullptr).refusal;
+      refused.push_back(why ? why : "");
+    }
+    json["requests"].push_back({{"name", row.name},
+                                {"key", row.key == 0 ? std::string() : std::string(1, row.key)},
+                                {"refused", refused}});
   }
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {

@@ -2,10 +2,10 @@
 // The plots beside the scene, from the fields of the frames.
 import { tellsTruth } from './moment.js';
 import { Strip } from './plots.js';
+import { kTheme } from './theme.js';
 
-const kRequested = '#8a949e', kTrue = '#1d5c99', kBelieved = '#f07c12';
-// Legs of a pair often move alike: left ones are wide and light, right ones narrow and dark on top.
-const kLegColors = ['#93c2ee', '#12518f', '#f2bd7c', '#a84a08'];
+// Legs of a pair often move alike: left ones are wide, right ones narrow and on top.
+const { grey: kCommanded, blue: kTrue, orange: kEstimated, legs: kLegColors } = kTheme;
 const kDeadline_us = 250, kJointsPerLeg = 3;
 export const kSpan_s = 6;
 
@@ -15,7 +15,7 @@ export function makeCharts({ hello, frames }, robot, parent) {
   const truth = (value) => (hasTruth ? [{ name: 'true', color: kTrue, value }] : []);
   const at = (field, k = 0, scale = 1) => (i) => scale * frames.at(i, field, k);
   const legs = (value) => hello.legs.map((name, l) => ({ name, color: kLegColors[l], wide: l % 2 === 0, value: value(l) }));
-  const requested = (k) => ({ name: 'requested', color: kRequested, dash: [4, 3], value: at('requested', k) });
+  const commanded = (k) => ({ name: 'commanded', color: kCommanded, dash: [4, 3], value: at('requested', k) });
   const strip = (...args) => {
     const canvas = document.createElement('canvas');
     parent.append(canvas);
@@ -27,14 +27,14 @@ export function makeCharts({ hello, frames }, robot, parent) {
       { limits: Number.isFinite(most) && most > 0 ? [-most, most] : [], least: 1, zero: true });
   });
   const charts = [
-    strip('Forward speed', 'm/s', [requested(0), ...truth(at('motion', 0)),
-      { name: 'believed', color: kBelieved, value: at('estimate', 1) }], { least: 0.5, zero: true }),
-    strip('Sideways speed', 'm/s', [requested(1), ...truth(at('motion', 1)),
-      { name: 'believed', color: kBelieved, value: at('estimate', 2) }], { least: 0.5, zero: true }),
-    strip('Yaw rate', 'rad/s', [requested(2),
+    strip('Forward speed', 'm/s', [commanded(0), ...truth(at('motion', 0)),
+      { name: 'estimated', color: kEstimated, value: at('estimate', 1) }], { least: 0.5, zero: true }),
+    strip('Sideways speed', 'm/s', [commanded(1), ...truth(at('motion', 1)),
+      { name: 'estimated', color: kEstimated, value: at('estimate', 2) }], { least: 0.5, zero: true }),
+    strip('Yaw rate', 'rad/s', [commanded(2),
       { name: hasTruth ? 'true' : 'measured', color: kTrue, value: at('motion', 2) }], { least: 0.5, zero: true }),
     strip('Body height', 'm', [...truth(at('truth', 0)),
-      { name: 'believed', color: kBelieved, value: at('estimate', 0) }], { least: 0.1 }),
+      { name: 'estimated', color: kEstimated, value: at('estimate', 0) }], { least: 0.1 }),
     ...(hasTruth ? [strip('Sinkage', 'mm', legs((l) => (i) => Math.max(0, 1000 * frames.at(i, 'penetration_m', l))),
       { least: 10, zero: true })] : []),
     ...joints('Torque', 'peak_torque_nm', 'N m, peaks', 'torque'),
@@ -45,8 +45,8 @@ export function makeCharts({ hello, frames }, robot, parent) {
   ];
   if (frames.columns.tick_us[0].some((us) => us > 0)) {
     charts.push(strip('Worst times of the control loop', 'µs', [
-      { name: 'late', color: '#2a9d8f', value: at('late_us') }, { name: 'control step', color: kTrue, value: at('control_us') },
-      { name: 'tick', color: kBelieved, value: at('tick_us') }], { limits: [kDeadline_us], least: 50, zero: true }));
+      { name: 'late', color: kTheme.green, value: at('late_us') }, { name: 'control step', color: kTrue, value: at('control_us') },
+      { name: 'tick', color: kEstimated, value: at('tick_us') }], { limits: [kDeadline_us], least: 50, zero: true }));
   }
   return charts;
 }

@@ -3,8 +3,9 @@
 // of one time in all of them; without it they are the newest.
 import { Strip } from './plots.js';
 import { Table } from './table.js';
+import { kTheme } from './theme.js';
 
-const kColors = ['#1d5c99', '#f07c12'];
+const kColors = [kTheme.blue, kTheme.orange];
 const figure = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(3))) : '?');
 
 /** @param {object} curve as view_page.h has it */
@@ -19,7 +20,7 @@ export function showCurve({ title, x_label, x, every, charts }) {
     const canvas = document.createElement('canvas');
     grid.append(canvas);
     const lines = chart.lines.map(({ name, values }, k) => ({ label: name, color: kColors[k], value: (i) => values[i] ?? NaN }));
-    return new Strip(canvas, chart.title, chart.unit, lines, { least: 1e-9, marks: true });
+    return new Strip(canvas, chart.title, chart.unit, lines, { least: 1e-3, marks: ' M' });
   });
   let row = last;
   const draw = () => {

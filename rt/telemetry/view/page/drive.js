@@ -5,26 +5,24 @@ import { isForPage } from './keys.js';
 import { Stick } from './stick.js';
 
 const kEvery_ms = 50, kZeros = 3, kDeadZone = 0.1;
+const kAlone_s = 5;  // a stop that this page asked for takes less
 const kFull = { vx: 1, vy: 0.5, wz: 1 };
+const kTouch = matchMedia('(pointer: coarse)').matches;
+const kSteps = ['arm', 'stand', 'walk'];
 const kKeys = { w: ['vx', 1], s: ['vx', -1], a: ['vy', 1], d: ['vy', -1], q: ['wz', 1], e: ['wz', -1] };
 const element = (id) => document.getElementById(id);
 const beyondDeadZone = (way) => Math.sign(way) * Math.max(Math.abs(way) - kDeadZone, 0) / (1 - kDeadZone);
 
 export class Drive {
-  /** @param {object[]} requests {name, key} of each, as hello has them */
-  constructor(live, requests) {
-    this.live = live;
+  /** @param {object} hello its modes; its requests: {name, key, refused} of each, why by mode or '' */
+  constructor(live, { modes, requests }) {
+    Object.assign(this, { live, modes });
     this.held = new Set();
     this.stick = new Stick();
     this.tenths = 5;
     this.zeros = 0;
     this.requestKeys = Object.fromEntries(requests.filter(({ key }) => key).map(({ name, key }) => [key, name]));
-    for (const { name } of requests) {
-      const button = document.createElement('button');
-      button.textContent = name.replace('_', ' ');
-      button.onclick = () => this.request(name);
-      element('requests').append(button);
-    }
+    this.buttons = requests.map((request) => this.#makeButton(request));
     // Before the time line, whose keys these partly are.
     window.addEventListener('keydown', (event) => this.#down(event), { capture: true });
     window.addEventListener('keyup', (event) => this.held.delete(event.key.toLowerCase()));
@@ -40,6 +38,7 @@ export class Drive {
   request(name) {
     this.held.clear();
     this.zeros = 0;
+    this.ordered_ms = performance.now();
     this.live.say({ say: 'request', name });
   }
 
@@ -51,7 +50,41 @@ export class Drive {
 
   show() {
     element('drive').hidden = element('touch-drive').hidden = !this.allowed;
-    element('scale').textContent = `w a s d q e at ${this.tenths / 10}, + -; space: stop`;
+    const speed = `${this.tenths / 10} m/s`;
+    const how = kTouch ? `hold the round button and move the stick (${speed})` : `hold W A S D (${speed}), Q E to turn; + - for faster, slower`;
+    element('how').textContent = this.mode === 'walk' ? how
+      : `to drive: ${this.mode === 'fault' ? 'reset fault, ' : ''}${kSteps.map((name, i) => `${i + 1} ${name}`).join(', ')}`;
+  }
+
+  /** The newest mode of the robot, by its number. */
+  showMode(number) {
+    const before = this.mode, mode = this.modes[number];
+    if (mode === before) return;
+    this.mode = mode;
+    for (const { button, refused } of this.buttons) {
+      button.title = refused[number];
+      button.setAttribute('aria-disabled', String(refused[number] !== ''));
+    }
+    const alone_s = (performance.now() - this.ordered_ms) / 1000;
+    if (before === 'walk' && mode === 'stand' && alone_s > kAlone_s) {
+      element('answer').textContent = `no command for ${alone_s.toFixed(0)} s, so it stands: 3 walk goes on`;
+    }
+    this.show();
+  }
+
+  #makeButton({ name, key, refused }) {
+    const button = document.createElement('button'), step = kSteps.indexOf(name) + 1;
+    button.dataset.request = name;
+    button.append(`${step > 0 ? `${step} ` : ''}${name.replace('_', ' ')}`);
+    if (key) {
+      const hint = document.createElement('kbd');
+      hint.textContent = key === ' ' ? 'space' : key.toUpperCase();
+      button.append(' ', hint);
+    }
+    // What is refused is asked for all the same: the robot says why.
+    button.onclick = () => this.request(name);
+    element('requests').append(button);
+    return { button, refused };
   }
 
   #down(event) {
@@ -93,8 +126,10 @@ export class Drive {
   #send() {
     if (!this.allowed) return;
     const wanted = this.#wanted(), scale = this.tenths / 10;
-    if (wanted) this.zeros = kZeros;
-    else if (this.zeros-- <= 0) {
+    if (wanted) {
+      this.zeros = kZeros;
+      this.ordered_ms = performance.now();
+    } else if (this.zeros-- <= 0) {
       this.zeros = 0;
       return;
     }

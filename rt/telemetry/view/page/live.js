@@ -108,6 +108,9 @@ export class Live {
     if (!tellsTruth(run.frames)) {
       run.hello.note = `${run.hello.note} ${run.hello.no_truth}`.trim();
     }
+    if (!this.mayTouch && !this.recorded) {
+      run.hello.note = `${run.hello.note} Watching only: to drive the robot, open the address that sandrunner printed, with its key.`.trim();
+    }
     this.begin(this.run);
   }
 }

@@ -34,7 +34,7 @@ function makeView(run, robot, surface) {
 
 function makeLegend(view) {
   if (!view.overlays) return;
-  const belief = ['belief', 'what the network believes', [kColors.belief]];
+  const belief = ['belief', 'estimated by the network', [kColors.belief]];
   const entries = view.overlays.hasTruth
     ? [['force', 'contact forces', [kColors.force]], belief, ['path', 'path: true, dead-reckoned', [kColors.truth, kColors.belief]]]
     : [belief, ['path', 'path, dead-reckoned', [kColors.belief]]];
@@ -64,7 +64,7 @@ function savePicture(view, t) {
 
 // What only a page with a server has.
 function makeLive({ live, frames, hello }, player, view, changed) {
-  const showTime = makeRobotTime(live), drive = new Drive(live, hello.requests), lost = element('lost');
+  const showTime = makeRobotTime(live), drive = new Drive(live, hello), lost = element('lost');
   const controls = new SceneControls(live, frames, view, (kind) => {
     hello.granular = kind === 'granular';
     view.groundIsSoft?.(hello.granular);
@@ -86,6 +86,7 @@ function makeLive({ live, frames, hello }, player, view, changed) {
   showTime();
   controls.show();
   return () => {
+    if (frames.count > 0) drive.showMode(frames.at(frames.count - 1, 'mode'));
     const text = live.lost ? 'LOST: nothing is heard of the robot' : '';
     if (lost.textContent !== text) lost.textContent = text;
   };
@@ -149,7 +150,7 @@ function show(run) {
     before = now;
     player.advance(Math.min(kLongestStep_s, passed_ms / 1000));
     showLive();
-    const label = player.playing ? 'pause' : 'play';
+    const label = player.playing ? 'pause view' : 'play';
     if (element('play').textContent !== label) element('play').textContent = label;
     if (frames.count === 0) return;  // another run is about to begin
     if (changed || player.t !== shown_s) draw(player.playing && passed_ms < 1000 ? passed_ms : 0);
@@ -182,7 +183,10 @@ async function showFile() {
   const curve = await readCurve();
   if (curve) showCurve(curve);
   show(await readRun());
-  if (curve) window.sandrunner.curve = curve;
+  if (curve) {
+    window.sandrunner.curve = curve;
+    [document.title] = curve.title.split(',');
+  }
 }
 
 if (hasRun()) showFile(); else new Live(show);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A strip chart: lines over the seconds before the shown time, on a canvas.
+import { kTheme } from './theme.js';
 
 /** A canvas's 2D context for drawing in CSS pixels; its size follows the element's. */
 export function context2d(canvas) {
@@ -29,16 +30,16 @@ export function marks(low, high, step) {
 const digitsOf = (step) => Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 
 const kPointsPerPixel = 8;  // of a line; in fewer, the peaks of a whole run would not show
-const kLeft = 40, kRight = 8, kFont = 'system-ui, sans-serif';
+const kLeft = 40, kRight = 8, kSwatch = 12, kFont = 'system-ui, sans-serif';
 
 export class Strip {
   /**
    * @param {object[]} lines {name, color, value(row), dash?, wide?}
    * @param {object} more limits: values of dashed red lines, always in sight; least: smallest range of the axis;
-   *   zero: the axis holds 0; marks: times stand below it; pointed: time of an upright line
+   *   zero: the axis holds 0; marks: unit of the times that stand below it; pointed: time of an upright line
    */
   constructor(canvas, title, unit, lines, more = {}) {
-    Object.assign(this, { canvas, title, unit, lines, limits: [], least: 0.1, zero: false, marks: false, pointed: NaN, ...more });
+    Object.assign(this, { canvas, title, unit, lines, limits: [], least: 0.1, zero: false, marks: '', pointed: NaN, ...more });
     this.top = this.marks ? 35 : 21;  // names below the title: values stand beside them
     this.bottom = this.marks ? 19 : 7;
   }
@@ -74,7 +75,7 @@ export class Strip {
       g.stroke();
     });
     if (this.pointed >= from) {
-      g.fillStyle = '#66717c';
+      g.fillStyle = kTheme.faint;
       g.fillRect(Math.round(x(this.pointed)), 0, 1, height);
     }
     g.restore();
@@ -113,36 +114,45 @@ export class Strip {
       g.stroke();
     };
     for (const value of marks(low, high, step)) {
-      line(value, value === 0 ? '#b9c2ca' : '#e8ecef', []);
-      g.fillStyle = '#66717c';
+      line(value, value === 0 ? kTheme.zero : kTheme.grid, []);
+      g.fillStyle = kTheme.faint;
       g.fillText(value.toFixed(digits), kLeft - 5, y(value) + 3.5);
     }
-    for (const limit of this.limits) line(limit, '#d8322f', [5, 3]);
+    for (const limit of this.limits) line(limit, kTheme.limit, [5, 3]);
     g.setLineDash([]);
   }
 
   #times(g, x, from, t, width, height) {
     const step = markStep(t - from, 5), digits = digitsOf(step);
     g.textAlign = 'center';
-    for (const at of marks(from, t, step)) g.fillText(at.toFixed(digits), Math.min(width - 12, x(at)), height - 6);
+    for (const at of marks(from, t, step)) g.fillText(at.toFixed(digits) + this.marks, Math.min(width - 16, x(at)), height - 6);
   }
 
   #head(g, width) {
     g.textAlign = 'left';
-    g.fillStyle = '#22282f';
+    g.fillStyle = kTheme.ink;
     g.font = `600 11.5px ${kFont}`;
     g.fillText(this.title, 8, 14);
     let x = 8 + g.measureText(this.title).width + 5;
     g.font = `10.5px ${kFont}`;
-    g.fillStyle = '#66717c';
+    g.fillStyle = kTheme.faint;
     g.fillText(this.unit, x, 14);
     g.textAlign = 'right';
     x = width - kRight;
-    for (const { name, color } of [...this.lines].reverse()) {
+    g.fillStyle = kTheme.ink;
+    for (const { name, color, dash, wide } of [...this.lines].reverse()) {
       if (!name) continue;
-      g.fillStyle = color;
       g.fillText(name, x, this.top - 7);
-      x -= g.measureText(name).width + 9;
+      x -= g.measureText(name).width + 4;
+      g.strokeStyle = color;
+      g.lineWidth = wide ? 3.5 : 2;
+      g.setLineDash(dash ?? []);
+      g.beginPath();
+      g.moveTo(x, this.top - 10.5);
+      g.lineTo(x -= kSwatch, this.top - 10.5);
+      g.stroke();
+      x -= 8;
     }
+    g.setLineDash([]);
   }
 }

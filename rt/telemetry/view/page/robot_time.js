@@ -5,7 +5,7 @@ const element = (id) => document.getElementById(id);
 export function makeRobotTime(live) {
   const show = () => {
     element('robot-time').hidden = !(live.hasPace && live.mayTouch) || live.state.ended;
-    element('hold').textContent = live.state.paused ? 'go on' : 'hold';
+    element('hold').textContent = live.state.paused ? 'go on' : 'freeze robot';
     if (document.activeElement !== element('pace')) element('pace').value = String(live.state.rate);
   };
   element('hold').onclick = () => live.say({ say: 'pause', on: !live.state.paused });

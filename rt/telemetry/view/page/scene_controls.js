@@ -54,7 +54,7 @@ export class SceneControls {
     field.type = 'number';
     field.step = range.step = 'any';
     range.name = name;
-    field.name = `${name} as a number`;
+    field.name = field.ariaLabel = `${name} as a number`;
     row.append(label, range, field);
     element('sliders').append(row);
     const value = () => (log ? Number((10 ** Number(range.value)).toPrecision(2)) : Math.round(Number(range.value) / step) * step);

@@ -31,10 +31,10 @@ export class State {
     parts.mode.className = name;
     parts.clock.textContent = `${fixed(t, 2)} s${skipped ? `, ${skipped} ticks skipped` : ''}`;
     const speed = hasTruth ? motion[0] : hasEstimate ? estimate[1] : NaN;
-    parts.speed.innerHTML = `${fixed(speed, 2)} <small>m/s${hasTruth ? '' : ', believed'}</small>`;
+    parts.speed.innerHTML = `${fixed(speed, 2)} <small>m/s${hasTruth ? '' : ', estimated'}</small>`;
     const text = (command) => `${fixed(command[0], 1)}, ${fixed(command[1], 1)} m/s, ${fixed(command[2], 1)} rad/s`;
     const differs = name === 'walk' && requested.some((v, k) => Math.abs(v - given[k]) > 0.05);
-    parts.requested.textContent = `requested ${text(requested)}${differs ? `; given ${text(given)}` : ''}`;
+    parts.requested.textContent = `commanded ${text(requested)}${differs ? `; limited to ${text(given)}` : ''}`;
     const set = (names, bits) => names.filter((_, bit) => (bits >>> bit) & 1);
     const found = set(this.hello.faults, faults).map((f) => `${f.name}: ${f.meaning}`);
     const warned = set(this.hello.warnings, warnings).map((warning) => `${warning}: it lies down`);

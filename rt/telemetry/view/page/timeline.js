@@ -2,6 +2,7 @@
 // The time line: where the run is in what mode, how fast it went, faults, and the shown time; pointer and keys move it.
 import { isForPage } from './keys.js';
 import { context2d, marks, markStep } from './plots.js';
+import { kTheme } from './theme.js';
 
 const kModeColors = { passive: '#e3e7eb', damping: '#f3d9b1', stand_up: '#d5e3d0', stand: '#bfdcb8', walk: '#a9c9ea', fault: '#f0a9a4' };
 const kInset = 8;
@@ -64,7 +65,7 @@ export class Timeline {
     }
     g.stroke();
     this.#seconds(g, x, width, height);
-    g.fillStyle = '#22282f';
+    g.fillStyle = kTheme.ink;
     g.fillRect(Math.round(x(t)) - 1, 0, 2, height - 11);
     g.beginPath();
     g.arc(x(t), bottom, 5, 0, 2 * Math.PI);
@@ -87,7 +88,7 @@ export class Timeline {
 
   #seconds(g, x, width, height) {
     const { begin, end } = this.player, step = Math.max(1, markStep(Math.max(end - begin, 1e-3), width / 70));
-    g.fillStyle = '#66717c';
+    g.fillStyle = kTheme.faint;
     g.textAlign = 'center';
     g.font = '10px system-ui, sans-serif';
     for (const at of marks(begin, end, step)) g.fillText(`${at} s`, Math.min(width - 14, Math.max(12, x(at))), height - 1);

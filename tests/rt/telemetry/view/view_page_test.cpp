@@ -149,8 +149,14 @@ TEST(ViewHelloTest, FeetAreTheLinksBelowTheLastJoints) {
 TEST(ViewHelloTest, PageLearnsRequestsFlagsAndKindsOfRowsFromTheServer) {
   const Json hello = Json::parse(view_hello(example_scene(), ""));
   ASSERT_EQ(hello.at("requests").size(), kRequestTable.size());
-  EXPECT_EQ(hello.at("requests").at(3), (Json{{"name", "stop"}, {"key", " "}}));
-  EXPECT_EQ(hello.at("requests").at(7), (Json{{"name", "reset_fault"}, {"key", ""}}));
+  EXPECT_EQ(
+      hello.at("requests").at(3),
+      (Json{{"name", "stop"}, {"key", " "}, {"refused", Json::array({"", "", "", "", "", ""})}}));
+  const Json& reset = hello.at("requests").at(7);
+  EXPECT_EQ(reset.at("name"), "reset_fault");
+  EXPECT_EQ(reset.at("key"), "");
+  EXPECT_EQ(reset.at("refused").at(static_cast<int>(Mode::kWalk)), "no fault is latched");
+  EXPECT_EQ(reset.at("refused").at(static_cast<int>(Mode::kFault)), "");
   EXPECT_EQ(hello.at("row_flags").at("has_truth"), kRowHasTruth);
   EXPECT_EQ(hello.at("row_kinds").at(static_cast<int>(ViewRowKind::kTiles)), "tiles");
   EXPECT_EQ(hello.at("no_truth"), kNoTruthNote);

@@ -88,9 +88,10 @@ async function looksAndHolds() {
 }
 
 async function drives() {
-  const { url, child } = await serve(sandrunner, "--set", "view.port=0", "--command", "live");
+  const { url, child } = await serve(sandrunner, "--set", "view.port=0", "--command", "live", "--set", "controller.shaping.operator_stand_s=6");
   const page = await open(url);
-  const ask = (name) => page.evaluate((wanted) => [...document.querySelectorAll("#requests button")].find((b) => b.textContent === wanted).click(), name);
+  const ask = (name) => page.$eval(`[data-request=${name}]`, (button) => button.click());
+  const refused = () => page.$$eval("[aria-disabled=true]", (buttons) => buttons.map((button) => button.dataset.request));
   const mode = (name) => until(page, `document.getElementById('mode').textContent === '${name}'`);
   // Again where the controller was held up for longer than its answer is waited for.
   const bring = async (request, name) => {
@@ -102,10 +103,17 @@ async function drives() {
     }
     await mode(name);
   };
+  await mode("passive");
+  assert.deepEqual(await refused(), ["stand", "walk", "lie", "disarm", "reset_fault"]);
+  assert.match(await page.$eval("[data-request=walk]", ({ title }) => title), /stand comes first/);
+  assert.match(await text(page, "how"), /1 arm, 2 stand, 3 walk/);
   await ask("walk");
   await until(page, "/refused, the robot does not stand|refused, the drives are off/.test(document.getElementById('answer').textContent)");
   await bring("arm", "damping");
   await bring("stand", "stand");
+  await bring("walk", "walk");
+  await until(page, "/W A S D/.test(document.getElementById('how').textContent)");
+  await until(page, "/no command for [0-9]+ s, so it stands: 3 walk goes on/.test(document.getElementById('answer').textContent)");
   await bring("walk", "walk");
   const requested = (vx) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', 0) === ${vx}`);
   await page.keyboard.down("w");
@@ -128,8 +136,22 @@ async function drives() {
   const look = await open(url.split("#")[0]);
   await until(look, "sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', 0) === 0");
   assert.ok(await look.$eval("#drive", (element) => element.hidden), "without the key there is nothing to drive with");
+  assert.match(await text(look, "note"), /Watching only: .* with its key/);
   child.kill("SIGINT");
   await look.close();
+}
+
+/** A screen reader has a name for each control. */
+async function namesItsControls(page) {
+  await page.$eval("#ground", (details) => { details.open = true; });
+  const kControls = new Set(["button", "combobox", "slider", "spinbutton", "textbox", "checkbox"]), found = [];
+  const look = ({ role, name, children = [] }) => {
+    if (kControls.has(role)) found.push(`${role} '${name ?? ""}'`);
+    children.forEach(look);
+  };
+  look(await page.accessibility.snapshot());
+  assert.ok(found.length > 25, found.join(", "));
+  assert.deepEqual(found.filter((control) => control.endsWith("''")), []);
 }
 
 async function touches() {
@@ -140,6 +162,7 @@ async function touches() {
   const last = (field, k) => page.evaluate(`sandrunner.run.frames.at(sandrunner.frames - 1, '${field}', ${k})`);
   await click(page, "on-legs");
   await mode("stand");
+  await namesItsControls(page);
 
   const fill = (name, value) => page.$eval(`[name="${name} as a number"]`, (field, text) => {
     field.value = text;
@@ -204,6 +227,9 @@ async function drivesWithAFinger() {
     return { x: left + width / 2, y: top + height / 2, height };
   });
   await until(page, "document.getElementById('stick').clientHeight > 0");
+  const small = await page.$$eval("button, select", (controls) => controls
+    .filter((control) => control.offsetParent && control.getBoundingClientRect().height < 44).map(({ id, textContent }) => id || textContent));
+  assert.deepEqual(small, [], "a thumb needs 44 px");
   const requested = (k, test) => until(page, `sandrunner.run.frames.at(sandrunner.frames - 1, 'requested', ${k}) ${test}`);
   const stick = await middle("stick"), hold = await middle("stick-hold");
   const finger = await page.touchscreen.touchStart(stick.x, stick.y - 0.45 * stick.height);

@@ -94,6 +94,24 @@ async function checkWholeRun(page) {
   await page.select("#span", "last 6 s");
 }
 
+/** Text stands out from its ground by 4.5 to 1, on light pages and on dark ones. */
+async function checkContrast(page) {
+  const light = (color) => color.match(/[0-9a-f]{2}/gi).slice(0, 3).map((hex) => parseInt(hex, 16) / 255)
+    .map((v) => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, v, i) => sum + [0.2126, 0.7152, 0.0722][i] * v, 0);
+  const kPairs = [["--ink", "--paper"], ["--ink", "--button"], ["--quiet", "--panel"], ["--off-ink", "--off"], ["--note-ink", "--note"],
+    ["#ffffff", "--blue"], ["#ffffff", "--red"]];
+  for (const scheme of ["light", "dark"]) {
+    await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+    const css = await page.evaluate((names) => Object.fromEntries(names.map((name) => [name,
+      name[0] === "#" ? name : getComputedStyle(document.documentElement).getPropertyValue(name).trim()])), [...new Set(kPairs.flat())]);
+    for (const [ink, ground] of kPairs) {
+      const [a, b] = [css[ink], css[ground]].map((color) => light(color.length < 6 ? color.replace(/[0-9a-f]/gi, "$&$&") : color)).sort((x, y) => y - x);
+      assert.ok((a + 0.05) / (b + 0.05) >= 4.5, `${scheme}: ${ink} on ${ground} has ${((a + 0.05) / (b + 0.05)).toFixed(2)}`);
+    }
+  }
+}
+
 /** Numbers that are none, as a broken sensor gives them, neither stop the page nor take the robot away. */
 async function checkMissingNumbers(page, t) {
   const before = await page.evaluate((time) => {
@@ -122,6 +140,7 @@ await openFile(browserPath, `${folder}/run.html`, kSoftware, { width: 900, heigh
   await checkDarkness(page, t);
   await checkWholeRun(page);
   await checkMissingNumbers(page, t);
+  await checkContrast(page);
   const ready = await page.evaluate("sandrunner.ready_ms");
   console.log(`WebGL: feet within ${(1e6 * worst).toFixed(2)} um at 50 times, ready after ${ready.toFixed(0)} ms, shares ${JSON.stringify(share)}`);
 });
