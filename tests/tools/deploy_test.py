@@ -87,6 +87,15 @@ class Installed(unittest.TestCase):
                     continue  # an example
                 self.assertIn(f"SUBCOMMAND {subcommand.upper()}", page.replace("\\", ""))
 
+    def test_a_shell_completes_options_and_subcommands(self):
+        for program in (self.prefix / "bin").iterdir():
+            rules = self.prefix / "share/bash-completion/completions" / program.name
+            said = run("bash", "-c", f"source {rules}; complete -p {program.name}")
+            words = said.partition("'")[2].partition("'")[0].split()
+            for line in run(program, "--help").splitlines():
+                if found := re.match(r"  (?:-\w,)?(--[a-z-]+|(?!sandrunner)[a-z-]+ )", line):
+                    self.assertIn(found[1].strip(), words)
+
     def test_documents_bring_what_they_refer_to(self):
         folder = self.prefix / "share/doc/sandrunner"
         documents = sorted(folder.rglob("*.md"))
