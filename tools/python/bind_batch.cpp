@@ -103,6 +103,8 @@ void bind_batch(py::module_& module) {
              const OneAtATime lock(robots.busy());
              robots.advance(ticks);
            })
+      .def_property_readonly("robot_name",
+                             [](const Robots& robots) { return robots.robot().description.name; })
       .def_property_readonly("nominal_rad",
                              [](const Robots& robots) { return robots.robot().nominal_rad; });
 }

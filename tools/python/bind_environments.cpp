@@ -147,6 +147,8 @@ void bind_environments(py::module_& module) {
       .def_property_readonly(
           "action_scale_rad",
           [](const Environments& e) { return e.config().policy.action_scale_rad; })
+      .def_property_readonly("robot_name",
+                             [](const Environments& e) { return e.robot().description.name; })
       .def_property_readonly("nominal_rad",
                              [](const Environments& e) { return e.robot().nominal_rad; })
       .def_property_readonly("episode_length_s",

@@ -16,6 +16,7 @@ void translate_input_error(std::exception_ptr error) {
 
 PYBIND11_MODULE(_native, module) {
   pybind11::register_exception_translator(&translate_input_error);
+  module.attr("__version__") = SANDRUNNER_VERSION;
   sandrunner::python::bind_environments(module);
   sandrunner::python::bind_batch(module);
   sandrunner::python::bind_ground(module);

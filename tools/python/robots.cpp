@@ -9,6 +9,7 @@
 
 #include "estimator/cost_of_transport.h"
 #include "sim/robot/clearance.h"
+#include "sim/robot/inertia.h"
 #include "sim/step/actuator.h"
 
 namespace sandrunner::python {
@@ -23,6 +24,69 @@ void require_finite(const char* what, int robot, const Record& record) {
   if (std::ranges::all_of(values, [](float v) { return std::isfinite(v); })) return;
   throw InputError(
       fmt::format("{}: found a number that is not finite at robot {}, expected none", what, robot));
+}
+
+[[noreturn]] void fail(const char* what, const std::string& found, int robot,
+                       const std::string& expected) {
+  throw InputError(
+      fmt::format("{}: found {} at robot {}, expected {}", what, found, robot, expected));
+}
+
+void require_least(const char* what, int robot, const std::string& name, float found,
+                   double least) {
+  if (found >= static_cast<float>(least)) return;
+  fail(what, fmt::format("{} = {}", name, found), robot, fmt::format("at least {}", least));
+}
+
+template <typename Values>
+void require_least_of_all(const char* what, int robot, const std::string& name, const Values& found,
+                          double least) {
+  for (const float value : found) require_least(what, robot, name, value, least);
+}
+
+/// As the reader of a URDF requires it.
+void require_body(int robot, const std::string& name, const sim::Body<float>& body) {
+  require_least("model", robot, name + ".mass", body.mass, sim::kLeastMass_kg);
+  const sim::Sym3<float>& m = body.inertia;
+  if (sim::is_inertia_of_a_body({m.xx, m.xy, m.xz, m.yy, m.yz, m.zz})) return;
+  fail("model",
+       fmt::format("{}.inertia {} {} {} {} {} {}", name, m.xx, m.xy, m.xz, m.yy, m.yz, m.zz), robot,
+       "one that a body can have");
+}
+
+void require_model(int robot, const sim::RobotModel<float>& m) {
+  constexpr double kLeast = 1e-6;  // of what is to be above 0
+  require_body(robot, "base", m.base);
+  for (const auto& leg : m.legs) {
+    require_body(robot, "legs.hip", leg.hip);
+    require_body(robot, "legs.thigh", leg.thigh);
+    require_body(robot, "legs.shank", leg.shank);
+  }
+  require_least_of_all("model", robot, "rotor_inertia", m.rotor_inertia, 0.0);
+  require_least_of_all("model", robot, "friction_nm", m.friction_nm, 0.0);
+  require_least_of_all("model", robot, "torque_limit_nm", m.torque_limit_nm, kLeast);
+  require_least_of_all("model", robot, "speed_limit_radps", m.speed_limit_radps, kLeast);
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (m.lower_rad[j] < m.upper_rad[j]) continue;
+    fail("model", fmt::format("lower_rad = {} and upper_rad = {}", m.lower_rad[j], m.upper_rad[j]),
+         robot, "the lower one first");
+  }
+  require_least("model", robot, "foot_radius_m", m.foot_radius_m, kLeast);
+  require_least("model", robot, "foot_width_m", m.foot_width_m, 0.0);
+  require_least("model", robot, "knee_radius_m", m.knee_radius_m, 0.0);
+  require_least("model", robot, "shank_radius_m", m.shank_radius_m, 0.0);
+  const auto& half = m.base_box_half_m;
+  require_least_of_all("model", robot, "base_box_half_m", std::array{half.x, half.y, half.z},
+                       kLeast);
+}
+
+void require_drive(int robot, const sim::BatchDrive<float>& d) {
+  require_least("drive", robot, "kp", d.kp, 0.0);
+  require_least("drive", robot, "kd", d.kd, 0.0);
+  require_least("drive", robot, "torque_scale", d.torque_scale, 0.0);
+  require_least_of_all("drive", robot, "stall_torque_nm", d.line.stall_torque_nm, 0.0);
+  require_least_of_all("drive", robot, "inverse_no_load_speed", d.line.inverse_no_load_speed, 0.0);
+  require_least_of_all("drive", robot, "heat_factor", d.heat_factor, 0.0);
 }
 
 sim::StepSettings settings_at(double step_hz) {
@@ -97,6 +161,11 @@ void Robots::set_state(int robot, const sim::RobotState<float>& state) {
     throw InputError(fmt::format("state: found contacts.region = {} at robot {}, expected 0 to {}",
                                  foot.region, robot, sim::kMaxRegions - 1));
   }
+  const auto& o = state.rigid.orientation;
+  const float length = std::sqrt(o.w * o.w + o.x * o.x + o.y * o.y + o.z * o.z);
+  if (!(std::fabs(length - 1.0f) < 0.01f)) {
+    fail("state", fmt::format("an orientation of length {}", length), robot, "1");
+  }
   states_[static_cast<std::size_t>(robot)] = state;
   batch_.set_state(robot, state);
 }
@@ -104,6 +173,7 @@ void Robots::set_state(int robot, const sim::RobotState<float>& state) {
 void Robots::set_model(int robot, const sim::RobotModel<float>& model) {
   require_robot(robot);
   require_finite("model", robot, model);
+  require_model(robot, model);
   batch_.set_model(robot, model);
 }
 
@@ -147,6 +217,7 @@ void Robots::advance(int ticks) {
   process_.require("Batch");
   for (int r = 0; r < batch_.size(); ++r) {
     require_finite("drive", r, drives_[static_cast<std::size_t>(r)]);
+    require_drive(r, drives_[static_cast<std::size_t>(r)]);
   }
   pool_.run(batch_.packs(), [&](int pack, int) {
     const int first = pack * batch_.width(), end = std::min(first + batch_.width(), batch_.size());

@@ -21,7 +21,7 @@ void PenaltyGate::judge(const BatteryFigures& figures) {
 void PenaltyGate::advance(double transitions) {
   const double rise = (transitions - state_.transitions) / settings_.rise_transitions;
   state_.transitions = transitions;
-  if (!settings_.enabled || passed()) {
+  if (!settings_.enabled || state_.passed > 0.0) {
     if (transitions > wait_transitions_) state_.late += rise;
   } else {
     state_.late -= settings_.back_rate * rise;

@@ -28,8 +28,6 @@ class PenaltyGate {
   /// Moves on to this many transitions since the start of the training.
   void advance(double transitions);
 
-  /// Whether the latest battery was survived and tracked.
-  bool passed() const { return state_.passed > 0.0; }
   /// 0 to 1: how much of what comes late in a training is on.
   double late() const { return state_.late; }
   /// 1 to 0: how much of the settling is still to come.

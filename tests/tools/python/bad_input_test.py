@@ -97,6 +97,27 @@ class BadInput(unittest.TestCase):
         state = batch.state.copy()
         state["position"][2, 0] = np.inf
         self.refused(r"^state: found a number that is not finite at robot 2", batch.set_state, state)
+        state = batch.state.copy()
+        state["orientation"][1] = 0.0
+        self.refused(r"^state: found an orientation of length 0 at robot 1, expected 1", batch.set_state, state)
+        for change, pattern in (
+            (lambda m: m["base"].__setitem__("mass", -5), r"base.mass = -5 at robot 0, expected at least 0.001"),
+            (lambda m: m["base"].__setitem__("inertia", 0), r"base.inertia 0 0 0 0 0 0 at robot 0, expected one that"),
+            (lambda m: m["legs"]["shank"].__setitem__("mass", 0), r"legs.shank.mass = 0 at robot 0, expected at least"),
+            (lambda m: m.__setitem__("foot_radius_m", -1), r"foot_radius_m = -1 at robot 0, expected at least"),
+            (lambda m: m.__setitem__("torque_limit_nm", -5), r"torque_limit_nm = -5 at robot 0, expected at least"),
+            (lambda m: m.__setitem__("lower_rad", 9), r"lower_rad = 9 and upper_rad = .* expected the lower one first"),
+            (lambda m: m.__setitem__("rotor_inertia", -1), r"rotor_inertia = -1 at robot 0, expected at least 0"),
+            (lambda m: m.__setitem__("base_box_half_m", 0), r"base_box_half_m = 0 at robot 0, expected at least"),
+        ):
+            model = batch.model
+            change(model)
+            self.refused(r"^model: found " + pattern, batch.set_model, model)
+        for name in ("kp", "kd", "torque_scale", "stall_torque_nm", "inverse_no_load_speed", "heat_factor"):
+            before = batch.drive[name].copy()
+            batch.drive[name][1] = -1
+            self.refused(rf"^drive: found {name} = -1 at robot 1, expected at least 0", batch.advance, 1)
+            batch.drive[name] = before
         batch.targets[0, 0] = np.nan
         self.refused(r"^drive: found a number that is not finite at robot 0", batch.advance, 1)
         with self.assertRaises(ValueError):  # numpy's: read-only

@@ -11,6 +11,7 @@ import unittest
 
 import numpy as np
 
+import sandrunner
 from sandrunner import VectorEnv
 
 REFERENCE = pathlib.Path(os.environ["SANDRUNNER_BIN"], "rollout_reference")
@@ -139,6 +140,27 @@ class Contract(unittest.TestCase):
         np.testing.assert_array_equal(envs.step(np.full((64, 12), 0.1, np.float32))[0], second)
         self.assertFalse(np.array_equal(envs.reset()[0], first))
         self.assertFalse(np.array_equal(envs.reset(seed=6)[0], first))
+
+    def test_streams_of_different_seeds_never_meet_whatever_the_resets(self):
+        envs = VectorEnv(num_envs=64, seed=1, copy=True)
+        streams = {envs.reset()[0].tobytes()}  # as it was made: that of seed 1
+        for seed in range(1, 17):
+            streams.add(envs.reset(seed=seed)[0].tobytes())
+            for _ in range(2):
+                streams.add(envs.reset()[0].tobytes())
+        self.assertEqual(len(streams), 48)
+
+    def test_a_reset_without_a_seed_draws_anew_and_repeats_with_its_seed(self):
+        a, b = (VectorEnv(num_envs=64, seed=6, copy=True) for _ in range(2))
+        for _ in range(3):
+            np.testing.assert_array_equal(a.reset()[0], b.reset()[0])
+
+    def test_it_says_what_it_is(self):
+        self.assertEqual(repr(VectorEnv(num_envs=64, seed=5)),
+                         "VectorEnv('raibo', num_envs=64, seed=5, actions='joints')")
+        self.assertEqual(repr(sandrunner.Batch(num_robots=2)), "Batch('raibo', num_robots=2)")
+        self.assertRegex(sandrunner.__version__, r"^\d+\.\d+\.\d+$")
+        self.assertEqual(VectorEnv(num_envs=64).unwrapped.step_dt, 0.01)
 
     def test_an_episode_that_ends_shows_its_last_observation_and_the_next_ones_first(self):
         settings = {"episode.length_s": 0.3, "episode.soft_reset_share": 0.0, "noise.level_high": 0.0}

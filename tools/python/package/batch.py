@@ -55,6 +55,9 @@ class Batch:
         for array in (self.state, self.report, self.sums):
             array.flags.writeable = False
 
+    def __repr__(self) -> str:
+        return f"Batch({self._native.robot_name!r}, num_robots={self.num_robots})"
+
     @property
     def nominal_position_rad(self) -> np.ndarray:
         return np.array(self._native.nominal_rad)

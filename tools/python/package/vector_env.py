@@ -100,7 +100,7 @@ class VectorEnv(_Base):
         self.num_envs = int(num_envs)
         self.action_mode = actions
         self._copy = bool(copy)
-        self._started = False
+        self._resets = 0  # without a seed, since the latest seed
         self._make_views()
         self._make_spaces()
         self._start = self._native.progress()
@@ -145,17 +145,21 @@ class VectorEnv(_Base):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begins all episodes anew. With a seed: as a new environment of that seed, its curriculum included.
-        Without: with other draws than before, and the curriculum where it is; the first time, as it was made."""
+        Without: with other draws than before, which no other seed has, and the curriculum where it is; the first time,
+        as it was made."""
         del options
         self._require_open()
         if seed is not None:
             self._seed = _check.integer("seed", seed, 0, 2**63 - 1)
             self._native.set_progress(**self._start)
             self._native.restart(self._seed)
-        elif self._started:
-            self._seed = (self._seed + 1) % 2**63
-            self._native.restart(self._seed)
-        self._started = False
+            self._resets = 1
+            return self._out("observation"), self._info()
+        if self._resets > 0:
+            # 63 bits of a hash: they meet neither another seed's nor a seed that is counted up.
+            hashed = np.random.SeedSequence((self._seed, self._resets)).generate_state(1, np.uint64)[0]
+            self._native.restart(int(hashed) >> 1)
+        self._resets += 1
         return self._out("observation"), self._info()
 
     def step(
@@ -168,7 +172,7 @@ class VectorEnv(_Base):
         answer; reset, where a recurrent policy has to clear its memory; reward_terms, by name; final_obs with
         its mask _final_obs; final_privileged, where an episode was truncated."""
         self._require_open()
-        self._started = True
+        self._resets = max(self._resets, 1)
         self._native.step(actions)
         return (
             self._out("observation"),
@@ -177,6 +181,15 @@ class VectorEnv(_Base):
             self._out("truncated"),
             self._info(),
         )
+
+    def __repr__(self) -> str:
+        name = self._native.robot_name
+        return f"VectorEnv({name!r}, num_envs={self.num_envs}, seed={self._seed}, actions={self.action_mode!r})"
+
+    @property
+    def step_dt(self) -> float:
+        """Of a step, s; as rsl_rl and Isaac Lab call it."""
+        return _native.step_s
 
     def close(self, **kwargs: Any) -> None:
         """Ends the use of this environment. Arrays that it returned stay readable."""
@@ -233,7 +246,7 @@ class VectorEnv(_Base):
 
     @property
     def max_episode_length(self) -> int:
-        return round(self._native.episode_length_s / _native.step_s)
+        return round(self._native.episode_length_s / self.step_dt)
 
     @property
     def effective_settings(self) -> str:
