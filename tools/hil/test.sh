@@ -54,7 +54,7 @@ faults='--walk 1 --set controller.damping.fault_s=0.5 --out /out'
 case $lane in
 short)
   speed=$(speed 2)
-  guest short 600 "can_test --gtest_brief=1 --gtest_filter='CanSocket*' &&
+  guest short 1400 "can_test --gtest_brief=1 --gtest_filter='CanSocket*' &&
     sandrunner-hil runs --only walks-mit,walks-moteus --walk 2 --speed $speed --out /out &&
     sandrunner-hil runs --only drive-resets,damiao-reboots,wrong-mode,bus-off,imu-silent $faults"
   ;;
