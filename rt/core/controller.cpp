@@ -28,8 +28,9 @@ double distance(const JointArray<double>& a, const JointArray<double>& b) noexce
 constexpr double kLeaning = 0.06, kLeaning_s = 0.5;
 
 /// In Walk, knees that give less than this share of what they gave in Stand, low-passed over this
-/// time, do not carry the robot. Sound robots give 0.46 and more on all presets, lifted ones 0.
-constexpr double kLifted = 0.3, kLifted_s = 0.5;
+/// time, do not carry the robot. Sound robots give 0.46 and more at a steady command, but below 0.3
+/// where it turns from forward to back at once; lifted ones 0.
+constexpr double kLifted = 0.15, kLifted_s = 0.5;
 /// In Stand they settle for this long, and then give at least this share of their limits, or they
 /// say nothing.
 constexpr double kStood_s = 0.5, kStoodShare = 0.03;

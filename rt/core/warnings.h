@@ -48,7 +48,7 @@ inline constexpr std::array<WarningRow, kNumWarnings> kWarningTable = {{
      "ground gives way",
      "past 45 and 60 degrees: `tilt`"},
     {Warning::kLifted, "lifted",
-     "in Walk the knees have given less than 0.3 of what they gave in Stand for half a second: "
+     "in Walk the knees have given less than 0.15 of what they gave in Stand for half a second: "
      "the robot is held up",
      "released: `free_fall`, `tilt`"},
 }};
