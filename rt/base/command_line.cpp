@@ -109,7 +109,7 @@ constexpr Elsewhere kElsewhere[] = {
 }
 
 /// CLI11's message, as the other messages of our programs are.
-std::string in_our_words(const CLI::App& app, std::string message) {
+std::string in_our_words(const CLI::App& app, const std::string& message) {
   if (message == "A subcommand is required") {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
