@@ -184,7 +184,7 @@ void Progress::load(const learner::Checkpoint& checkpoint) {
 std::string Progress::line(const ProgressRow& r, double eta_s) {
   const WindowStats& w = r.window;
   return fmt::format(
-      "{:6.2f} M {:3.0f} k/s {:4.1f} Hz trot {:+.2f}  alive {:.3f} error {:.2f} cost {:.2f} "
+      "{:5.1f} M {:3.0f} k/s {:4.1f} Hz trot {:+.2f} alive {:.2f} error {:.2f} cost {:.2f} "
       "fast {:.3f} late {:.2f} {:3.0f} min left",
       r.transitions / 1e6, r.transitions_per_s / 1e3, w.stride_hz, w.diagonal, r.battery.alive,
       r.battery.error, r.battery.cost_of_transport, r.battery.too_fast, r.late,
@@ -212,6 +212,7 @@ const char* Progress::explanation() {
          "  fast     share of time in which a joint is above its speed limit\n"
          "And of the schedule:\n"
          "  late     share of the late penalties: rises while the battery is passed\n"
+         "  min left minutes to the end, at the pace so far\n"
          "curve.csv has a row for each update: all of these, the battery's figures for each\n"
          "forward speed (battery.forward_share, slowest first), reward, tracking and falls under\n"
          "noise and pushes, and each term of the reward by its name (reward_..., penalty_...);\n"

@@ -36,7 +36,7 @@ class Progress {
   void save(learner::Checkpoint& checkpoint) const;
   void load(const learner::Checkpoint& checkpoint);
 
-  /// One line for a person, of at most 105 characters; `eta_s`: seconds left.
+  /// One line for a person, of at most 100 characters; `eta_s`: seconds left.
   static std::string line(const ProgressRow& row, double eta_s);
   /// The battery's figures for a person, in one line.
   static std::string summary(const BatteryFigures& figures);

@@ -92,6 +92,14 @@ TEST_F(CommandLineTest, WithoutArgumentsTheRobotEndsOnItsFeet) {
   EXPECT_EQ(files_in(""), std::set<std::string>{"policy"});
 }
 
+TEST_F(CommandLineTest, ARobotThatTurnsBackAtOnceIsNotTakenForALiftedOne) {
+  // A step of the command; its knees give next to nothing for a moment.
+  write_file(folder_.path("back.csv"),
+             "t_s,vx,vy,wz\n0,0,0,0\n0.5,0,0,0\n0.500001,3,0,1\n3,3,0,1\n3.000001,-0.8,0,0\n"
+             "5.5,-0.8,0,0\n5.500001,3,0,1\n7,3,0,1\n7.000001,0,0,0\n");
+  EXPECT_EQ(run("--command back.csv --duration 8 --terrain athletic-track"), 0) << output();
+}
+
 TEST_F(CommandLineTest, WithoutAPolicyARobotOfAnyJointsStandsUpAndIsLetDown) {
   const std::string robot = "--robot " + write_small_robot(folder_);
   EXPECT_EQ(run("--policy none --out o " + robot), 0) << error();

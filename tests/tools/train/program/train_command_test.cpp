@@ -274,11 +274,11 @@ TEST_F(TrainCommandTest, LinesOfProgressAreShortAndExplained) {
   std::getline(lines, hint);
   std::getline(lines, progress);
   EXPECT_NE(hint.find("--explain"), std::string::npos) << ended.out;
-  EXPECT_LE(progress.size(), 105u) << ended.out;
+  EXPECT_LE(progress.size(), 100u) << ended.out;
   EXPECT_TRUE(progress.ends_with(" min left")) << progress;
   const Ended explained = run_process({SANDRUNNER_TRAIN_PROGRAM, "--explain"});
   EXPECT_EQ(explained.code, 0);
-  for (const char* word : {"k/s", "Hz", "trot", "alive", "error", "cost", "fast", "late"}) {
+  for (const char* word : {"k/s", "Hz", "trot", "alive", "error", "cost", "fast", "late", "min"}) {
     EXPECT_NE(explained.out.find(word), std::string::npos) << word;
   }
 }
