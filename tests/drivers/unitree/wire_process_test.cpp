@@ -198,13 +198,15 @@ class WireProcessTest : public testing::Test {
     while (true) pause();
   }
 
+  /// 500 a second whatever holds one up: a robot with fewer is refused.
   void step() {
     steps_s_.push_back(now_s());
-    state_.tick_ms = static_cast<std::uint32_t>(1e3 * now_s());
+    state_.tick_ms = 2 * static_cast<std::uint32_t>(steps_s_.size());
     LowState message;
     encode_state(state_, message);
     if (!silent_) robot_->publish(message);
-    usleep(2000);
+    const double left_s = 1e-3 * state_.tick_ms - now_s();
+    if (left_s > 0.0) usleep(static_cast<useconds_t>(1e6 * left_s));
     robot_->serve();
     robot_->take_commands([&](const LowCmd& command) {
       if (command_mistake(command, 1) != nullptr) ++mistakes_;

@@ -23,6 +23,11 @@ RunResult run_unless_stalled(const std::function<RunResult()>& run) {
   unless_stalled([&](std::string& said) {
     result = run();
     said = result.fall_reason;
+    // One in the damping after an interrupt is no fall.
+    const std::uint64_t faults = result.record.rows.back().faults;
+    for (const FaultRow& info : kFaultTable) {
+      if (faults & fault_bit(info.fault)) said += info.name;
+    }
   });
   return result;
 }
