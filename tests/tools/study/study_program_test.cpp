@@ -64,6 +64,13 @@ TEST_F(StudyProgramTest, WritesThePageAndItsNumbersTheSameForAnyThreads) {
   EXPECT_EQ(page.find("src=\"http"), std::string::npos);
   EXPECT_EQ(page.find("href=\"http"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_NE(page.find("<code>sandrunner-study --from models --only E1,E5 --runs 1 "),
+            std::string::npos);
+  EXPECT_NE(page.find("<a href=\"#s3\">E1: Dry sand</a>"), std::string::npos);
+  EXPECT_NE(page.find("<h2 id=\"s3\">E1: Dry sand"), std::string::npos);
+  EXPECT_NE(page.find(">Not run: E2 (Recovery and transition), E3 "), std::string::npos);
+  EXPECT_EQ(page.find("<h2 id=\"s5\">E2"), std::string::npos);
+  EXPECT_GT(page.find("<details><summary>"), page.find("<h2 id=\"s4\">E5"));  // verdicts last
   EXPECT_NE(page.find("Not run: PL/Env-GM, PL/Env-Rigid"), std::string::npos);
 }
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "rt/base/build.h"
 #include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 #include "rt/report/run_csv.h"
@@ -117,11 +118,26 @@ Json recovery_run_json(const Options& options, const std::vector<Model>& models,
   return json;
 }
 
+// Without what changes no result: --out and --threads.
+std::string command(const Options& options) {
+  const std::vector<std::string> only(options.only.begin() + 1,
+                                      options.only.end());  // no "fairness"
+  std::string words = fmt::format("sandrunner-study --from {} --only {} --runs {}", options.from,
+                                  fmt::join(only, ","), options.lab.runs);
+  if (!options.seeds.empty()) words += fmt::format(" --seeds {}", fmt::join(options.seeds, ","));
+  words +=
+      fmt::format(" --grid-runs {} --grid-cells {}", options.lab.grid_runs, options.lab.grid_cells);
+  if (!options.published.empty()) words += " --published " + options.published;
+  if (!options.contact.empty()) words += " --contact " + options.contact;
+  return words;
+}
+
 }  // namespace
 
 void write_results(const Options& options, const std::vector<Model>& models,
                    const Measurements& measurements, const Json& contact) {
-  Json json = {{"version", SANDRUNNER_VERSION},
+  Json json = {{"build", build_name()},
+               {"command", command(options)},
                {"runs", options.lab.runs},
                {"grid_runs", options.lab.grid_runs},
                {"grid_cells", options.lab.grid_cells}};

@@ -12,7 +12,7 @@ namespace sandrunner::study {
 
 /// Writes results.json, and of E2 the run of Fig. 2 A: recovery.csv and recovery.html. Throws
 /// InputError if a file cannot be written. `contact`: read_contact_bench, or null.
-///   version, runs, grid_runs, grid_cells
+///   build, command (without --out and --threads), runs, grid_runs, grid_cells
 ///   models    by name: controller, seed, hash of the file, provenance, length of the training in
 ///             transitions, settings that differ from the usual ones, learning curve by column
 ///   takes_part    the controllers of each experiment

@@ -14,28 +14,40 @@ TITLES = {
 }
 
 DOCUMENT = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8">
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>The paper's experiments in simulation</title>
 <style>{style}</style></head><body>
-{body}</body></html>
+<nav><ol>
+{contents}</ol></nav>
+<main><h1>The paper's experiments in simulation</h1>
+{top}{body}</main></body></html>
 """
 
 STYLE = """
-body { font: 15px/1.45 "DejaVu Sans", Verdana, sans-serif; color: #20262d; margin: 0 auto;
-  max-width: 1240px; padding: 16px; }
+body { font: 15px/1.45 "DejaVu Sans", Verdana, sans-serif; color: #20262d; margin: 0; display: flex; }
+nav { position: sticky; top: 0; flex: 0 0 210px; height: 100vh; overflow-y: auto; font-size: 13px;
+  background: #eef0f3; }
+nav ol { list-style: none; margin: 0; padding: 16px; } nav li { margin: 5px 0; }
+main { flex: 1; min-width: 0; max-width: 1240px; padding: 16px 24px; }
+p, li { max-width: 75ch; }
 h1 { font-size: 26px; } h2 { font-size: 20px; border-top: 2px solid #20262d; padding-top: 10px;
   margin-top: 40px; } h3 { font-size: 16px; }
 img { width: 100%; max-width: 1240px; display: block; margin: 10px 0 4px; }
+.table { overflow-x: auto; }
 table { border-collapse: collapse; margin: 10px 0; font-size: 13px; }
 th, td { border: 1px solid #c9ced4; padding: 3px 7px; text-align: left; vertical-align: top; }
 th { background: #eef0f3; }
+summary { font-weight: bold; margin: 10px 0; cursor: pointer; }
+code { overflow-wrap: anywhere; }
 p.note { font-size: 13px; color: #4a525b; margin: 2px 0; }
 .key { display: inline-block; width: 11px; height: 11px; margin-right: 6px; }
 .faint { color: #6b737c; } .agrees { color: #0a6b35; font-weight: bold; }
 .contradicts { color: #b01c1c; font-weight: bold; } .unknown, .untestable { color: #6b737c; }
 .claims td:nth-child(2) { width: 24%; } .claims td:nth-child(3) { width: 20%; }
-@media print { body { font-size: 10px; max-width: none; } table { font-size: 9px; }
-  tr, img { break-inside: avoid; } }
+@media (max-width: 900px) { body { display: block; }
+  nav { position: static; height: auto; } main { padding: 8px; } }
+@media print { body { font-size: 10px; display: block; } nav { display: none; } main { max-width: none; }
+  table { font-size: 9px; } tr, img { break-inside: avoid; } h2, h3 { break-after: avoid; } }
 """
 
 INTRODUCTION = """
@@ -43,6 +55,10 @@ INTRODUCTION = """
 Science Robotics 8 (2023), repeated in simulation with controllers that were trained by this
 project. Each claim of the paper has a rule that was written down before any other controller than
 Ours was evaluated, and a verdict that follows from the rule. A negative result is a result.</p>
+"""
+
+VERDICTS = """
+<p>A table for each section of the paper; click its name. CLAIMS.md has the rules.</p>
 """
 
 FAIRNESS = """

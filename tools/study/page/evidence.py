@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 NAN = math.nan
-PARTS = {"runs", "grid_runs", "grid_cells", "models", "takes_part", "experiments", "contact", "recovery_run", "ground"}
+PARTS = {"build", "command", "runs", "grid_runs", "grid_cells", "models", "takes_part", "experiments", "contact",
+         "recovery_run", "ground"}
 np.seterr(divide="ignore", invalid="ignore")  # a mean of nothing is nan, which meets no rule
 
 

@@ -207,7 +207,7 @@ def ball_figure(ball):
 
 def learning_figure(models):
     """`models`: of results.json; each may have a learning curve."""
-    sheet = Sheet("Learning curves", 3, columns=3)
+    sheet = Sheet("What each training had reached after how many transitions", 3, columns=3)
     columns = (("battery_alive", "Share of the battery alive"),
                ("battery_error", "Velocity error of the battery, relative"),
                ("battery_cost_of_transport", "Cost of transport of the battery"))

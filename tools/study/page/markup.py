@@ -20,8 +20,8 @@ def table(heads, rows):
     """Cells are HTML already."""
     def row(tag, cells):
         return "<tr>" + "".join(f"<{tag}>{cell}</{tag}>" for cell in cells) + "</tr>"
-    return (f"<table><thead>{row('th', heads)}</thead><tbody>\n" +
-            "".join(row("td", cells) + "\n" for cells in rows) + "</tbody></table>\n")
+    return (f'<div class="table"><table><thead>{row("th", heads)}</thead><tbody>\n' +
+            "".join(row("td", cells) + "\n" for cells in rows) + "</tbody></table></div>\n")
 
 
 def picture(path, alternative):

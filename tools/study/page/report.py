@@ -16,12 +16,15 @@ class Page:
 
     def __init__(self, folder, results, evidence):
         self.folder, self.results, self.evidence, self.html = folder, results, evidence, ""
+        self.contents, self.not_run = [], []
 
     def add(self, html):
         self.html += html
 
-    def section(self, title):
-        self.add(f"<h2>{escaped(title)}</h2>\n")
+    def section(self, title, short=""):
+        """`short`: its name in the list of contents; without one, the title up to a colon."""
+        self.contents.append(short or title.partition(":")[0])
+        self.add(f'<h2 id="s{len(self.contents)}">{escaped(title)}</h2>\n')
 
     def figure(self, figure):
         figure.sheet.save(self.folder / f"{figure.name}.png")
@@ -39,8 +42,7 @@ class Page:
             self.figure(figure)
 
     def experiment(self, key, runs=""):
-        """A section with what the experiment rests on; whether it was run. `runs`: how many."""
-        self.section(f"{key}: {chapters.TITLES[key]}")
+        """A section with what the experiment rests on, if it was run; whether it was. `runs`: how many."""
         ran, missing = [], []
         for controller in self.results["takes_part"][key]:
             name, seeds = CONTROLLERS[controller].name, len(self.evidence.seeds(key, controller))
@@ -50,10 +52,13 @@ class Page:
                 ran.append(f"{name} ({seeds} seed{'' if seeds == 1 else 's'})")
             else:
                 missing.append(name)
+        if not ran:
+            self.not_run.append(f"{key} ({chapters.TITLES[key].partition(' (')[0]})")
+            return False
+        self.section(f"{key}: {chapters.TITLES[key]}", f"{key}: {chapters.TITLES[key].partition(' (')[0]}")
         runs = runs or f"{self.results['runs']} runs each, unless it says otherwise"
-        self.add(f'<p class="note">Run: {", ".join(ran) or "none"}. Not run: {", ".join(missing) or "none"}. {runs}.'
-                 "</p>\n")
-        return bool(ran)
+        self.add(f'<p class="note">Run: {", ".join(ran)}. Not run: {", ".join(missing) or "none"}. {runs}.</p>\n')
+        return True
 
 
 def add_recovery(page):
@@ -86,10 +91,9 @@ def add_grid(page):
 
 def add_experiments(page):
     evidence = page.evidence
-    has_beach = page.experiment("E1")
-    page.add(chapters.BEACH)
-    page.add(tables.beach_table(evidence))
-    if has_beach:
+    if page.experiment("E1"):
+        page.add(chapters.BEACH)
+        page.add(tables.beach_table(evidence))
         page.figures(figures.beach_figures(evidence))
     if page.experiment("E2"):
         add_recovery(page)
@@ -108,22 +112,29 @@ def add_experiments(page):
         page.add(chapters.ATTRIBUTION)
         page.figures(figures_simulated.attribution_figures(evidence))
         page.add(tables.attribution_tables(evidence))
-    page.section("E9: Estimator (section S4)")
-    page.figures(figures.estimator_figures(evidence))
-    page.section("E10: The peer's contact model (fig. S12)")
-    page.add(tables.contact_table(evidence.contact))
+    if evidence.seeds("E1", "ours"):
+        page.section("E9: Estimator (section S4)", "E9: Estimator")
+        page.figures(figures.estimator_figures(evidence))
+    if evidence.contact is not None:
+        page.section("E10: The peer's contact model (fig. S12)", "E10: The peer's contact model")
+        page.add(tables.contact_table(evidence.contact))
+    else:
+        page.not_run.append("E10 (the peer's contact model: --contact)")
+    if page.not_run:
+        page.add(f'<p class="note" id="not-run">Not run: {escaped(", ".join(page.not_run))}.</p>\n')
 
 
 def report_html(folder, results, evidence, judged):
     """The page; its pictures are written to `folder`."""
     page = Page(folder, results, evidence)
-    page.add("<h1>The paper's experiments in simulation</h1>\n" + chapters.INTRODUCTION)
+    page.section("Dry sand at a glance")
     page.figure(figures.summary_figure(evidence))
-    page.section("Verdicts")
-    page.add(tables.verdict_counts(judged) + tables.verdict_tables(judged))
+    page.add(tables.verdict_counts(judged))
     page.section(chapters.TITLES["fairness"])
     page.add(chapters.FAIRNESS + tables.fairness_table(evidence))
     add_experiments(page)
+    page.section("Verdicts")
+    page.add(chapters.VERDICTS + tables.verdict_tables(judged))
     page.section("Is the ground right?")
     page.add(chapters.GROUND)
     page.figure(figures_simulated.ball_figure(results["ground"]["ball"]))
@@ -136,4 +147,7 @@ def report_html(folder, results, evidence, judged):
     page.section("What a simulation cannot show")
     longest = max(model["length"] for model in results["models"].values())
     page.add(chapters.LIMITS.format(longest=1e-6 * longest))
-    return chapters.DOCUMENT.format(style=chapters.STYLE, body=page.html)
+    top = (chapters.INTRODUCTION + f'<p class="note">Made by sandrunner-study {escaped(results["build"])}:<br>'
+           f'<code>{escaped(results["command"])}</code></p>\n')
+    links = "".join(f'<li><a href="#s{i}">{escaped(title)}</a></li>\n' for i, title in enumerate(page.contents, 1))
+    return chapters.DOCUMENT.format(style=chapters.STYLE, top=top, contents=links, body=page.html)

@@ -50,8 +50,8 @@ def verdict_tables(judged):
         sections.setdefault(claim.section, []).append(
             [claim.id, *cells, escaped(judgement.ours), verdict_span(judgement.verdict, str(judgement))])
     heads = ["id", "the paper", "our figure", "agrees if", "contradicts if", "ours", "verdict"]
-    return "".join(f'<h3>{escaped(section)}</h3>\n<div class="claims">{table(heads, rows)}</div>'
-                   for section, rows in sections.items())
+    return "".join(f'<details><summary>{escaped(section)} ({len(rows)})</summary>\n<div class="claims">'
+                   f'{table(heads, rows)}</div></details>\n' for section, rows in sections.items())
 
 
 def controller_table(evidence, experiment, keys, heads, cells):
@@ -209,9 +209,6 @@ def attribution_tables(evidence):
 
 
 def contact_table(contact):
-    if contact is None:
-        return (f"<p>{NOT_RUN}: <code>--contact FILE</code> reads what <code>sandrunner-bench contact --json FILE"
-                "</code> wrote.</p>\n")
     return table(["figure", "paper", "ours"], [
         ["time of DRFT over that of the cone model", "about 20", f"{contact['ratio']:.1f}"],
         ["final depths, cone model, mm", "not printed", escaped(contact["cone_mm"])],
