@@ -5,7 +5,7 @@
 tools/check_docs.py [TREE]          links, file names, length of lines and sentences, words
 tools/check_docs.py --run BIN       also runs the command blocks that are marked as tested, with
                                     the programs in BIN, and checks the words of their --help
-tools/check_docs.py --commits BASE  also checks the subjects of the commits since BASE
+tools/check_docs.py --commits BASE  also checks the messages of the commits since BASE
 
 A command block is marked as tested by ```sh tested. It runs in the root of the tree, with an empty
 folder in place of HOME and /tmp. A comment `# prints TEXT`: the output of the block has TEXT, where
@@ -23,6 +23,7 @@ import tempfile
 COLUMNS = 100
 WORDS_IN_SENTENCE = 30
 SUBJECT = 72
+LINES_WITHOUT_WHY = 20  # of a commit that needs no body
 
 # What style has other words for. Each is plain in one sense and private in another, so only forms
 # that a pattern can tell apart are here.
@@ -223,12 +224,16 @@ def run_blocks(tree, documents, programs):
                     yield document.path, number, f'found output without "{text}"'
 
 
-def subjects(tree, base):
-    for line in git(tree, 'log', '--no-merges', '--format=%h %s', f'{base}..HEAD').splitlines():
-        commit, _, subject = line.partition(' ')
+def messages(tree, base):
+    for commit in git(tree, 'rev-list', '--no-merges', f'{base}..HEAD').split():
+        subject, _, body = git(tree, 'show', '-s', '--format=%B', commit).partition('\n')
+        place = f'commit {commit[:8]}'
         if len(subject) > SUBJECT:
-            yield f'commit {commit}', 0, (f'found a subject of {len(subject)} characters, expected '
-                                          f'at most {SUBJECT}: {subject}')
+            yield place, 0, f'found a subject of {len(subject)} characters, expected at most {SUBJECT}: {subject}'
+        changed = git(tree, 'show', '--format=', '--numstat', commit)
+        lines = sum(int(number) for number in re.findall(r'^(\d+)\t', changed, re.M))
+        if not body.strip() and lines > LINES_WITHOUT_WHY:
+            yield place, 0, f'found {lines} new lines without a body, expected one that says why: {subject}'
 
 
 def main():
@@ -247,7 +252,7 @@ def main():
         programs = options.run.resolve()
         findings += [*words(help_lines(programs)), *run_blocks(tree, documents, programs)]
     if options.commits:
-        findings += subjects(tree, options.commits)
+        findings += messages(tree, options.commits)
     for path, number, text in findings:
         place = path.relative_to(tree) if isinstance(path, pathlib.Path) else path
         print(f'{place}:{number}: {text}' if number else f'{place}: {text}')

@@ -21,6 +21,7 @@ def findings(files, *options, subject="docs: say more"):
         git = ["git", "-c", "user.name=a", "-c", "user.email=a@example.org", "-C", root]
         subprocess.run([*git, "init", "-q"], check=True)
         subprocess.run([*git, "commit", "-q", "--allow-empty", "-m", "base"], check=True)
+        subprocess.run([*git, "add", "."], check=True)
         subprocess.run([*git, "commit", "-q", "--allow-empty", "-m", subject], check=True)
         options = [option.replace("ROOT", root) for option in options]
         run = subprocess.run([sys.executable, SCRIPT, root, *options], capture_output=True, text=True, check=False)
@@ -85,6 +86,12 @@ class CheckDocsTest(unittest.TestCase):
     def test_a_subject_of_more_than_72_characters_is_too_long(self):
         self.assertEqual(findings({}, "--commits", "HEAD^", subject="a" * 72), "")
         self.assertIn("73 characters", findings({}, "--commits", "HEAD^", subject="a" * 73))
+
+    def test_a_commit_of_many_lines_says_why(self):
+        files = {"a.txt": "a\n" * 21}
+        self.assertIn("found 21 new lines without a body", findings(files, "--commits", "HEAD^"))
+        self.assertEqual(findings(files, "--commits", "HEAD^", subject="docs: say more\n\nUsers asked."), "")
+        self.assertEqual(findings({"a.txt": "a\n" * 20}, "--commits", "HEAD^"), "")
 
 
 if __name__ == "__main__":
