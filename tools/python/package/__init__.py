@@ -10,3 +10,12 @@ from .vector_env import VectorEnv
 
 __all__ = ["Batch", "Ground", "Policy", "Recording", "VectorEnv", "__version__", "read_policy", "terrain_preset_names",
            "write_policy"]
+
+try:
+    from gymnasium import register
+except ImportError:
+    pass
+else:
+    # gymnasium.make_vec("sandrunner/Raibo-v0", num_envs=64, ...): further keywords as VectorEnv's.
+    for _id, _robot in (("sandrunner/Raibo-v0", "raibo"), ("sandrunner/Go2-v0", "go2")):
+        register(_id, vector_entry_point="sandrunner:VectorEnv", kwargs={"robot": _robot})
