@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What gymnasium gets: registered names. The real package is used where it is installed."""
+"""What gymnasium gets: registered names, and no frames. The real package is used where it is installed."""
 
 import os
 import pathlib
@@ -59,6 +59,20 @@ class Registered(unittest.TestCase):
         self.assertLessEqual(max(length.max() for length in lengths if length is not None), 10)
         with self.assertRaisesRegex(ValueError, "^num_envs: found 1, expected a multiple of learner.block_envs"):
             gymnasium.make_vec("sandrunner/Raibo-v0")
+
+
+class NoFrames(unittest.TestCase):
+    EXPECTED = r"expected None: sandrunner.Recording \(examples/look.py\) .* tools/moving_picture.sh"
+
+    def test_a_render_mode_is_refused_with_what_to_use(self):
+        with self.assertRaisesRegex(ValueError, "^render_mode: found 'rgb_array', " + self.EXPECTED):
+            sandrunner.VectorEnv(num_envs=64, render_mode="rgb_array")
+
+    def test_render_says_the_same(self):
+        envs = sandrunner.VectorEnv(num_envs=64, render_mode=None)
+        self.assertIsNone(envs.render_mode)
+        with self.assertRaisesRegex(NotImplementedError, r"^VectorEnv: found a call of render\(\), " + self.EXPECTED):
+            envs.render()
 
 
 if __name__ == "__main__":

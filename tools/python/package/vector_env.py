@@ -35,6 +35,8 @@ except ImportError:
 OBSERVATION_SIZE = 33
 ACTION_SIZE = 12
 _PROGRESS = ("speed_mps", "ground", "transitions", "late")
+_NO_FRAMES = ("expected None: sandrunner.Recording (examples/look.py) writes an episode as a page, and "
+              "tools/moving_picture.sh makes a moving picture of a run")
 
 
 class VectorEnv(_Base):
@@ -57,12 +59,13 @@ class VectorEnv(_Base):
                 (tools/train/task/leg_modes.h); `write_policy` turns them into joints
     copy        whether arrays are copies
     width       robots that a core steps at once, 1, 8 or 16; 0: the most. The bits do not depend on it
+    render_mode None: it draws no frames. `Recording` writes an episode as a page
 
     Raises ValueError, one line, for what cannot be used.
     """
 
     metadata: dict[str, Any] = {"autoreset_mode": _AUTORESET, "render_modes": []}
-    render_mode = None
+    render_mode: str | None = None
     spec = None
     closed = False
 
@@ -78,7 +81,10 @@ class VectorEnv(_Base):
         actions: str = "joints",
         copy: bool = False,
         width: int = 0,
+        render_mode: None = None,
     ) -> None:
+        if render_mode is not None:
+            raise ValueError(f"render_mode: found {_check.shown(render_mode)}, {_NO_FRAMES}")
         if not isinstance(actions, str) or actions not in ("joints", "modes"):
             raise ValueError(f"actions: found {_check.shown(actions)}, expected 'joints' or 'modes'")
         if not isinstance(curriculum, (bool, Mapping)):
@@ -190,6 +196,10 @@ class VectorEnv(_Base):
     def step_dt(self) -> float:
         """Of a step, s; as rsl_rl and Isaac Lab call it."""
         return _native.step_s
+
+    def render(self) -> None:
+        """Raises NotImplementedError, one line: the only render_mode is None, which draws no frames."""
+        raise NotImplementedError(f"VectorEnv: found a call of render(), {_NO_FRAMES}")
 
     def close(self, **kwargs: Any) -> None:
         """Ends the use of this environment. Arrays that it returned stay readable."""
