@@ -196,6 +196,20 @@ class Onnx(WithFolder):
         with self.assertRaisesRegex(ValueError, "^encoder: found 0 LSTM nodes, expected one"):
             import_onnx(self.path("q.onnx"))
 
+    def test_a_file_of_other_activations_is_refused(self):
+        import onnx
+
+        for change, pattern in (
+            (lambda node: setattr(node, "op_type", "Elu"), "^activation: found Elu, expected LeakyRelu of 0.01$"),
+            (lambda node: setattr(node.attribute[0], "f", 0.2), "^activation: found LeakyRelu of 0.2, expected"),
+        ):
+            export_onnx("raibo", self.path("p.onnx"))
+            model = onnx.load(self.path("p.onnx"))
+            change(next(node for node in model.graph.node if node.op_type == "LeakyRelu"))
+            onnx.save(model, self.path("q.onnx"))
+            with self.assertRaisesRegex(ValueError, pattern):
+                import_onnx(self.path("q.onnx"))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -24,6 +24,8 @@ _DENSE = {
     "actor.1": (128, 256),
     "actor.2": (12, 128),
 }
+# Functions between layers that a policy file does not have; their layers have the same shapes.
+_OTHER_ACTIVATIONS = ("Celu", "Elu", "Gelu", "Mish", "PRelu", "Relu", "Selu", "Sigmoid", "Softplus", "Tanh")
 NETWORK = [f"encoder.{name}" for name in _LSTM] + [f"{layer}.{kind}" for layer in _DENSE for kind in ("weight", "bias")]
 SCALES = [f"{of}.{what}" for of in ("observation", "estimate") for what in ("mean", "variance")]
 
@@ -84,6 +86,10 @@ def _dense_layers(graph: Any, constants: dict[str, np.ndarray]) -> dict[str, np.
     found: dict[str, np.ndarray] = {}
     users = {name: node for node in graph.node for name in node.input}
     for node in graph.node:
+        slope = _attribute(node, "alpha", 0.01) if node.op_type == "LeakyRelu" else 0.01
+        if node.op_type in _OTHER_ACTIVATIONS or abs(slope - 0.01) > 1e-6:
+            found_kind = node.op_type if node.op_type != "LeakyRelu" else f"LeakyRelu of {slope:g}"
+            raise ValueError(f"activation: found {found_kind}, expected LeakyRelu of 0.01")
         weight = constants.get(node.input[1]) if node.op_type in ("Gemm", "MatMul") and len(node.input) > 1 else None
         if weight is None:
             continue
