@@ -11,7 +11,27 @@ import unittest
 
 ROOT = pathlib.Path(os.environ["SANDRUNNER_ROOT"])
 EXAMPLES = ROOT / "tools/python/examples"
-PACKAGE = pathlib.Path(os.environ["PYTHONPATH"], "sandrunner")
+PACKAGE = pathlib.Path(os.environ["PYTHONPATH"].split(":")[0], "sandrunner")
+
+# tensorboard.summary.Writer as the package has it (2.20). A training writes a third row before the
+# second flush, and Ctrl-C follows that one.
+WRITER = """
+import pathlib
+
+class Writer:
+    def __init__(self, folder):
+        self.curve, self.flushes = pathlib.Path(folder).with_name("curve.csv"), 0
+        print(folder)
+
+    def add_scalar(self, tag, data, step):
+        print(tag, data, step)
+
+    def flush(self):
+        self.flushes += 1
+        if self.flushes == 2:
+            raise KeyboardInterrupt
+        self.curve.write_text(self.curve.read_text() + "3e+06,0.75\\n")
+"""
 
 
 def run(*words, **keywords):
@@ -38,6 +58,21 @@ class Examples(unittest.TestCase):
         self.assertEqual(depths, sorted(depths, reverse=True))
         self.assertEqual(taken, sorted(taken, reverse=True))
         self.assertGreater(min(clearances), 20.0)
+
+    def test_a_curve_is_copied_to_tensorboard_and_followed(self):
+        module, training = self.folder / "tensorboard", self.folder / "training"
+        for folder in (module, training):
+            folder.mkdir()
+        (module / "__init__.py").touch()
+        (module / "summary.py").write_text(WRITER)
+        (training / "curve.csv").write_text("transitions,battery_alive\n1e+06,0.25\n2e+06,nan\n")
+        out = run(sys.executable, EXAMPLES / "curve_to_tensorboard.py", training,
+                  env={**os.environ, "PYTHONPATH": str(self.folder)})
+        self.assertEqual(out.splitlines(), [
+            str(training / "tensorboard"),
+            "transitions 1000000.0 1000000", "battery_alive 0.25 1000000",
+            "transitions 2000000.0 2000000", "battery_alive nan 2000000",
+            "transitions 3000000.0 3000000", "battery_alive 0.75 3000000"])
 
     def test_a_wheel_runs_look_in_a_fresh_environment(self):
         wheel = run("/usr/bin/python3", ROOT / "tools/python/make_wheel.py", PACKAGE, "0.1.0", self.folder).strip()
