@@ -100,6 +100,16 @@ class Examples(unittest.TestCase):
         self.assertIn("0.00 M transitions", run(sys.executable, EXAMPLES / "ppo.py", *words))
         run(sys.executable, "-c", f"from sandrunner import read_policy; read_policy({str(policy)!r})")
 
+    def test_rsl_rl_learns_for_an_iteration_and_writes_its_policy(self):
+        try:
+            import rsl_rl.runners  # noqa: F401
+        except ImportError:
+            self.skipTest("rsl_rl is not installed (pip install rsl-rl-lib)")
+        policy = self.folder / "walk.safetensors"
+        words = ["--out", policy, "--iterations", 1, "--num-envs", 64, "--threads", 1]
+        self.assertIn("falls in 4 s", run(sys.executable, EXAMPLES / "rsl_rl_ppo.py", *words))
+        run(sys.executable, "-c", f"from sandrunner import read_policy; read_policy({str(policy)!r})")
+
 
 if __name__ == "__main__":
     unittest.main()
