@@ -57,26 +57,26 @@ def was_run(rule, evidence):
     """Whether all that the rule needs was measured with enough runs, and whether a controller has
     one seed."""
     if not rule.controllers:
-        return evidence.contact is not None, False
+        return evidence.contact is not None, True, False
     all_seeds = [evidence.seeds(e, c) for c in rule.controllers for e in rule.experiments]
     sizes = [len(values) for seeds in all_seeds for groups in seeds.values() for group in groups
              for values in list(group.runs.values())[:1]]
-    return all(all_seeds) and all(n >= LEAST_PAIRS for n in sizes), any(len(seeds) == 1 for seeds in all_seeds)
+    return all(all_seeds), all(n >= LEAST_PAIRS for n in sizes), any(len(seeds) == 1 for seeds in all_seeds)
 
 
 def judge(claim, evidence):
     if claim.agrees_if == NOT_TESTABLE:
         return Judgement(NOT_TESTABLE)
     rule = RULES.get(claim.id)
-    ran, one_seed = was_run(rule, evidence) if rule else (False, False)
+    ran, enough, one_seed = was_run(rule, evidence) if rule else (False, False, False)
     if not ran:
         return Judgement(reason="not run")
     case = Case(evidence)
     agrees, contradicts, ours = rule.judge(case)
     if not all(evidence.is_competent(c) for c in rule.controllers):
         return Judgement(reason="not competently trained", ours=ours)
-    if case.too_few and not agrees and not contradicts:
-        return Judgement(reason="not run", ours=ours)
+    if not enough or case.too_few and not agrees and not contradicts:
+        return Judgement(reason="too few runs", ours=ours)
     return Judgement(AGREES if agrees else CONTRADICTS if contradicts else CANNOT_TELL, "", one_seed, ours)
 
 

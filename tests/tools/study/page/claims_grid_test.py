@@ -60,7 +60,7 @@ class GridVerdicts(unittest.TestCase):
 
     def test_a_grid_of_another_size_tells_nothing_of_its_cells(self):
         for claim_id in ("52", "53", "54", "55", "56", "58"):
-            self.expect("can't tell (not run)", claim_id, ours={"reward": 5.0, "cells": 4}, pl_gm={"cells": 4},
+            self.expect("can't tell (too few runs)", claim_id, ours={"reward": 5.0, "cells": 4}, pl_gm={"cells": 4},
                         env_rigid={"lost": 0.9, "cells": 4}, pl_rigid={"lost": 0.9, "cells": 4},
                         tcn={"slope_m": 0.0, "cells": 4})
 

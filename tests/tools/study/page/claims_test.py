@@ -35,11 +35,11 @@ class Verdicts(unittest.TestCase):
     def test_a_missing_model_is_not_run(self):
         self.expect("can't tell (not run)", "9 18 66", ours={})  # 66: no benchmark
 
-    def test_fewer_than_eight_runs_are_not_run(self):
-        self.expect("can't tell (not run)", "1", ours={"runs": 7, "successes": 7})
+    def test_fewer_than_eight_runs_are_too_few(self):
+        self.expect("can't tell (too few runs)", "1", ours={"runs": 7, "successes": 7})
 
-    def test_fewer_than_eight_pairs_are_not_run(self):
-        self.expect("can't tell (not run)", "18", ours={}, pl_rigid={"successes": 7, "top_mps": 1.65})
+    def test_fewer_than_eight_pairs_are_too_few(self):
+        self.expect("can't tell (too few runs)", "18", ours={}, pl_rigid={"successes": 7, "top_mps": 1.65})
         self.expect("agrees", "18", ours={}, pl_rigid={"successes": 8, "top_mps": 1.65})
 
     def test_a_controller_that_falls_on_its_own_ground_is_not_competent(self):
