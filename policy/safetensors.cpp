@@ -136,6 +136,30 @@ std::map<std::string, std::string> read_metadata(const std::string& path, const 
   return metadata;
 }
 
+// What a file is that people take for a policy; empty: nothing that is known.
+std::string_view kind_of(std::string_view bytes) {
+  constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
+      {"PK\x03\x04", "a zip archive (a checkpoint of PyTorch, or .npz)"},
+      {"\x80\x02", "a pickle (an old checkpoint of PyTorch)"},
+      {"\x93NUMPY", "an array of numpy"},
+      {"\x89HDF", "an HDF5 file"},
+      {"\x89MCAP", "a recording"},
+      {"\x08", "an ONNX file"},
+      {"<", "XML"},
+      {"{", "JSON"},
+  };
+  for (const auto& [begin, kind] : kKinds) {
+    // The length of a header of eight bytes begins like some of them, and is followed by zeros.
+    if (bytes.starts_with(begin) && !bytes.substr(3).starts_with(std::string_view("\0\0\0", 3))) {
+      return kind;
+    }
+  }
+  const bool is_text = std::ranges::all_of(bytes.substr(0, 64), [](unsigned char c) {
+    return (c >= ' ' && c < 127) || c == '\n' || c == '\r' || c == '\t';
+  });
+  return is_text ? "text" : "";
+}
+
 }  // namespace
 
 TensorFile read_safetensors(const std::string& path) {
@@ -149,6 +173,13 @@ TensorFile parse_safetensors(std::string_view bytes, const std::string& path) {
   }
   std::memcpy(&header_bytes, bytes.data(), kLengthBytes);
   if (header_bytes > bytes.size() - kLengthBytes) {
+    if (const std::string_view kind = kind_of(bytes); !kind.empty()) {
+      fail_file(
+          path,
+          "found {}, expected a policy file (safetensors); tools/policy/README.md says how to "
+          "convert one",
+          kind);
+    }
     fail_file(
         path,
         "is not a safetensors file, or is cut short: found a header of {} bytes in a file of {}",

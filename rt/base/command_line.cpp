@@ -75,6 +75,14 @@ void collect_names(CLI::App& app, std::vector<std::string>& names) {
   }
 }
 
+/// The commands below `app` that have an option of this name.
+void collect_owners(CLI::App& app, const std::string& option, std::vector<std::string>& owners) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    if (command->get_option_no_throw(option)) owners.push_back(command->get_name());
+    collect_owners(*command, option, owners);
+  }
+}
+
 /// What other trainers and simulators call it: their option, ours, and what to say.
 struct Elsewhere {
   const char *theirs, *ours, *say;
@@ -95,15 +103,24 @@ constexpr Elsewhere kElsewhere[] = {
   double number = 0.0;
   if (CLI::detail::lexical_cast(word, number)) {
     throw InputError(fmt::format(
-        "command line: unexpected '{}': several numbers of one option need commas, as in 1,0,0",
-        word));
+        "command line: unexpected '{}': several numbers of one option need commas, as in 1,0,0{}",
+        word, app.get_option_no_throw("--set") ? "; --set takes path=value" : ""));
   }
   const std::string name = word.substr(0, word.find('='));
   for (const Elsewhere& other : kElsewhere) {
     if (name != other.theirs || !app.get_option_no_throw(other.ours)) continue;
     throw InputError(fmt::format("command line: unexpected '{}': {}", word, other.say));
   }
-  std::vector<std::string> names;
+  if (app.get_option_no_throw(name)) {
+    throw InputError(
+        fmt::format("command line: unexpected '{}' there, expected it before the command", word));
+  }
+  std::vector<std::string> owners, names;
+  collect_owners(app, name, owners);
+  if (!owners.empty()) {
+    throw InputError(fmt::format("command line: unexpected '{}' there, expected it behind {}", word,
+                                 fmt::join(owners, " or ")));
+  }
   collect_names(app, names);
   throw InputError(fmt::format("command line: unexpected '{}'{}", word, did_you_mean(name, names)));
 }
@@ -126,6 +143,8 @@ std::string in_our_words(const CLI::App& app, const std::string& message) {
        "$1: found $2 of them, expected one"},
       {std::regex("(\\S+): 1 required (\\S+) missing"), "$1: found no value, expected $2"},
       {std::regex("(\\S+): (.*) not in \\{(.*)\\}"), "$1: found '$2', expected one of $3"},
+      {std::regex("(\\S+): Value (\\S+) not in range \\[?(.*?)\\]?"), "$1: found $2, expected $3"},
+      {std::regex("(\\S+) is required"), "command line: found no $1, expected one"},
   };
   for (const auto& [theirs, ours] : kWords) {
     std::smatch found;

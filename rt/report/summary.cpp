@@ -173,9 +173,8 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
   std::string counted;
   for (const GateCounterName& counter : kGateCounters) {
     const std::uint64_t ticks = r.end.gate.counters.*counter.ticks;
-    // A robot that lies is past its stops; of the walk there is a row above.
-    const bool lies = r.walked_s > 0.0 && counter.ticks == &GateCounters::joint_past_stop;
-    if (ticks > 0 && !lies) {
+    // A robot that lies is past its stops; of a walk there is a row above.
+    if (ticks > 0 && counter.ticks != &GateCounters::joint_past_stop) {
       counted += fmt::format("{}{} {}", counted.empty() ? "" : ", ", counter.name, ticks);
     }
   }

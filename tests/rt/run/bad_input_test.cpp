@@ -72,6 +72,7 @@ TEST_F(BadInputTest, WhatWasProbablyMeantIsSaid) {
   expect_refused("--dds_security=x", "did you mean '--dds-security'?");
   expect_refused("rt-rpeort", "did you mean 'rt-report'?");
   expect_refused("--terrain dry-snad", "did you mean 'dry-sand'?");
+  expect_refused("--plan", "unexpected '--plan' there, expected it behind check");
   expect_refused("--set controller.walk.kp=3", "did you mean 'controller.walk.kp_nmprad'?");
 }
 
@@ -81,6 +82,22 @@ TEST_F(BadInputTest, ValuesThatDoNotFitAreRefusedInOurWords) {
   expect_refused("--clock fast", "--clock: found 'fast', expected one of lockstep,realtime");
   expect_refused("--duration", "--duration: found no value, expected S");
   expect_refused("--gui", "unexpected '--gui': --view shows the run in a browser");
+}
+
+TEST_F(BadInputTest, FilesThatAreTakenForPoliciesAreNamed) {
+  write("walk.pt", std::string("PK\x03\x04", 4) + std::string(200, '\x11'));
+  expect_refused("--policy walk.pt", "found a zip archive (a checkpoint of PyTorch, or .npz)");
+  write("walk.onnx", std::string("\x08\x08\x12\x07pytorch", 11) + std::string(200, '\x11'));
+  expect_refused("--policy walk.onnx", "found an ONNX file, expected a policy file (safetensors)");
+  write("raibo.toml", "name = \"raibo\"\n");
+  expect_refused("--policy raibo.toml", "found text, expected a policy file");
+}
+
+TEST_F(BadInputTest, ASettingWithoutItsSignIsExplained) {
+  expect_refused("--set terrain.friction 0.6", "unexpected '0.6'");
+  expect_refused("--set terrain.friction=0.6 0.7",
+                 "'0.7': several numbers of one option need commas, "
+                 "as in 1,0,0; --set takes path=value");
 }
 
 TEST_F(BadInputTest, SeedsOutOfRangeAreRefused) {

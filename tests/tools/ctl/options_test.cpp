@@ -60,7 +60,7 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
       {{"status", "--domain", "x"}, "--domain"},
       {{"status", "--interface", ""}, "--interface"},
       {{"status", "--cmd-vel", "pose"}, "--cmd-vel: found 'pose'"},
-      {{"cmd", "1", "0"}, "WZ is required"},
+      {{"cmd", "1", "0"}, "found no WZ, expected one"},
       {{"cmd", "1", "0", "fast"}, "WZ"},
       {{"cmd", "nan", "0", "0"}, "VX: found nan"},
       {{"cmd", "0", "1e9", "0"}, "VY: found 1000000000, expected at most 5 m/s"},
@@ -68,7 +68,7 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
       {{"cmd", "1", "0", "0", "--for", "0"}, "--for: found 0"},
       {{"cmd", "1", "0", "0", "--for", "nan"}, "--for: found nan"},
       {{"mode", "jump"}, "mode: found 'jump', expected arm, stand, walk, stop, lie, damp"},
-      {{"mode"}, "REQUEST is required"}};
+      {{"mode"}, "found no REQUEST, expected one"}};
   for (const auto& c : kCases) {
     try {
       parse(c.words);
