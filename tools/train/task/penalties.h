@@ -150,8 +150,8 @@ struct JointMargin {
   double knee_low_rad = 0, knee_high_rad = 0;
   static constexpr Setting<JointMargin> kSettings[] = {
       {"weight", &JointMargin::weight, 0.0, kNoLimit},
-      {"knee_low_rad", &JointMargin::knee_low_rad, -7.0, 7.0},
-      {"knee_high_rad", &JointMargin::knee_high_rad, -7.0, 7.0},
+      {"knee_low_rad", &JointMargin::knee_low_rad, -100.0, 100.0},
+      {"knee_high_rad", &JointMargin::knee_high_rad, -100.0, 100.0},
   };
   double value(const StepOutcome& s, const RewardSchedule&) const {
     double overrun = 0.0;

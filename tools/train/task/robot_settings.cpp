@@ -72,6 +72,16 @@ void check_robot(const TaskConfig& config, const sim::Robot& robot) {
         "and right are mirror images",
         robot.description.name, robot.nominal_rad[0]));
   }
+  for (int j = kJointsPerLeg; j < kNumJoints; ++j) {
+    const int first = j % kJointsPerLeg;  // of the left front leg
+    if (robot.model.legs[j / kJointsPerLeg].sign[first] == robot.model.legs[0].sign[first])
+      continue;
+    throw InputError(fmt::format(
+        "robot '{}': joint '{}' turns the other way than '{}', expected the same axis for a "
+        "training: what its network answers is mixed over the legs",
+        robot.description.name, robot.description.joint_names[j],
+        robot.description.joint_names[first]));
+  }
 }
 
 void add_training_layers(ConfigTree& config, const sim::Robot& robot) {

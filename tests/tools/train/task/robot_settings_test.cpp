@@ -49,6 +49,22 @@ TEST(RobotSettingsTest, ARobotThatStandsAskewIsNotTrained) {
   EXPECT_THROW(check_robot(config, robot), InputError);
 }
 
+TEST(RobotSettingsTest, LegsThatTurnDifferentWaysAreNotTrained) {
+  sim::Robot robot = sim::load_raibo();
+  const TaskConfig config = settings_of(robot);
+  for (auto& leg : robot.model.legs) leg.sign[2] = -1.0;
+  EXPECT_NO_THROW(check_robot(config, robot));
+  robot.model.legs[1].sign[1] = -1.0;
+  EXPECT_THROW(check_robot(config, robot), InputError);
+}
+
+TEST(RobotSettingsTest, StopsMayBeMoreThanATurnAway) {
+  sim::Robot robot = sim::load_raibo();
+  robot.model.lower_rad[2] = -9.42;
+  robot.model.upper_rad[2] = 9.42;
+  EXPECT_NO_THROW(settings_of(robot));
+}
+
 TEST(RobotSettingsTest, ASmallerRobotIsSlowerLowerAndItsTorquePenalisedMore) {
   const TemporaryFolder folder;
   const TaskConfig raibo = settings_of(sim::load_raibo()),
