@@ -66,9 +66,10 @@ struct LegPose {
 template <typename S>
 inline LegPose<S> leg_pose(const LegModel<S>& leg, S q1, S q2, S q3) noexcept {
   LegPose<S> p;
-  sincos(q1, p.s1, p.c1);
-  sincos(q2, p.s2, p.c2);
-  sincos(q2 + q3, p.s23, p.c23);
+  const S hfe = leg.sign[1] * q2;
+  sincos(leg.sign[0] * q1, p.s1, p.c1);
+  sincos(hfe, p.s2, p.c2);
+  sincos(fma(leg.sign[2], q3, hfe), p.s23, p.c23);
   p.knee = leg.hfe + rotate_y(p.s2, p.c2, leg.kfe);
   p.foot = p.knee + rotate_y(p.s23, p.c23, leg.foot);
   return p;
@@ -103,9 +104,10 @@ class Dynamics {
     const LegPose<S>& p = legs_[l].pose;
     const Vec3<S> from_hfe = r_hip - model.legs[l].hfe;
     const Vec3<S> from_knee = r_hip - p.knee;
-    return {rotate_x(p.s1, p.c1, Vec3<S>{S(0.0), -r_hip.z, r_hip.y}),
-            rotate_x(p.s1, p.c1, Vec3<S>{from_hfe.z, S(0.0), -from_hfe.x}),
-            rotate_x(p.s1, p.c1, Vec3<S>{from_knee.z, S(0.0), -from_knee.x})};
+    const std::array<S, kJointsPerLeg>& sign = model.legs[l].sign;
+    return {sign[0] * rotate_x(p.s1, p.c1, Vec3<S>{S(0.0), -r_hip.z, r_hip.y}),
+            sign[1] * rotate_x(p.s1, p.c1, Vec3<S>{from_hfe.z, S(0.0), -from_hfe.x}),
+            sign[2] * rotate_x(p.s1, p.c1, Vec3<S>{from_knee.z, S(0.0), -from_knee.x})};
   }
 
   /// Inverse of a leg's own 3x3 mass matrix.
@@ -173,7 +175,8 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   // Newton-Euler at zero acceleration; gravity enters as an upward acceleration of the base), and
   // what the body adds to the leg's bias wrench, first moment and inertia about the HAA origin. One
   // body is finished before the next is begun: there are too few registers for more.
-  const S qd1 = x.qd[3 * l], qd2 = x.qd[3 * l + 1], qd3 = x.qd[3 * l + 2];
+  const S qd1 = m.sign[0] * x.qd[3 * l], qd2 = m.sign[1] * x.qd[3 * l + 1];
+  const S qd3 = m.sign[2] * x.qd[3 * l + 2];
   const Vec3<S>& wb = x.angular_velocity;
   const Vec3<S> a0 = unrotate_x(p.s1, p.c1, cross_add(wb, cross(wb, m.haa), gravity_up));
   const Vec3<S> w0 = unrotate_x(p.s1, p.c1, wb);
@@ -214,9 +217,9 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   bias_force = bias_force + f3;
   bias_torque = bias_torque + cross_add(shank_com, f3, n3);
   const Vec3<S> shank_from_hfe = knee_from_hfe + shank_arm;
-  leg.bias[2] = n3.y + cross_y(shank_arm, f3);
-  leg.bias[1] = (bias_hfe + n3.y) + cross_y(shank_from_hfe, f3);
-  leg.bias[0] = bias_torque.x;
+  leg.bias[2] = m.sign[2] * (n3.y + cross_y(shank_arm, f3));
+  leg.bias[1] = m.sign[1] * ((bias_hfe + n3.y) + cross_y(shank_from_hfe, f3));
+  leg.bias[0] = m.sign[0] * bias_torque.x;
   moment_haa = mul_add(shank_com, m3, moment_haa);
   inertia_haa = inertia_haa + shifted_inertia(shank_inertia, m3, shank_com);
 
@@ -240,18 +243,18 @@ void Dynamics<S>::update_leg(const RobotModel<S>& model, const RigidState<S>& x,
   const Vec3<S> torque2 = arm_cross(m.hfe, force2, hfe_torque2);
   const Vec3<S> torque1{inertia_haa.xx, inertia_haa.xy, inertia_haa.xz};
   leg.mass = {torque1.x + model.rotor_inertia[3 * l],
-              torque2.x,
-              torque3.x,
+              m.sign[0] * m.sign[1] * torque2.x,
+              m.sign[0] * m.sign[2] * torque3.x,
               hfe_torque2.y + model.rotor_inertia[3 * l + 1],
-              knee_torque3.y + cross_y(knee_from_hfe, force3),
+              m.sign[1] * m.sign[2] * (knee_torque3.y + cross_y(knee_from_hfe, force3)),
               knee_torque3.y + model.rotor_inertia[3 * l + 2]};
 
   // To the base: rotate by HAA, shift to the base origin, add up.
   const std::array<Vec3<S>, 3> forces{force1, force2, force3};
   const std::array<Vec3<S>, 3> torques{torque1, torque2, torque3};
   for (int j = 0; j < 3; ++j) {
-    const Vec3<S> f = rotate_x(p.s1, p.c1, forces[j]);
-    const Vec3<S> t = cross_add(m.haa, f, rotate_x(p.s1, p.c1, torques[j]));
+    const Vec3<S> f = m.sign[j] * rotate_x(p.s1, p.c1, forces[j]);
+    const Vec3<S> t = cross_add(m.haa, f, m.sign[j] * rotate_x(p.s1, p.c1, torques[j]));
     leg.coupling[j] = {f.x, f.y, f.z, t.x, t.y, t.z};
   }
   const Vec3<S> base_force = rotate_x(p.s1, p.c1, bias_force);

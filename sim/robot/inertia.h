@@ -20,11 +20,11 @@ inline bool is_positive_definite(const Sym3<double>& m) noexcept {
 
 /// Whether `m`, kg m^2 about the centre of mass, can be a body's. The moment about an axis is the
 /// mass's spread along the two others: an inertia J belongs to a body if its spread, trace(J)/2 -
-/// J, is not negative in any direction. A plate has none across; rounded figures may be a
-/// thousandth below.
+/// J, is not negative in any direction. A plate has none across; published figures may be
+/// up to a fiftieth of the trace below (those of Mini Cheetah's thigh are a hundredth).
 inline bool is_inertia_of_a_body(const Sym3<double>& m) noexcept {
   const double trace = m.xx + m.yy + m.zz;
-  const double half = (0.5 + 1e-3) * trace;
+  const double half = (0.5 + 0.02) * trace;
   return is_positive_definite(m) &&
          is_positive_definite({half - m.xx, -m.xy, -m.xz, half - m.yy, -m.yz, half - m.zz});
 }

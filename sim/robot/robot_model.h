@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The robot as the simulator knows it: a floating base and four legs of three revolute joints with
-// axes x, y, y (HAA, HFE, KFE) and a foot fixed to the shank. One value of every figure for one
-// robot, or one in each lane of a pack, so that masses and geometry can be randomised robot by
-// robot.
+// axes x, y, y (HAA, HFE, KFE), either way, and a foot fixed to the shank. One value of every
+// figure for one robot, or one in each lane of a pack, so that masses and geometry can be
+// randomised robot by robot.
 #pragma once
 
 #include <array>
@@ -29,16 +29,18 @@ struct Body {
 };
 
 /// One leg: three joints in a row, hip abduction (HAA, about x), hip flexion (HFE, about y), knee
-/// flexion (KFE, about y). With all joints at zero the link frames are parallel to the base's.
+/// flexion (KFE, about y). With all joints at zero the link frames are parallel to the base's,
+/// however the URDF turns its own.
 template <typename S>
 struct LegModel {
-  Vec3<S> haa;    ///< HAA origin in the base frame, m
-  Vec3<S> hfe;    ///< HFE origin in the hip frame, m
-  Vec3<S> kfe;    ///< KFE origin in the thigh frame, m
-  Vec3<S> foot;   ///< foot centre in the shank frame, m
-  Body<S> hip;    ///< between HAA and HFE
-  Body<S> thigh;  ///< between HFE and KFE
-  Body<S> shank;  ///< below KFE, with the foot
+  std::array<S, kJointsPerLeg> sign{S(1.0), S(1.0), S(1.0)};  ///< -1: about -x, -y, -y
+  Vec3<S> haa;                                                ///< HAA origin in the base frame, m
+  Vec3<S> hfe;                                                ///< HFE origin in the hip frame, m
+  Vec3<S> kfe;                                                ///< KFE origin in the thigh frame, m
+  Vec3<S> foot;                                               ///< foot centre in the shank frame, m
+  Body<S> hip;                                                ///< between HAA and HFE
+  Body<S> thigh;                                              ///< between HFE and KFE
+  Body<S> shank;                                              ///< below KFE, with the foot
 };
 
 /// Speed of a joint, rad/s, below which its dry friction is proportional to its speed: a joint that
@@ -133,8 +135,14 @@ RobotModel<To> convert_model(const RobotModel<double>& from) noexcept {
   to.base = body(from.base);
   for (int l = 0; l < kNumLegs; ++l) {
     const auto& leg = from.legs[l];
-    to.legs[l] = {vec(leg.haa),  vec(leg.hfe),    vec(leg.kfe),   vec(leg.foot),
-                  body(leg.hip), body(leg.thigh), body(leg.shank)};
+    to.legs[l] = {{To(leg.sign[0]), To(leg.sign[1]), To(leg.sign[2])},
+                  vec(leg.haa),
+                  vec(leg.hfe),
+                  vec(leg.kfe),
+                  vec(leg.foot),
+                  body(leg.hip),
+                  body(leg.thigh),
+                  body(leg.shank)};
   }
   for (int j = 0; j < kNumJoints; ++j) {
     to.rotor_inertia[j] = To(from.rotor_inertia[j]);

@@ -60,7 +60,7 @@ std::vector<OutlinePoint> outline_of(const RobotModel<double>& model, const std:
                                      const std::array<LegLinks, kNumLegs>& legs) {
   std::vector<OutlinePoint> outline;
   for (const LegLinks& leg : legs) {
-    outline.push_back({leg.foot, {}, model.foot_radius_m});
+    outline.push_back({leg.foot, leg.foot_centre_m, model.foot_radius_m});
     outline.push_back({leg.shank, {}, model.knee_radius_m});  // its origin is the knee
   }
   const Vec3<double>&centre = model.base_box_centre_m, &half = model.base_box_half_m;

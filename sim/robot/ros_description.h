@@ -10,9 +10,10 @@
 
 namespace sandrunner::sim {
 
-/// Links at the lower end of a leg, by name.
+/// Links of a leg, by name.
 struct LegLinks {
-  std::string shank, foot;
+  std::string hip, thigh, shank, foot;
+  Vector3 foot_centre_m{};  ///< of its shape, in the frame of `foot`
 };
 
 /// Fills in what ROS 2's tools need of a robot: `base_frame`, `frames`, `outline` and `ros_urdf` of

@@ -29,41 +29,55 @@ class FirstMessage : public console_bridge::OutputHandler {
   mutable std::string text;
 };
 
-// To compare shapes of one kind; for spheres any measure of size will do.
-double size_of(const urdf::Box& b) { return b.dim.x * b.dim.y * b.dim.z; }
-double size_of(const urdf::Cylinder& c) { return c.radius * c.radius * c.length; }
-double size_of(const urdf::Sphere& s) { return s.radius; }
-
-Sym3<double> rotated(const Sym3<double>& m, const urdf::Rotation& q) {
-  const Mat3<double> r = rotation_matrix(Quaternion<double>{q.w, q.x, q.y, q.z});
+Sym3<double> turned(const Mat3<double>& r, const Sym3<double>& m) {
   const Vec a = m * r.r0, b = m * r.r1, c = m * r.r2;
   return {dot(r.r0, a), dot(r.r0, b), dot(r.r0, c), dot(r.r1, b), dot(r.r1, c), dot(r.r2, c)};
 }
 
-bool is_rotated(const urdf::Joint& joint) {
-  const auto& q = joint.parent_to_joint_origin_transform.rotation;
-  return std::fabs(q.x) + std::fabs(q.y) + std::fabs(q.z) > 1e-6;
+Mat3<double> transposed(const Mat3<double>& m) {
+  return {{m.r0.x, m.r1.x, m.r2.x}, {m.r0.y, m.r1.y, m.r2.y}, {m.r0.z, m.r1.z, m.r2.z}};
 }
 
-// What a fixed joint joins becomes one body, in the frame of `parent`.
-Body<double> merged(const Body<double>& parent, const Body<double>& child,
-                    const urdf::Pose& child_in_parent) {
-  const urdf::Rotation& q = child_in_parent.rotation;
-  const Vec child_com = rotation_matrix(Quaternion<double>{q.w, q.x, q.y, q.z}) * child.com +
-                        to_vec(child_in_parent.position);
-  Body<double> b;
-  b.mass = parent.mass + child.mass;
-  b.com = (1.0 / b.mass) * (parent.mass * parent.com + child.mass * child_com);
-  b.inertia = shifted_inertia(parent.inertia, parent.mass, parent.com - b.com) +
-              shifted_inertia(rotated(child.inertia, q), child.mass, child_com - b.com);
-  return b;
+Placed placed(const urdf::Pose& pose) {
+  const urdf::Rotation& q = pose.rotation;
+  return {rotation_matrix(Quaternion<double>{q.w, q.x, q.y, q.z}), to_vec(pose.position)};
 }
+
+Placed placed(const urdf::Joint& joint) { return placed(joint.parent_to_joint_origin_transform); }
+
+/// `inner` is given in a frame that is itself at `outer`.
+Placed operator*(const Placed& outer, const Placed& inner) {
+  return {outer.turn * inner.turn, outer.turn * inner.place_m + outer.place_m};
+}
+
+Body<double> moved(const Placed& placed, const Body<double>& body) {
+  return {body.mass, placed.turn * body.com + placed.place_m, turned(placed.turn, body.inertia)};
+}
+
+// Two bodies in one frame as one.
+Body<double> merged(const Body<double>& a, const Body<double>& b) {
+  Body<double> both;
+  both.mass = a.mass + b.mass;
+  both.com = (1.0 / both.mass) * (a.mass * a.com + b.mass * b.com);
+  both.inertia = shifted_inertia(a.inertia, a.mass, a.com - both.com) +
+                 shifted_inertia(b.inertia, b.mass, b.com - both.com);
+  return both;
+}
+
+/// The link that a fixed joint carries it with; null: none does.
+const urdf::Link* carrier(const urdf::ModelInterface& model, const urdf::Link& link) {
+  const bool is_fixed = link.parent_joint && link.parent_joint->type == urdf::Joint::FIXED;
+  return is_fixed ? model.getLink(link.parent_joint->parent_link_name).get() : nullptr;
+}
+
+double volume(const Vec& half) { return half.x * half.y * half.z; }
 
 }  // namespace
 
 Vec to_vec(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
-UrdfReader::UrdfReader(const std::string& text, std::string name) : name_(std::move(name)) {
+UrdfReader::UrdfReader(const std::string& text, std::string name, std::string base)
+    : name_(std::move(name)), base_(std::move(base)) {
   if (text.find("<robot") == std::string::npos) fail("not a URDF: has no robot element");
   const FirstMessage message;
   urdf_ = urdf::parseURDF(tolerable_urdf(text, name_));
@@ -82,29 +96,28 @@ const urdf::Link& UrdfReader::link(const std::string& link_name) const {
   return *found->second;
 }
 
-void UrdfReader::require_unrotated(const urdf::Joint& joint) const {
-  if (!is_rotated(joint)) return;
-  fail(fmt::format("joint '{}' has a rotated origin, expected rpy 0 0 0", joint.name));
+Placed UrdfReader::in_base(const urdf::Link& link) const {
+  if (link.name == base_ || !link.parent_joint) return {};
+  return in_base(this->link(link.parent_joint->parent_link_name)) * placed(*link.parent_joint);
 }
 
 const urdf::Joint& UrdfReader::joint(const std::string& joint_name, const std::string& parent,
-                                     const std::string& child, Vec& place_m) const {
+                                     const std::string& child, Vec& place_m, Vec& axis) const {
   const auto found = urdf_->joints_.find(joint_name);
   if (found == urdf_->joints_.end()) fail(fmt::format("has no joint '{}'", joint_name));
   const urdf::Joint& j = *found->second;
-  require_unrotated(j);
-  place_m = to_vec(j.parent_to_joint_origin_transform.position);
+  Placed in_parent = placed(j);
   const urdf::Link* from = &link(j.parent_link_name);
-  while (from->name != parent && from->parent_joint &&
-         from->parent_joint->type == urdf::Joint::FIXED) {
-    require_unrotated(*from->parent_joint);
-    place_m = place_m + to_vec(from->parent_joint->parent_to_joint_origin_transform.position);
-    from = &link(from->parent_joint->parent_link_name);
+  while (from->name != parent && carrier(*urdf_, *from)) {
+    in_parent = placed(*from->parent_joint) * in_parent;
+    from = carrier(*urdf_, *from);
   }
   if (from->name != parent || j.child_link_name != child) {
     fail(fmt::format("joint '{}' connects '{}' to '{}', expected '{}' to '{}'", joint_name,
                      j.parent_link_name, j.child_link_name, parent, child));
   }
+  place_m = in_base(*from).turn * in_parent.place_m;
+  axis = in_base(link(child)).turn * to_vec(j.axis);
   return j;
 }
 
@@ -113,18 +126,12 @@ Body<double> UrdfReader::body_alone(const urdf::Link& link) const {
   if (!link.inertial || link.inertial->mass == 0.0) return {};
   const urdf::Inertial& i = *link.inertial;
   Body<double> b{i.mass, to_vec(i.origin.position), {i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz}};
-  b.inertia = rotated(b.inertia, i.origin.rotation);
+  b.inertia = turned(placed(i.origin).turn, b.inertia);
   const double trace = b.inertia.xx + b.inertia.yy + b.inertia.zz;
   const double all =
       b.mass + b.com.x + b.com.y + b.com.z + trace + b.inertia.xy + b.inertia.xz + b.inertia.yz;
   if (!std::isfinite(all) || b.mass < 0.0) {
     fail(fmt::format("link '{}' has mass {}, expected a positive finite one", link.name, b.mass));
-  }
-  if (!is_inertia_of_a_body(b.inertia)) {
-    fail(
-        fmt::format("link '{}' has an inertia that no body can have: each of the three principal "
-                    "moments must be above 0 and at most the sum of the other two",
-                    link.name));
   }
   return b;
 }
@@ -135,49 +142,110 @@ Body<double> UrdfReader::body_with_fixed(const urdf::Link& link) const {
   for (const auto& joint : link.child_joints) {
     if (joint->type != urdf::Joint::FIXED) continue;
     const Body<double> child = body_with_fixed(this->link(joint->child_link_name));
-    if (child.mass > 0.0) b = merged(b, child, joint->parent_to_joint_origin_transform);
+    if (child.mass > 0.0) b = merged(b, moved(placed(*joint), child));
   }
   return b;
+}
+
+// With what a link is fixed to, if anything there weighs something.
+Body<double> UrdfReader::body_with_carriers(const urdf::Link& link) const {
+  const Body<double> below = body_with_fixed(link);
+  const urdf::Link* top = &link;
+  Placed in_top;
+  while (const urdf::Link* const above = carrier(*urdf_, *top)) {
+    in_top = placed(*top->parent_joint) * in_top;
+    top = above;
+  }
+  const Body<double> all = body_with_fixed(*top);
+  if (all.mass == below.mass) return below;
+  const Mat3<double> back = transposed(in_top.turn);
+  return moved({back, -1.0 * (back * in_top.place_m)}, all);
 }
 
 Body<double> UrdfReader::body(const std::string& link_name) const {
-  const Body<double> b = body_with_fixed(link(link_name));
+  const urdf::Link& link = this->link(link_name);
+  const Body<double> b = link_name == base_ ? body_with_carriers(link) : body_with_fixed(link);
   if (!(b.mass > 0.0)) {
     fail(fmt::format("link '{}' has no mass, nor has a link that is fixed to it", link_name));
   }
-  return b;
+  // A part alone may have none: a sensor of a gram, a root that is a name.
+  if (!is_inertia_of_a_body(b.inertia)) {
+    fail(
+        fmt::format("link '{}', with all that is fixed to it, has an inertia that no body can "
+                    "have: each of the three principal moments must be above 0 and at most the sum "
+                    "of the other two",
+                    link_name));
+  }
+  return moved({in_base(link).turn, {}}, b);
 }
 
-template <typename Shape>
-const Shape* UrdfReader::largest(const std::string& link_name, int type, Vec* centre) const {
-  const Shape* best = nullptr;
+void UrdfReader::add_boxes(const urdf::Link& link, const Placed& place,
+                           std::optional<UrdfBox>& largest) const {
+  bool has_one = false;
+  for (const auto& collision : link.collision_array) {
+    if (!collision->geometry || collision->geometry->type != urdf::Geometry::BOX) continue;
+    const auto& box = static_cast<const urdf::Box&>(*collision->geometry);
+    const Placed in_base = place * placed(collision->origin);
+    const Vec half{box.dim.x / 2, box.dim.y / 2, box.dim.z / 2};
+    const auto reach = [&half](const Vec& row) {
+      return std::fabs(row.x) * half.x + std::fabs(row.y) * half.y + std::fabs(row.z) * half.z;
+    };
+    const UrdfBox shape{in_base.place_m,
+                        {reach(in_base.turn.r0), reach(in_base.turn.r1), reach(in_base.turn.r2)}};
+    has_one = true;
+    if (!largest || volume(shape.half_m) > volume(largest->half_m)) largest = shape;
+  }
+  if (has_one) return;
+  for (const auto& joint : link.child_joints) {
+    if (joint->type != urdf::Joint::FIXED) continue;
+    add_boxes(this->link(joint->child_link_name), place * placed(*joint), largest);
+  }
+}
+
+std::optional<UrdfBox> UrdfReader::box() const {
+  std::optional<UrdfBox> largest;
+  add_boxes(link(base_), {}, largest);
+  return largest;
+}
+
+UrdfFoot UrdfReader::foot(const std::string& link_name, const Vec& down) const {
+  const Placed link_axes{in_base(link(link_name)).turn, {}};
+  std::optional<UrdfFoot> lowest;
+  std::string others;
   for (const auto& collision : link(link_name).collision_array) {
-    if (!collision->geometry || collision->geometry->type != type) continue;
-    const auto* s = static_cast<const Shape*>(collision->geometry.get());
-    if (best && size_of(*s) <= size_of(*best)) continue;
-    best = s;
-    if (centre) *centre = to_vec(collision->origin.position);
-  }
-  return best;
-}
-
-const urdf::Box* UrdfReader::box(const std::string& link_name, Vec& centre) const {
-  const urdf::Box* own = largest<urdf::Box>(link_name, urdf::Geometry::BOX, &centre);
-  if (own) return own;
-  for (const auto& joint : link(link_name).child_joints) {
-    if (joint->type != urdf::Joint::FIXED || is_rotated(*joint)) continue;
-    if (const urdf::Box* const fixed = box(joint->child_link_name, centre)) {
-      centre = centre + to_vec(joint->parent_to_joint_origin_transform.position);
-      return fixed;
+    if (!collision->geometry) continue;
+    const Placed in_base = link_axes * placed(collision->origin);
+    UrdfFoot shape{.centre_m = in_base.place_m, .in_link_m = to_vec(collision->origin.position)};
+    switch (collision->geometry->type) {
+      case urdf::Geometry::SPHERE:
+        shape.radius_m = static_cast<const urdf::Sphere&>(*collision->geometry).radius;
+        break;
+      case urdf::Geometry::CYLINDER: {
+        const auto& tyre = static_cast<const urdf::Cylinder&>(*collision->geometry);
+        const Vec axis = in_base.turn * Vec{0, 0, 1};
+        if (std::fabs(axis.y) < 0.99) {
+          others += fmt::format(", a cylinder along {:.2g} {:.2g} {:.2g}", axis.x, axis.y, axis.z);
+          continue;
+        }
+        shape.radius_m = tyre.radius;
+        shape.width_m = tyre.length;
+        break;
+      }
+      case urdf::Geometry::BOX:
+        others += ", a box";
+        continue;
+      default:
+        others += ", a mesh";
+        continue;
     }
+    const auto reach = [&](const UrdfFoot& s) { return dot(s.centre_m, down) + s.radius_m; };
+    if (shape.radius_m > 0.0 && (!lowest || reach(shape) > reach(*lowest))) lowest = shape;
   }
-  return nullptr;
-}
-const urdf::Cylinder* UrdfReader::cylinder(const std::string& link_name) const {
-  return largest<urdf::Cylinder>(link_name, urdf::Geometry::CYLINDER, nullptr);
-}
-const urdf::Sphere* UrdfReader::sphere(const std::string& link_name) const {
-  return largest<urdf::Sphere>(link_name, urdf::Geometry::SPHERE, nullptr);
+  if (lowest) return *lowest;
+  fail(
+      fmt::format("link '{}': found {}, expected a collision sphere or a cylinder along y, or "
+                  "collision.foot_radius_m in the robot file",
+                  link_name, others.empty() ? "no collision shape" : others.substr(2)));
 }
 
 void UrdfReader::reject_other_masses() const {
@@ -190,10 +258,16 @@ void UrdfReader::reject_other_masses() const {
   }
 }
 
-std::size_t UrdfReader::moving_joints() const {
-  std::size_t n = 0;
-  for (const auto& [joint_name, j] : urdf_->joints_) n += j->type != urdf::Joint::FIXED;
-  return n;
+std::vector<std::string> UrdfReader::moving_joints() const {
+  const urdf::Link* top = &link(base_);
+  while (const urdf::Link* const above = carrier(*urdf_, *top)) top = above;
+  std::vector<std::string> names;
+  for (const auto& [joint_name, j] : urdf_->joints_) {
+    const bool leaves_the_base_free =
+        j->type == urdf::Joint::FLOATING && j->child_link_name == top->name;
+    if (j->type != urdf::Joint::FIXED && !leaves_the_base_free) names.push_back(joint_name);
+  }
+  return names;
 }
 
 }  // namespace sandrunner::sim

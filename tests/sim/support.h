@@ -3,9 +3,12 @@
 // step without the program around it.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "rt/core/safety_gate.h"
 #include "sim/ground/ground.h"
@@ -203,6 +206,16 @@ inline std::uint64_t hash_of(const Simulator& simulator) {
   StateHash hash;
   simulator.add_to(hash);
   return hash.value();
+}
+
+/// `text` with the first `from` after the first `near` replaced.
+inline std::string edited(std::string text, const std::string& near, const std::string& from,
+                          const std::string& to) {
+  const auto start = text.find(near);
+  EXPECT_NE(start, std::string::npos) << near;
+  const auto at = text.find(from, start);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
 }
 
 }  // namespace sandrunner::sim

@@ -40,16 +40,17 @@ std::string mjcf(const sim::RobotModel<double>& m, const MujocoSettings& setting
   for (int l = 0; l < kNumLegs; ++l) {
     const sim::LegModel<double>& leg = m.legs[l];
     const auto body = [&](const char* link, int joint, const sim::Vec3<double>& at,
-                          const char* axis, const sim::Body<double>& b) {
+                          const sim::Body<double>& b) {
+      const double sign = leg.sign[static_cast<std::size_t>(joint)];
       return fmt::format(
           "<body name='{}{}' pos='{}'><joint axis='{}' armature='{:.17g}' "
           "frictionloss='{:.17g}'/>{}",
-          link, l, text(at), axis, m.rotor_inertia[3 * l + joint], m.friction_nm[3 * l + joint],
-          inertial(b));
+          link, l, text(at),
+          text(joint == 0 ? sim::Vec3<double>{sign, 0, 0} : sim::Vec3<double>{0, sign, 0}),
+          m.rotor_inertia[3 * l + joint], m.friction_nm[3 * l + joint], inertial(b));
     };
-    xml += body("hip", 0, leg.haa, "1 0 0", leg.hip) +
-           body("thigh", 1, leg.hfe, "0 1 0", leg.thigh) +
-           body("shank", 2, leg.kfe, "0 1 0", leg.shank) +
+    xml += body("hip", 0, leg.haa, leg.hip) + body("thigh", 1, leg.hfe, leg.thigh) +
+           body("shank", 2, leg.kfe, leg.shank) +
            fmt::format("<geom type='sphere' size='{}' pos='{}' {} mass='0'/>", m.foot_radius_m,
                        text(leg.foot), settings.contact) +
            "</body></body></body>";
