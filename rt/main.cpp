@@ -36,6 +36,7 @@
 #include "rt/run/scene.h"
 #include "rt/run/settings_reference.h"
 #include "rt/run/signals.h"
+#include "sim/robot/describe.h"
 
 namespace sandrunner {
 namespace {
@@ -162,6 +163,10 @@ int run(int argc, char** argv) {
   if (!options) return kExitOk;
   if (options->settings) {
     fmt::print("{}", settings_reference());
+    return kExitOk;
+  }
+  if (options->describe) {
+    fmt::print("{}", sim::describe(read_config(*options, nullptr).robot));
     return kExitOk;
   }
   if (options->rt_report) {

@@ -124,6 +124,8 @@ void add_file_options(CLI::App& app, Options& o) {
       ->always_capture_default(false);
   app.add_flag("--settings", o.settings,
                "prints every setting with its default, unit, range and meaning");
+  app.add_flag("--describe", o.describe,
+               "prints the figures of --robot, to compare with the real one");
   app.add_option("--out", o.out_dir, "folder for summary.json, config.toml, run.csv, run.html")
       ->type_name("DIR");
   app.add_option(

@@ -39,6 +39,7 @@ struct Options {
   std::vector<std::string> config_files;
   std::vector<std::string> assignments;  ///< of --set
   bool settings = false;                 ///< --settings: prints the reference of all keys
+  bool describe = false;                 ///< --describe: prints the robot's figures
   std::string out_dir;                   ///< empty: nothing is written
   std::string dds_security_dir;          ///< empty: none
   std::string record_dir;                ///< folder for run.mcap; empty: no recording

@@ -80,6 +80,11 @@ TEST_F(CommandLineTest, RobotMayLieInAFileOfAnyName) {
   EXPECT_NE(config.find("stall_torque_nm = 80"), std::string::npos) << config;
 }
 
+TEST_F(CommandLineTest, DescribesARobot) {
+  ASSERT_EQ(run("--robot go2 --describe"), 0) << error();
+  EXPECT_NE(output().find("# go2\n15.02 kg"), std::string::npos) << output();
+}
+
 TEST_F(CommandLineTest, VersionIsOneLine) {
   EXPECT_EQ(run("--version"), 0);
   EXPECT_EQ(output(), "sandrunner " + build_name() + "\n");
