@@ -17,6 +17,7 @@ py::dtype leg_type() {
   using L = sim::LegModel<float>;
   const py::dtype body = body_type();
   return RecordType<float>(sizeof(L))
+      .add("sign", offsetof(L, sign), 3)
       .add("haa", offsetof(L, haa), 3)
       .add("hfe", offsetof(L, hfe), 3)
       .add("kfe", offsetof(L, kfe), 3)

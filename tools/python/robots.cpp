@@ -61,6 +61,10 @@ void require_model(int robot, const sim::RobotModel<float>& m) {
     require_body(robot, "legs.hip", leg.hip);
     require_body(robot, "legs.thigh", leg.thigh);
     require_body(robot, "legs.shank", leg.shank);
+    for (const float sign : leg.sign) {
+      if (std::fabs(sign) == 1.0f) continue;
+      fail("model", fmt::format("legs.sign {}", sign), robot, "1 or -1, for each joint's axis");
+    }
   }
   require_least_of_all("model", robot, "rotor_inertia", m.rotor_inertia, 0.0);
   require_least_of_all("model", robot, "friction_nm", m.friction_nm, 0.0);

@@ -44,11 +44,12 @@ TEST_F(CommandLineTest, HelpNamesEveryOption) {
   for (const auto& match : matches_in(output(), "\n +(-[a-z],)?(--[a-z-]+)")) {
     options.insert(match[2]);
   }
-  EXPECT_EQ(options, (std::set<std::string>{
-                         "--help",     "--version",  "--policy",  "--robot",   "--hardware",
-                         "--arm",      "--dry-run",  "--terrain", "--command", "--dds-security",
-                         "--duration", "--start",    "--clock",   "--seed",    "--config",
-                         "--set",      "--settings", "--out",     "--record",  "--view"}))
+  EXPECT_EQ(options,
+            (std::set<std::string>{
+                "--help",    "--version", "--policy",  "--robot",        "--hardware", "--arm",
+                "--dry-run", "--terrain", "--command", "--dds-security", "--duration", "--start",
+                "--clock",   "--seed",    "--config",  "--set",          "--settings", "--describe",
+                "--out",     "--record",  "--view"}))
       << output();
   for (const char* text : {"rt-report", "dry-sand", "athletic-track"}) {
     EXPECT_NE(output().find(text), std::string::npos) << text;

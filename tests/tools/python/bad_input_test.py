@@ -104,6 +104,7 @@ class BadInput(unittest.TestCase):
             (lambda m: m["base"].__setitem__("mass", -5), r"base.mass = -5 at robot 0, expected at least 0.001"),
             (lambda m: m["base"].__setitem__("inertia", 0), r"base.inertia 0 0 0 0 0 0 at robot 0, expected one that"),
             (lambda m: m["legs"]["shank"].__setitem__("mass", 0), r"legs.shank.mass = 0 at robot 0, expected at least"),
+            (lambda m: m["legs"].__setitem__("sign", 0.5), r"legs.sign 0.5 at robot 0, expected 1 or -1"),
             (lambda m: m.__setitem__("foot_radius_m", -1), r"foot_radius_m = -1 at robot 0, expected at least"),
             (lambda m: m.__setitem__("torque_limit_nm", -5), r"torque_limit_nm = -5 at robot 0, expected at least"),
             (lambda m: m.__setitem__("lower_rad", 9), r"lower_rad = 9 and upper_rad = .* expected the lower one first"),

@@ -196,19 +196,76 @@ class Onnx(WithFolder):
         with self.assertRaisesRegex(ValueError, "^encoder: found 0 LSTM nodes, expected one"):
             import_onnx(self.path("q.onnx"))
 
-    def test_a_file_of_other_activations_is_refused(self):
+    def test_another_network_with_the_same_layers_is_refused_at_its_node(self):
         import onnx
+        from onnx import helper
 
+        def nodes(model, kind):
+            return [node for node in model.graph.node if node.op_type == kind]
+
+        def tanh_behind_the_last_layer(model):
+            last = nodes(model, "Gemm")[-1]
+            last.output[0] = "unlimited"
+            model.graph.node.append(helper.make_node("Tanh", ["unlimited"], ["action"]))
+            model.producer_name = "another"  # ours has scales there
+
+        def two_activations(model):
+            first = nodes(model, "LeakyRelu")[0]
+            model.graph.node.append(helper.make_node("Tanh", [first.output[0]], ["twice"]))
+            nodes(model, "Gemm")[1].input[0] = "twice"
+
+        def other_order(model):
+            joined = nodes(model, "Concat")[0]
+            parts = list(joined.input)
+            del joined.input[:]
+            joined.input.extend(reversed(parts))
+
+        def peepholes(model):
+            node = nodes(model, "LSTM")[0]
+            node.input.extend([""] * (7 - len(node.input)) + ["p"])
+
+        def other_split(model):
+            node = nodes(model, "Split")[0]
+            node.output[0], node.output[1] = node.output[1], node.output[0]
+
+        activation = "^activation: found .*expected LeakyRelu of 0.01$"
         for change, pattern in (
-            (lambda node: setattr(node, "op_type", "Elu"), "^activation: found Elu, expected LeakyRelu of 0.01$"),
-            (lambda node: setattr(node.attribute[0], "f", 0.2), "^activation: found LeakyRelu of 0.2, expected"),
+            (lambda m: setattr(nodes(m, "LeakyRelu")[0], "op_type", "Elu"), activation),
+            (lambda m: setattr(nodes(m, "LeakyRelu")[0].attribute[0], "f", 0.2), "^activation: found LeakyRelu of 0.2"),
+            (two_activations, activation),
+            (tanh_behind_the_last_layer, "(Tanh).*found behind the last layer, expected none$"),
+            (lambda m: nodes(m, "Gemm")[0].attribute.append(helper.make_attribute("alpha", 2.0)), "found alpha 2"),
+            (other_order, "found another input than command, encoding, estimate, in this order$"),
+            (peepholes, "^encoder: found an LSTM with peepholes"),
+            (lambda m: nodes(m, "LSTM")[0].attribute.append(helper.make_attribute("clip", 1.0)), "^encoder: .*clip 1"),
+            (other_split, "(Split).*expected one Split of the observation into 3 and 30"),
         ):
             export_onnx("raibo", self.path("p.onnx"))
             model = onnx.load(self.path("p.onnx"))
-            change(next(node for node in model.graph.node if node.op_type == "LeakyRelu"))
+            change(model)
             onnx.save(model, self.path("q.onnx"))
-            with self.assertRaisesRegex(ValueError, pattern):
+            with self.subTest(pattern=pattern), self.assertRaisesRegex(ValueError, pattern):
                 import_onnx(self.path("q.onnx"))
+
+    def test_a_network_of_anothers_making_comes_in_with_or_without_an_lstms_bias(self):
+        import onnx
+
+        export_onnx("raibo", self.path("p.onnx"))
+        first = import_onnx(self.path("p.onnx"))
+        model = onnx.load(self.path("p.onnx"))
+        model.producer_name = "another"
+        before = [n for n in model.graph.node if n.op_type in ("Sub", "Div", "Clip", "Mul", "Add")]
+        split = next(n for n in model.graph.node if n.op_type == "Split")
+        split.input[0] = "observation"
+        for node in before:
+            model.graph.node.remove(node)
+        next(n for n in model.graph.node if n.op_type == "LSTM").input[3] = ""
+        onnx.save(model, self.path("q.onnx"))
+        second = import_onnx(self.path("q.onnx"))
+        np.testing.assert_array_equal(second["actor.2.weight"], first["actor.2.weight"])
+        np.testing.assert_array_equal(second["encoder.weight_hh"], first["encoder.weight_hh"])
+        self.assertFalse(second["encoder.bias_ih"].any())
+        self.assertNotIn("observation.mean", second)
 
 
 if __name__ == "__main__":

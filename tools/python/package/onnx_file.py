@@ -10,10 +10,10 @@ from onnx import TensorProto, helper, numpy_helper
 
 from . import _check
 from .policies import read_policy
-from .weights import NETWORK, TO_ONNX, gates, read_onnx
+from .onnx_reader import HIDDEN as _HIDDEN, INPUTS as _INPUTS, TO_ONNX, gates, read_onnx
+from .weights import NETWORK
 
 _OPSET = 13
-_HIDDEN, _INPUTS = 64, 30
 
 
 class _Graph:
@@ -112,6 +112,7 @@ def export_onnx(policy: str | os.PathLike[str], path: str | os.PathLike[str]) ->
 
 def import_onnx(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
     """The weights of an ONNX file with the layers of a policy file (policy/README.md), by the file's names, for
-    `write_policy`. An LSTM and six dense layers (Gemm, or MatMul and Add) are recognised by their shapes. Of a file
-    of `export_onnx`, the normalisation comes along, and `write_policy` compares it with the environment's."""
+    `write_policy`. An LSTM and six dense layers (Gemm, or MatMul and Add) are recognised by their shapes, and all
+    that lies between them is checked. Of a file of `export_onnx`, the normalisation comes along, and `write_policy`
+    compares it with the environment's. Raises ValueError, one line, for another network."""
     return read_onnx(_check.path("path", path))
