@@ -2,12 +2,12 @@
 #include "sim/robot/robot_model.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <optional>
-#include <ranges>
 
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
@@ -177,9 +177,13 @@ void check_joints(const UrdfReader& urdf, const Names& names) {
     for (const std::string& joint : names.joints) std::erase(others, with_leg(joint, leg));
   }
   if (found == kNumJoints || others.empty()) return;
-  urdf.fail(fmt::format(
-      "has {} moving joints, expected {}, four legs of HAA, HFE, KFE; of no leg: {}{}", found,
-      kNumJoints, fmt::join(others | std::views::take(4), ", "), others.size() > 4 ? ", ..." : ""));
+  if (others.size() > 4) {
+    others.resize(4);
+    others.emplace_back("...");
+  }
+  urdf.fail(
+      fmt::format("has {} moving joints, expected {}, four legs of HAA, HFE, KFE; of no leg: {}",
+                  found, kNumJoints, fmt::join(others, ", ")));
 }
 
 // The legs are where their names say.
