@@ -291,8 +291,9 @@ class Inputs:
             command = ['sandrunner-replay', 'r.mcap', '--plot', 'plots']
         one = Input('environment', command)
         one.shell = rng.choice(['', 'exec <&-', 'exec >&-', 'exec <&- >&-', 'exec >/dev/full', 'umask 777',
-                                # At 0 not even standard error, a file here, takes a line.
-                                f'ulimit -f {rng.randint(1, 500)}', f'ulimit -s {rng.randint(256, 1000)}',
+                                # At 0 not even standard error, a file here, takes a line. The
+                                # parser of the TOML library takes a stack of 450 kB.
+                                f'ulimit -f {rng.randint(1, 500)}', f'ulimit -s {rng.randint(500, 1000)}',
                                 f'ulimit -n {rng.randint(4, 20)}', 'mkdir -p out rec; chmod 555 out rec',
                                 'mkdir out; mkdir out/run.csv', 'touch out rec plots', 'ln -s /dev/full out',
                                 'trap "" INT TERM HUP PIPE'])
