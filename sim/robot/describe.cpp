@@ -47,11 +47,12 @@ std::string joint_row(const UrdfReader& urdf, const Robot& robot, int i) {
 }
 
 /// The collision shapes of the URDF that are no foot and not the base's box.
-std::size_t unused_shapes(const UrdfReader& urdf) {
+std::size_t unused_shapes(const UrdfReader& urdf, const RobotFile& file) {
   std::size_t shapes = 0;
   for (const auto& [name, link] : urdf.model().links_) shapes += link->collision_array.size();
-  const std::size_t used = 1 + kNumLegs;
-  return shapes > used ? shapes - used : 0;
+  if (!file.has_base_box()) shapes -= 1;
+  if (file.foot_radius_m == 0.0) shapes -= kNumLegs;
+  return shapes;
 }
 
 }  // namespace
@@ -80,9 +81,9 @@ std::string describe(const Robot& robot) {
       "\n| joint | axis | stops, rad | torque, N m | speed, rad/s | rotor, kg m^2 |\n"
       "|---|---|---|---|---|---|\n";
   for (int i = 0; i < kNumJoints; ++i) page += joint_row(urdf, robot, i);
-  page += fmt::format(
-      "\n| leg | HAA from the base | HFE from it | KFE from it | foot from it "
-      "|\n|---|---|---|---|---|\n");
+  page +=
+      "\n| leg | HAA from the base | HFE from it | KFE from it | foot from it |\n"
+      "|---|---|---|---|---|\n";
   for (int l = 0; l < kNumLegs; ++l) {
     const LegModel<double>& leg = m.legs[l];
     page += fmt::format("| {} | {} | {} | {} | {} |\n", robot.description.leg_names[l],
@@ -94,9 +95,8 @@ std::string describe(const Robot& robot) {
                       text(2.0 * m.base_box_half_m), text(m.base_box_centre_m));
   page += fmt::format(
       "Not used: {} other collision shapes of the URDF. Knees and shanks touch the ground with "
-      "radii of "
-      "{:.4g} and {:.4g} m.\n",
-      unused_shapes(urdf), m.knee_radius_m, m.shank_radius_m);
+      "radii of {:.4g} and {:.4g} m.\n",
+      unused_shapes(urdf, file), m.knee_radius_m, m.shank_radius_m);
   return page;
 }
 

@@ -28,6 +28,8 @@ struct RobotFile {
   double foot_radius_m = 0.0;
   std::array<double, 3> base_box_m{}, base_box_centre_m{};
 
+  /// Whether it has a box of its own in place of the URDF's.
+  bool has_base_box() const { return base_box_m != std::array<double, 3>{}; }
   /// Throws InputError.
   [[noreturn]] void fail(const std::string& what) const;
 };

@@ -158,7 +158,11 @@ void read_base(const UrdfReader& urdf, const RobotFile& file, RobotModel<double>
   check_mass(urdf, file.base, m.base);
   const std::array<double, 3>&edges = file.base_box_m, &centre = file.base_box_centre_m;
   std::optional<UrdfBox> box = urdf.box();
-  if (edges[0] * edges[1] * edges[2] > 0.0) {
+  if (file.has_base_box()) {
+    if (!(edges[0] * edges[1] * edges[2] > 0.0)) {
+      file.fail(fmt::format("collision.base_box_m: found {} {} {}, expected three above 0",
+                            edges[0], edges[1], edges[2]));
+    }
     box = UrdfBox{{centre[0], centre[1], centre[2]}, {edges[0] / 2, edges[1] / 2, edges[2] / 2}};
   }
   if (!box) {

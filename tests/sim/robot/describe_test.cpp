@@ -28,7 +28,8 @@ TEST(DescribeTest, SaysWhatWasReadAndWhatWasPutTogether) {
         "| RF_HFE | -y | -6.283 to 6.283 | 63.45 | 25.7 |", "| RF_KFE | y | -2.47 to -0.0262 |",
         "| LH_HFE | y | -6.283 to 6.283 (continuous) |",
         "| LF | 0.3072 0.08 -0.03625 | 0 0.0889 0 | 0 0 -0.24 | 0 0 -0.24 |",
-        "tyres of radius 0.0295 m, 0.025 m wide", "a box of 0.7104 0.276 0.12 m around"}) {
+        "tyres of radius 0.0295 m, 0.025 m wide", "a box of 0.7104 0.276 0.12 m around",
+        "Not used: 0 other"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part << " in\n" << page;
   }
 }

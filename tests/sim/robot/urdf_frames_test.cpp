@@ -208,6 +208,10 @@ TEST(UrdfFramesTest, MeshesNeedABoxAndARadiusInTheRobotFile) {
       urdf,
       edited(with_foot, "[collision]", "[collision]",
              "[collision]\nbase_box_m = [0.6, 0.2, 0.1]\nbase_box_centre_m = [0.0, 0.0, 0.01]"));
+  EXPECT_NE(refusal(urdf, edited(with_foot, "[collision]", "[collision]",
+                                 "[collision]\nbase_box_m = [0.6, 0.2, 0.0]"))
+                .find("collision.base_box_m: found 0.6 0.2 0, expected three above 0"),
+            std::string::npos);
   EXPECT_EQ(robot.model.foot_radius_m, 0.025);
   expect_near(robot.model.base_box_half_m, {0.3, 0.1, 0.05});
   expect_near(robot.model.base_box_centre_m, {0.0, 0.0, 0.01});

@@ -90,25 +90,26 @@ class Examples(unittest.TestCase):
         (library,) = libraries
         self.assertRegex(library, "^" + re.escape(str(self.folder)) + ".*/sandrunner/lib/libfmt")
 
+    def expect_policy_of(self, example, printed, *words):
+        """That this example prints this and writes a policy file."""
+        policy = self.folder / "walk.safetensors"
+        words = ["--out", policy, *words, "--num-envs", 64, "--threads", 1]
+        self.assertIn(printed, run(sys.executable, EXAMPLES / example, *words))
+        run(sys.executable, "-c", f"from sandrunner import read_policy; read_policy({str(policy)!r})")
+
     def test_ppo_learns_for_an_update_and_writes_its_policy(self):
         try:
             import torch  # noqa: F401
         except ImportError:
             self.skipTest("PyTorch is not installed (Debian: python3-torch)")
-        policy = self.folder / "walk.safetensors"
-        words = ["--out", policy, "--transitions", 2048, "--num-envs", 64, "--threads", 1]
-        self.assertIn("0.00 M transitions", run(sys.executable, EXAMPLES / "ppo.py", *words))
-        run(sys.executable, "-c", f"from sandrunner import read_policy; read_policy({str(policy)!r})")
+        self.expect_policy_of("ppo.py", "0.00 M transitions", "--transitions", 2048)
 
     def test_rsl_rl_learns_for_an_iteration_and_writes_its_policy(self):
         try:
             import rsl_rl.runners  # noqa: F401
         except ImportError:
             self.skipTest("rsl_rl is not installed (pip install rsl-rl-lib)")
-        policy = self.folder / "walk.safetensors"
-        words = ["--out", policy, "--iterations", 1, "--num-envs", 64, "--threads", 1]
-        self.assertIn("falls in 4 s", run(sys.executable, EXAMPLES / "rsl_rl_ppo.py", *words))
-        run(sys.executable, "-c", f"from sandrunner import read_policy; read_policy({str(policy)!r})")
+        self.expect_policy_of("rsl_rl_ppo.py", "falls in 4 s", "--iterations", 1)
 
 
 if __name__ == "__main__":
