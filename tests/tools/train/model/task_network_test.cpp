@@ -80,7 +80,7 @@ TEST_P(TaskNetworkTest, APolicyAnswersInJointsWhatTheTrainingAnswersInModes) {
     joints_from_modes(kModeGain, modes.data(), 1, joints.data());
     const PolicyStep answer = policy.step(raw);
     for (int j = 0; j < kNumJoints; ++j) {
-      EXPECT_NEAR(answer.target_rad[j], file.spec.action_scale_rad * joints[j], 2e-6);
+      EXPECT_NEAR(answer.target_rad[j], file.spec.action_scale_rad[j] * joints[j], 2e-6);
       moved += std::abs(answer.target_rad[j]);
     }
   }

@@ -31,7 +31,9 @@ const std::vector<std::string> kSettings = {
 // the training itself records another.
 constexpr std::uint64_t kWeights = 0x1f90ea82e84bef4d;
 
-std::uint64_t weights_after_training(const std::string& folder, const std::string& threads) {
+std::uint64_t weights_after_training(const std::string& threads) {
+  const TemporaryFolder work;
+  const std::string folder = work.path("run");
   std::vector<std::string> words = {SANDRUNNER_TRAIN_PROGRAM, "--out", folder, "--threads",
                                     threads};
   for (const std::string& setting : kSettings) words.insert(words.end(), {"--set", setting});
@@ -45,10 +47,12 @@ std::uint64_t weights_after_training(const std::string& folder, const std::strin
   return hash;
 }
 
-TEST(GoldenTrainingTest, EndsInTheRecordedWeightsWithOneThreadAndWithTwo) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(weights_after_training(folder.path("one"), "1"), kWeights);
-  EXPECT_EQ(weights_after_training(folder.path("two"), "2"), kWeights);
+TEST(GoldenTrainingTest, EndsInTheRecordedWeights) {
+  EXPECT_EQ(weights_after_training("2"), kWeights);
+}
+
+TEST(GoldenTrainingTest, DoesWithAnotherNumberOfThreadsToo) {
+  EXPECT_EQ(weights_after_training("1"), kWeights);
 }
 
 }  // namespace
