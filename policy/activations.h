@@ -44,6 +44,13 @@ inline float tanh_approximation(float x) noexcept {
   return clip(t * p / q, 1.0f);
 }
 
+/// Exponential linear unit: x above 0, exp(x) - 1 else; absolute error at most 1e-6; NaN stays NaN.
+inline float elu(float x) noexcept {
+  const float t = tanh_approximation(0.5f * (x < 0.0f ? x : 0.0f));
+  const float below = 2.0f * t / (1.0f - t);
+  return x < 0.0f ? below : x;
+}
+
 /// Logistic function 1 / (1 + exp(-x)); absolute error at most 1.9e-7; NaN stays NaN.
 inline float sigmoid(float x) noexcept {
   return std::fma(0.5f, tanh_approximation(0.5f * x), 0.5f);

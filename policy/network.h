@@ -28,20 +28,32 @@ struct TcnPast {
   TcnLayerPast<kTcnChannels, kTcnDilations[2]> layer_2;
 };
 
+/// What a network of others remembers (perceptron.h).
+struct PerceptronPast {
+  std::uint64_t steps = 0;                 ///< at kPolicyHz, since the start
+  JointArray<float> last_action{};         ///< in its own order, limited
+  std::array<float, 3> velocity_mps{};     ///< of its estimator
+  float unused = 0.0f;                     ///< no padding
+  std::array<float, 1024> observations{};  ///< that it sees, the newest first
+};
+
 /// What the network remembers from step to step. All zero at the start.
 struct NetworkState {
   std::array<float, kHiddenSize> h{};  ///< the encoder's output
   std::array<float, kHiddenSize> c{};  ///< cells of an LSTM
-  TcnPast past;                        ///< last: an LSTM leaves it as it is
+  TcnPast past;                        ///< last: an LSTM leaves both as they are
+  PerceptronPast perceptron;
 };
 static_assert(std::is_trivially_copyable_v<NetworkState>);
-static_assert(sizeof(NetworkState) == offsetof(NetworkState, past) + sizeof(TcnPast));
+static_assert(sizeof(NetworkState) ==
+              offsetof(NetworkState, past) + sizeof(TcnPast) + sizeof(PerceptronPast));
 
 /// Adds what the network has remembered.
 inline void add_to(StateHash& hash, const NetworkState& state) noexcept {
   hash.add(state.h);
   hash.add(state.c);
   if (state.past.steps > 0) hash.add(state.past);
+  if (state.perceptron.steps > 0) hash.add(state.perceptron);
 }
 
 /// What one step of the network yields, before any scaling.

@@ -3,14 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <functional>
-#include <numeric>
-
 namespace sandrunner {
-
-std::size_t NamedTensor::size() const {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
-}
 
 std::array<int, 4> actor_sizes(const ActorInputs& sees) {
   std::array<int, 4> sizes = kActorSizes;
@@ -24,15 +17,9 @@ std::vector<NamedTensor> tensors_of(NetworkParameters& parameters) {
   std::vector<NamedTensor> tensors = {
       {"observation.mean", {kObservationSize}, &parameters.observation_mean},
       {"observation.variance", {kObservationSize}, &parameters.observation_variance}};
-  const auto add_layer = [&](const std::string& name, int inputs, int outputs,
-                             DenseParameters& layer) {
-    const auto rows = static_cast<std::size_t>(outputs);
-    tensors.push_back({name + ".weight", {rows, static_cast<std::size_t>(inputs)}, &layer.weight});
-    tensors.push_back({name + ".bias", {rows}, &layer.bias});
-  };
   const auto add_layers = [&](const std::string& prefix, const auto& sizes, auto& layers) {
     for (std::size_t k = 0; k < layers.size(); ++k) {
-      add_layer(fmt::format("{}.{}", prefix, k), sizes[k], sizes[k + 1], layers[k]);
+      add_layer(fmt::format("{}.{}", prefix, k), sizes[k], sizes[k + 1], layers[k], tensors);
     }
   };
   switch (parameters.wiring.encoder) {
@@ -51,11 +38,11 @@ std::vector<NamedTensor> tensors_of(NetworkParameters& parameters) {
       int inputs = kEncoderInputSize;
       for (std::size_t k = 0; k < kTcnDilations.size(); ++k) {
         add_layer(fmt::format("encoder.{}", k), kTcnTaps * inputs, kTcnChannels,
-                  parameters.encoder[k]);
+                  parameters.encoder[k], tensors);
         inputs = kTcnChannels;
       }
       add_layer(fmt::format("encoder.{}", kTcnDilations.size()), inputs, kHiddenSize,
-                parameters.encoder.back());
+                parameters.encoder.back(), tensors);
       break;
     }
     case EncoderKind::kInsight:

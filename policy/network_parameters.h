@@ -4,10 +4,10 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "policy/named_tensors.h"
 #include "policy/wiring.h"
 #include "rt/core/messages.h"
 
@@ -26,12 +26,6 @@ inline constexpr std::array<int, 4> kActorSizes = {kCommandSize + kHiddenSize + 
 inline constexpr int kTcnChannels = 40;
 inline constexpr int kInsightHidden = 72;
 
-/// A dense layer: weight (outputs, inputs) row-major, bias (outputs).
-struct DenseParameters {
-  std::vector<float> weight;
-  std::vector<float> bias;
-};
-
 /// All parameters of the network, in PyTorch's layout. The LSTM's gates are stacked in the order
 /// input, forget, cell, output; both of its biases are added. A convolution's weight is (outputs,
 /// taps * inputs), the present step first. Shapes: `tensors_of`.
@@ -48,16 +42,6 @@ struct NetworkParameters {
   std::vector<float> observation_mean;
   std::vector<float> observation_variance;
   float observation_clip = 10.0f;
-};
-
-/// One tensor: its name in the policy file, its shape and its values.
-struct NamedTensor {
-  std::string name;
-  std::vector<std::size_t> shape;
-  std::vector<float>* values;
-
-  /// Number of values that `shape` asks for.
-  std::size_t size() const;
 };
 
 /// kActorSizes with the input of this wiring.

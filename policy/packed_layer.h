@@ -31,37 +31,45 @@ struct PackedLayer {
   alignas(64) float panel[kPanels][1 + kInputs][kRows];
 };
 
-/// `result` (kRows) = one panel times `input` (kInputs).
-template <int kInputs, int kOutputs>
-inline void multiply_panel(const PackedLayer<kInputs, kOutputs>& layer, int index,
-                           const float* input, float* result) noexcept {
-  using Layer = PackedLayer<kInputs, kOutputs>;
-  const float* weight = layer.panel[index][0];
-  __m256 sum[Layer::kChains][Layer::kVectors];
-  for (int chain = 0; chain < Layer::kChains; ++chain) {
-    for (int v = 0; v < Layer::kVectors; ++v) {
+/// `result` (kVectors x 8 rows) = one panel at `weight` times `input`, of whose numbers there are a
+/// multiple of kChains.
+template <int kVectors, int kChains>
+inline void multiply_rows(const float* weight, int inputs, const float* input,
+                          float* result) noexcept {
+  constexpr int kRows = kVectors * kPackedLanes;
+  __m256 sum[kChains][kVectors];
+  for (int chain = 0; chain < kChains; ++chain) {
+    for (int v = 0; v < kVectors; ++v) {
       sum[chain][v] = chain == 0 ? _mm256_load_ps(weight + v * kPackedLanes) : _mm256_setzero_ps();
     }
   }
-  weight += Layer::kRows;
-  for (int column = 0; column < kInputs; column += Layer::kChains) {
-    for (int chain = 0; chain < Layer::kChains; ++chain) {
+  weight += kRows;
+  for (int column = 0; column < inputs; column += kChains) {
+    for (int chain = 0; chain < kChains; ++chain) {
       const __m256 x = _mm256_broadcast_ss(input + column + chain);
-      for (int v = 0; v < Layer::kVectors; ++v) {
+      for (int v = 0; v < kVectors; ++v) {
         sum[chain][v] =
             _mm256_fmadd_ps(_mm256_load_ps(weight + v * kPackedLanes), x, sum[chain][v]);
       }
-      weight += Layer::kRows;
+      weight += kRows;
     }
   }
-  for (int stride = Layer::kChains / 2; stride > 0; stride /= 2) {
+  for (int stride = kChains / 2; stride > 0; stride /= 2) {
     for (int chain = 0; chain < stride; ++chain) {
-      for (int v = 0; v < Layer::kVectors; ++v) {
+      for (int v = 0; v < kVectors; ++v) {
         sum[chain][v] = _mm256_add_ps(sum[chain][v], sum[chain + stride][v]);
       }
     }
   }
-  for (int v = 0; v < Layer::kVectors; ++v) _mm256_store_ps(result + v * kPackedLanes, sum[0][v]);
+  for (int v = 0; v < kVectors; ++v) _mm256_store_ps(result + v * kPackedLanes, sum[0][v]);
+}
+
+/// The same of one panel of a layer.
+template <int kInputs, int kOutputs>
+inline void multiply_panel(const PackedLayer<kInputs, kOutputs>& layer, int index,
+                           const float* input, float* result) noexcept {
+  using Layer = PackedLayer<kInputs, kOutputs>;
+  multiply_rows<Layer::kVectors, Layer::kChains>(layer.panel[index][0], kInputs, input, result);
 }
 
 /// Output of a layer, padded to whole panels.

@@ -27,7 +27,7 @@ PolicyStep policy_step(const PolicySpec& spec, const std::array<float, kNumJoint
       spec.action_clip > 0.0 ? spec.action_clip : std::numeric_limits<double>::infinity();
   for (int i = 0; i < kNumJoints; ++i) {
     const double limited = std::clamp(static_cast<double>(action[i]), -limit, limit);
-    result.target_rad[i] = spec.nominal_position_rad[i] + spec.action_scale_rad * limited;
+    result.target_rad[i] = spec.nominal_position_rad[i] + spec.action_scale_rad[i] * limited;
   }
   const auto physical = [&](int i) {
     return estimate_raw[i] * std::sqrt(static_cast<double>(spec.estimate_variance[i])) +

@@ -5,8 +5,10 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "policy/network.h"
+#include "policy/perceptron.h"
 #include "rt/core/command_shaping.h"
 #include "rt/core/robot_description.h"
 
@@ -19,7 +21,7 @@ struct PolicySpec {
   /// The robot's joints in the order of messages.h; all arrays of joints are in it.
   JointArray<std::string> joint_names;
   JointArray<double> nominal_position_rad{};
-  double action_scale_rad = 0.0;
+  JointArray<double> action_scale_rad{};
   /// Limit of |action|, before the scale; 0: none.
   double action_clip = 0.0;
   double kp_nmprad = 0.0;
@@ -45,7 +47,7 @@ void require_joints(const PolicySpec& spec, const RobotDescription& robot);
 struct PolicyStep {
   /// Joint targets: nominal position + action scale * limited action.
   JointArray<double> target_rad{};
-  StateEstimate estimate;
+  StateEstimate estimate;  ///< NaN: what the network does not estimate
 };
 
 /// The step that a network's answer means. Real-time safe.
@@ -56,7 +58,8 @@ PolicyStep policy_step(const PolicySpec& spec, const std::array<float, kNumJoint
 /// makes one.
 class Policy {
  public:
-  Policy(PolicySpec spec, Network network) : spec_(std::move(spec)), network_(std::move(network)) {}
+  Policy(PolicySpec spec, std::variant<Network, Perceptron> network)
+      : spec_(std::move(spec)), network_(std::move(network)) {}
 
   /// Clears the memory of the network, as before its first step.
   void reset() noexcept { state_ = {}; }
@@ -70,12 +73,14 @@ class Policy {
   PolicyStep step(const std::array<float, kObservationSize>& observation,
                   NetworkState& state) const noexcept {
     NetworkOutput output;
-    network_.step(observation, state, output);
+    std::visit([&](const auto& network) { network.step(observation, state, output); }, network_);
     return policy_step(spec_, output.action, output.estimate_raw);
   }
 
   /// Brings the network's weights into the core's caches, ahead of a step. Real-time safe.
-  void touch_weights() const noexcept { network_.touch_weights(); }
+  void touch_weights() const noexcept {
+    std::visit([](const auto& network) { network.touch_weights(); }, network_);
+  }
 
   /// All that a step depends on besides its input: for snapshots and hashes.
   const NetworkState& state() const noexcept { return state_; }
@@ -85,7 +90,7 @@ class Policy {
 
  private:
   PolicySpec spec_;
-  Network network_;
+  std::variant<Network, Perceptron> network_;
   NetworkState state_;
 };
 

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "rt/base/errors.h"
@@ -17,10 +18,23 @@ namespace {
 
 constexpr std::string_view kStateMagic = "SRSTATE1";
 constexpr std::size_t kStateHead_bytes = 16;
-// What a TCN remembers follows the rest, and only if there is something.
+// What a TCN or a perceptron remembers follows the rest, and only if there is something.
 constexpr std::size_t kPastAt = offsetof(ReplayState, network) + offsetof(NetworkState, past);
-constexpr std::size_t kRestAt = kPastAt + sizeof(TcnPast);
-constexpr std::size_t kUsual_bytes = sizeof(ReplayState) - sizeof(TcnPast);
+constexpr std::size_t kPerceptronAt = kPastAt + sizeof(TcnPast);
+constexpr std::size_t kRestAt = kPerceptronAt + sizeof(PerceptronPast);
+constexpr std::size_t kUsual_bytes = sizeof(ReplayState) - (kRestAt - kPastAt);
+static_assert(sizeof(TcnPast) != sizeof(PerceptronPast), "their size says which");
+
+/// Place and size of what the network remembers besides the rest.
+struct Memory {
+  std::size_t at = kPastAt, bytes = 0;
+};
+constexpr Memory kMemories[] = {
+    {}, {kPastAt, sizeof(TcnPast)}, {kPerceptronAt, sizeof(PerceptronPast)}};
+
+Memory memory_of(const NetworkState& network) {
+  return kMemories[network.past.steps > 0 ? 1 : network.perceptron.steps > 0 ? 2 : 0];
+}
 
 std::string value_of(std::size_t word, std::uint64_t bits) {
   return tick_field_of(word).kind == 'd'
@@ -45,13 +59,13 @@ std::optional<ReplayDifference> first_difference(const TickRecord& recorded,
 }  // namespace
 
 std::string replay_state_bytes(const ReplayState& state) {
-  const bool has_past = state.network.past.steps > 0;
-  const std::uint64_t size = has_past ? sizeof state : kUsual_bytes;
+  const Memory memory = memory_of(state.network);
+  const std::uint64_t size = kUsual_bytes + memory.bytes;
   const char* const at = reinterpret_cast<const char*>(&state);
   std::string bytes(kStateMagic);
   bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
   bytes.append(at, kPastAt).append(at + kRestAt, sizeof state - kRestAt);
-  if (has_past) bytes.append(at + kPastAt, sizeof(TcnPast));
+  bytes.append(at + memory.at, memory.bytes);
   return bytes;
 }
 
@@ -63,8 +77,9 @@ ReplayState read_replay_state(std::string_view bytes, const std::string& name) {
   ReplayState state;
   std::uint64_t size = 0;
   if (bytes.size() >= kStateHead_bytes) std::memcpy(&size, &bytes[kStateMagic.size()], sizeof size);
-  const bool has_past = size == sizeof state;
-  if ((!has_past && size != kUsual_bytes) || bytes.size() != kStateHead_bytes + size) {
+  const auto memory = std::ranges::find_if(
+      kMemories, [&](const Memory& m) { return size == kUsual_bytes + m.bytes; });
+  if (memory == std::end(kMemories) || bytes.size() != kStateHead_bytes + size) {
     throw InputError(
         fmt::format("{}: {} bytes that announce {}, expected {} and {}: damaged, or "
                     "of a build that lays the state out otherwise",
@@ -74,7 +89,7 @@ ReplayState read_replay_state(std::string_view bytes, const std::string& name) {
   const char* const from = bytes.data() + kStateHead_bytes;
   std::memcpy(to, from, kPastAt);
   std::memcpy(to + kRestAt, from + kPastAt, sizeof state - kRestAt);
-  if (has_past) std::memcpy(to + kPastAt, from + kUsual_bytes, sizeof(TcnPast));
+  std::memcpy(to + memory->at, from + kUsual_bytes, memory->bytes);
   if (state.released > ReplayState::kMostReleased || state.controller.mode > Mode::kFault) {
     throw InputError(
         fmt::format("{}: mode {} and {} inputs of the policy, expected up to {} and {}", name,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -18,6 +19,19 @@ namespace {
 
 /// A robot that follows less of the command than this did not do what was asked.
 constexpr double kFollows = 0.5;
+
+/// What the policy estimates: a network of others may say a part of it, or nothing.
+std::string estimate_text(const EstimateErrors& errors) {
+  std::string text;
+  if (std::isfinite(errors.velocity_rmse_mps)) {
+    text = fmt::format("{:6.3f} m/s", errors.velocity_rmse_mps);
+  }
+  if (std::isfinite(errors.body_height_rmse_m)) {
+    text += fmt::format(", body height {:.1f} mm, foot height {:.1f} mm",
+                        1e3 * errors.body_height_rmse_m, 1e3 * errors.foot_height_rmse_m);
+  }
+  return text;
+}
 
 double us(std::uint64_t ns) { return 1e-3 * static_cast<double>(ns); }
 
@@ -161,10 +175,8 @@ std::string summary_table(const RunResult& r, const RunInfo& info) {
                                    : "     -");
     }
     if (f.estimate) {
-      row("estimate errors (rms)",
-          fmt::format("{:6.3f} m/s, body height {:.1f} mm, foot height {:.1f} mm",
-                      f.estimate->velocity_rmse_mps, 1e3 * f.estimate->body_height_rmse_m,
-                      1e3 * f.estimate->foot_height_rmse_m));
+      const std::string text = estimate_text(*f.estimate);
+      if (!text.empty()) row("estimate errors (rms)", text);
     }
     row("a joint past its stop", fmt::format("{:6} control steps", f.joint_limit_steps));
     row("a joint too fast", fmt::format("{:6} control steps", f.speed_limit_steps));

@@ -52,7 +52,7 @@ inline PolicyFile random_policy_file(std::uint64_t seed = 1, const Wiring& wirin
     spec.nominal_position_rad[kJointsPerLeg * leg + 1] = 0.5;
     spec.nominal_position_rad[kJointsPerLeg * leg + 2] = -1.0;
   }
-  spec.action_scale_rad = 0.1;
+  spec.action_scale_rad.fill(0.1);
   spec.kp_nmprad = 40.0;
   spec.kd_nmsprad = 0.75;
   spec.torque_limit_nm = 60.0;

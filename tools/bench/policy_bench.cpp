@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "policy/network.h"
+#include "policy/perceptron.h"
 #include "rt/base/processor_name.h"
 #include "rt/core/floating_point.h"
 #include "tools/bench/clock.h"
@@ -73,14 +74,30 @@ class RealtimeScope {
 };
 
 /// Weights of a size that keeps the layers' outputs near 1.
-NetworkParameters random_parameters() {
-  NetworkParameters parameters;
+void fill_at_random(const std::vector<NamedTensor>& tensors) {
   std::mt19937 random(1);
-  for (const NamedTensor& tensor : tensors_of(parameters)) {
+  for (const NamedTensor& tensor : tensors) {
     const float limit = 2.0f / std::sqrt(static_cast<float>(tensor.shape.back()));
     std::uniform_real_distribution<float> weight(-limit, limit);
     for (std::size_t i = 0; i < tensor.size(); ++i) tensor.values->push_back(weight(random));
   }
+}
+
+/// The commonest network of others: rsl_rl's actor for a velocity task, 45-512-256-128-12.
+PerceptronParameters random_perceptron() {
+  PerceptronParameters parameters;
+  parameters.observation.terms = parse_terms(
+      "terms", "angular_velocity, gravity, command, joint_position, joint_velocity, last_action");
+  parameters.policy_hz = kPolicyHz;
+  parameters.actor = {512, 256, 128};
+  for (int j = 0; j < kNumJoints; ++j) parameters.joint_of[j] = j;
+  fill_at_random(tensors_of("bench", parameters));
+  return parameters;
+}
+
+NetworkParameters random_parameters() {
+  NetworkParameters parameters;
+  fill_at_random(tensors_of(parameters));
   std::fill(parameters.observation_variance.begin(), parameters.observation_variance.end(), 1.0f);
   return parameters;
 }
@@ -123,7 +140,8 @@ Report run_policy_bench(int rounds) {
   // Those of the round. New ones each round, none freed before the end: the time of a cold step
   // depends on which pages of memory it was given.
   std::list<Network> ours;
-  std::list<Bytes> floors;
+  std::list<Perceptron> theirs;
+  std::list<Bytes> floors, their_floors;
   const Bytes short_walk(kWalkBytes), long_walk(kLongWalkBytes);
   NetworkState state;
   NetworkOutput output;
@@ -131,6 +149,11 @@ Report run_policy_bench(int rounds) {
     ours.back().step(observations[k % kObservations], state, output);
   };
   const auto read = [&](int) { floors.back().read(); };
+  NetworkState their_state;
+  const auto their_step = [&](int k) {
+    theirs.back().step(observations[k % kObservations], their_state, output);
+  };
+  const auto their_read = [&](int) { their_floors.back().read(); };
   struct Candidate {
     const char* name;
     const Bytes* walk;  ///< before a step, not timed; none: hot
@@ -139,6 +162,8 @@ Report run_policy_bench(int rounds) {
   };
   const std::vector<Candidate> candidates = {{"hot", nullptr, false, our_step},
                                              {"hot_read_floor", nullptr, false, read},
+                                             {"mlp_hot", nullptr, false, their_step},
+                                             {"mlp_read_floor", nullptr, false, their_read},
                                              {"l2_cold", &short_walk, false, our_step},
                                              {"l2_cold_pretouched", &short_walk, true, our_step},
                                              {"cold", &long_walk, false, our_step},
@@ -162,6 +187,8 @@ Report run_policy_bench(int rounds) {
   for (int round = 0; round < rounds; ++round) {
     ours.emplace_back(parameters);
     floors.emplace_back(ours.back().weight_bytes());
+    theirs.emplace_back(random_perceptron(), JointArray<double>{}, 0.0);
+    their_floors.emplace_back(theirs.back().weight_bytes());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[(i + round) % candidates.size()];
       times_s[candidate.name].push_back(median_time_s(candidate));
@@ -173,6 +200,8 @@ Report run_policy_bench(int rounds) {
       {"processor", processor_name()},
       {"policy", fmt::format("one step of the network, {} bytes of weights as packed; {}",
                              ours.back().weight_bytes(), realtime.description())},
+      {"mlp", fmt::format("a perceptron 45-512-256-128-12, ELU, {} bytes of weights as packed",
+                          theirs.back().weight_bytes())},
       {"read_floor", "as many bytes, AVX2 loads into eight registers and nothing else"},
       {"l2_cold", fmt::format("after a walk through {} MiB on the same core", kWalkBytes >> 20)},
       {"cold", fmt::format("after a walk through {} MiB on the same core", kLongWalkBytes >> 20)}};
@@ -187,6 +216,7 @@ Report run_policy_bench(int rounds) {
     report.ratios.emplace_back(name, quartiles(values));
   };
   ratio("policy_hot_vs_read_floor", "hot", "hot_read_floor");
+  ratio("policy_mlp_vs_read_floor", "mlp_hot", "mlp_read_floor");
   ratio("policy_l2_pretouched_vs_cold", "l2_cold_pretouched", "l2_cold");
   ratio("policy_pretouched_vs_cold", "cold_pretouched", "cold");
   return report;

@@ -142,8 +142,13 @@ std::string grid_tables(const PartResults& results, const std::vector<std::strin
       const auto number = [&](double v) { return fixed_text(v, m.digits); };
       const std::string heading =
           m.pooling == Pooling::kRate ? fmt::format("{} %", m.heading) : m.heading;
-      table.add({p == 0 ? heading : "", policies[p], n > 0 ? number(sum / n) : "-",
-                 number(values[least]), at(least), number(values[greatest]), at(greatest)});
+      const std::string name = p == 0 ? heading : "";
+      if (n == 0) {
+        table.add({name, policies[p], "-", "-", "-", "-", "-"});
+        continue;
+      }
+      table.add({name, policies[p], number(sum / n), number(values[least]), at(least),
+                 number(values[greatest]), at(greatest)});
     }
   }
   std::string text = table.text();

@@ -7,57 +7,38 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "policy/perceptron_file.h"
 #include "policy/policy_file.h"
 #include "policy/text.h"
 #include "rt/base/command_line.h"
 #include "rt/base/errors.h"
 #include "rt/base/program.h"
-#include "sim/robot/robot_model.h"
+#include "tools/policy/policy_import.h"
 
 namespace sandrunner {
 namespace {
 
-struct Import {
-  std::string input, output, name, robot = "raibo";
-  std::vector<std::string> assignments;
-};
-
-/// What is not the robot's is as for the published network of Raibo (compliant-gym; Choi et al.
-/// 2023, "Controller structure").
-void import_policy(const Import& given) {
-  const sim::Robot robot = sim::load_robot(given.robot);
-  PolicyFile file = read_bare_weights(given.input);
-  PolicySpec& spec = file.spec;
-  spec.joint_names = robot.description.joint_names;
-  spec.nominal_position_rad = robot.nominal_rad;
-  spec.torque_limit_nm = *std::ranges::max_element(robot.model.torque_limit_nm);
-  spec.action_scale_rad = 0.3;
-  spec.kp_nmprad = 50.0;
-  spec.kd_nmsprad = 0.5;
-  spec.yaw_command_clip_mps2 = 2.943;  // 0.3 g
-  file.parameters.observation_clip = 10.0f;
-  const std::filesystem::path input = given.input;
-  spec.name = given.name.empty() ? input.stem().string() : given.name;
-  spec.provenance["imported_from"] = input.filename().string();
-  for (const std::string& assignment : given.assignments) set_in_spec(file, assignment);
-  file.golden = make_golden_example(file.parameters);
-  write_policy_file(given.output, file);
-  fmt::print("wrote {}\n", given.output);
-}
-
 void set_envelope(const std::string& input, const std::string& output,
                   const CommandEnvelope& envelope, std::optional<double> centripetal_mps2) {
-  PolicyFile file = read_policy_file(input);
-  file.spec.envelope = envelope;
-  file.spec.has_envelope = true;
-  if (centripetal_mps2) file.spec.yaw_command_clip_mps2 = *centripetal_mps2;
-  write_policy_file(output, file);
+  const auto set_in = [&](PolicySpec& spec) {
+    spec.envelope = envelope;
+    spec.has_envelope = true;
+    if (centripetal_mps2) spec.yaw_command_clip_mps2 = *centripetal_mps2;
+  };
+  if (TensorFile content = read_safetensors(input); is_perceptron(content)) {
+    PerceptronFile file = decode_perceptron(input, std::move(content));
+    set_in(file.spec);
+    write_safetensors(output, encode_perceptron(output, file));
+  } else {
+    PolicyFile file = read_policy_file(input);
+    set_in(file.spec);
+    write_policy_file(output, file);
+  }
   fmt::print("wrote {}\n", output);
 }
 
@@ -77,55 +58,40 @@ std::string encoder_summary(const NetworkParameters& parameters) {
   return encoder_text(parameters.wiring.encoder) + " " + joined(widths, "-");
 }
 
-void print_info(const std::string& path) {
-  const PolicyFile file = read_policy_file(path);
-  const PolicySpec& spec = file.spec;
-  const double deviation = check_golden_example(path, file.parameters, file.golden);
+void print_row(const char* label, const std::string& text) {
+  fmt::print("{:<20}{}\n", label, text);
+}
 
-  const auto row = [](const char* label, const std::string& text) {
-    fmt::print("{:<20}{}\n", label, text);
-  };
-  row("name", printable(spec.name));
-  const Wiring& wiring = file.parameters.wiring;
-  row("network",
-      fmt::format("{}, estimator {}, actor {}; {} parameters", encoder_summary(file.parameters),
-                  joined(kEstimatorSizes, "-"), joined(actor_sizes(wiring.actor_sees), "-"),
-                  number_of_parameters(file.parameters)));
-  row("actor sees", "command, " + actor_inputs_text(wiring.actor_sees) +
-                        (wiring.sees_insight() ? "; no robot can sense what it needs" : ""));
-  row("observation", fmt::format("{} values, normalised, limited to +-{}", kObservationSize,
-                                 file.parameters.observation_clip));
-  row("rates", fmt::format("policy {} Hz, control {} Hz", kPolicyHz, kControlHz));
-  row("joints", printable(joined(spec.joint_names, ", "), 200));
-  row("joint target",
-      fmt::format("nominal + {} rad * action, action {}", spec.action_scale_rad,
-                  spec.action_clip > 0.0 ? fmt::format("limited to +-{}", spec.action_clip)
-                                         : "not limited"));
-  row("gains", fmt::format("Kp {} N m/rad, Kd {} N m s/rad, torque limit {} N m", spec.kp_nmprad,
-                           spec.kd_nmsprad, spec.torque_limit_nm));
-  row("yaw command",
-      fmt::format("limited to {} m/s^2 of centripetal acceleration", spec.yaw_command_clip_mps2));
-
+/// What all policies have: gains, commands, pose.
+void print_spec(const PolicySpec& spec) {
+  print_row("joints", printable(joined(spec.joint_names, ", "), 200));
+  const JointArray<double>& scale = spec.action_scale_rad;
+  const bool one = std::ranges::all_of(scale, [&](double s) { return s == scale[0]; });
+  print_row("joint target",
+            fmt::format("nominal + {} rad * action, action {}",
+                        one ? fmt::format("{}", scale[0]) : "(" + joined(scale, ", ") + ")",
+                        spec.action_clip > 0.0 ? fmt::format("limited to +-{}", spec.action_clip)
+                                               : "not limited"));
+  print_row("gains", fmt::format("Kp {} N m/rad, Kd {} N m s/rad, torque limit {} N m",
+                                 spec.kp_nmprad, spec.kd_nmsprad, spec.torque_limit_nm));
+  print_row("yaw command", fmt::format("limited to {} m/s^2 of centripetal acceleration",
+                                       spec.yaw_command_clip_mps2));
   const CommandEnvelope& e = spec.envelope;
-  row("commands", fmt::format("vx -{:.4g} to {:.4g}, vy +-{:.4g} m/s, yaw rate +-{:.4g} rad/s; "
-                              "changes {} m/s^2, {} rad/s^2{}",
-                              e.backward_mps, e.forward_mps, e.lateral_mps, e.yaw_radps,
-                              e.acceleration_mps2, e.yaw_acceleration_radps2,
-                              spec.has_envelope ? "" : " (the file does not say: narrow)"));
+  print_row("commands",
+            fmt::format("vx -{:.4g} to {:.4g}, vy +-{:.4g} m/s, yaw rate +-{:.4g} rad/s; "
+                        "changes {} m/s^2, {} rad/s^2{}",
+                        e.backward_mps, e.forward_mps, e.lateral_mps, e.yaw_radps,
+                        e.acceleration_mps2, e.yaw_acceleration_radps2,
+                        spec.has_envelope ? "" : " (the file does not say: narrow)"));
 
   fmt::print("\n{:<20}{:>10}{:>12}{:>12}\n", "nominal pose, rad", "HAA", "HFE", "KFE");
   for (int leg = 0; leg < kNumLegs; ++leg) {
     const double* q = &spec.nominal_position_rad[kJointsPerLeg * leg];
     fmt::print("{:<20}{:>10.6f}{:>12.6f}{:>12.6f}\n", kLegNames[leg], q[0], q[1], q[2]);
   }
-  constexpr std::array<const char*, kEstimateSize> kEstimateNames = {
-      "body height, m",    "velocity x, m/s",   "velocity y, m/s",   "velocity z, m/s",
-      "foot height LF, m", "foot height RF, m", "foot height LH, m", "foot height RH, m"};
-  fmt::print("\n{:<20}{:>10}{:>12}\n", "estimate", "mean", "deviation");
-  for (int i = 0; i < kEstimateSize; ++i) {
-    fmt::print("{:<20}{:>10.3f}{:>12.3f}\n", kEstimateNames[i], spec.estimate_mean[i],
-               std::sqrt(spec.estimate_variance[i]));
-  }
+}
+
+void print_provenance(const PolicySpec& spec, double deviation) {
   fmt::print("\n");
   for (const auto& [key, value] : spec.provenance) {
     if (value.find('\n') == std::string::npos) {
@@ -136,8 +102,67 @@ void print_info(const std::string& path) {
     std::istringstream lines(value);
     for (std::string line; std::getline(lines, line);) fmt::print("  {}\n", printable(line, 200));
   }
-  row("golden example", fmt::format("{} steps pass, largest deviation {:.1e} (allowed {:.0e})",
-                                    kGoldenSteps, deviation, kGoldenTolerance));
+  print_row("golden example",
+            fmt::format("{} steps pass, largest deviation {:.1e} (allowed {:.0e})", kGoldenSteps,
+                        deviation, kGoldenTolerance));
+}
+
+void print_perceptron(const std::string& path, const PerceptronFile& file) {
+  const PerceptronParameters& p = file.parameters;
+  const ObservationLayout& layout = p.observation;
+  const auto widths = [](int inputs, std::vector<int> rest) {
+    rest.insert(rest.begin(), inputs);
+    return joined(rest, "-");
+  };
+  std::vector<int> actor = p.actor;
+  actor.push_back(kNumJoints);
+  print_row("name", printable(file.spec.name));
+  print_row("network",
+            fmt::format("perceptron, {}{}, {}",
+                        p.estimator.empty()
+                            ? ""
+                            : "estimator " + widths(layout.inputs(), p.estimator) + ", actor ",
+                        widths(p.actor_inputs(), actor), activation_text(p.activation)));
+  print_row("observation",
+            fmt::format("{} x {} numbers{}, {}", layout.history, layout.numbers(),
+                        layout.clip > 0.0 ? fmt::format(", limited to +-{}", layout.clip) : "",
+                        history_order_text(layout.order)));
+  print_row("  terms", terms_text(layout.terms));
+  print_row("rates", fmt::format("policy {} Hz, control {} Hz", p.policy_hz, kControlHz));
+  JointArray<std::string> names;
+  for (int j = 0; j < kNumJoints; ++j) names[j] = file.spec.joint_names[p.joint_of[j]];
+  print_row("its joints", printable(joined(names, ", "), 200));
+  print_spec(file.spec);
+  print_provenance(file.spec, check_golden_example(path, file));
+}
+
+void print_info(const std::string& path) {
+  if (TensorFile content = read_safetensors(path); is_perceptron(content)) {
+    return print_perceptron(path, decode_perceptron(path, std::move(content)));
+  }
+  const PolicyFile file = read_policy_file(path);
+  const PolicySpec& spec = file.spec;
+  print_row("name", printable(spec.name));
+  const Wiring& wiring = file.parameters.wiring;
+  print_row("network", fmt::format("{}, estimator {}, actor {}; {} parameters",
+                                   encoder_summary(file.parameters), joined(kEstimatorSizes, "-"),
+                                   joined(actor_sizes(wiring.actor_sees), "-"),
+                                   number_of_parameters(file.parameters)));
+  print_row("actor sees", "command, " + actor_inputs_text(wiring.actor_sees) +
+                              (wiring.sees_insight() ? "; no robot can sense what it needs" : ""));
+  print_row("observation", fmt::format("{} values, normalised, limited to +-{}", kObservationSize,
+                                       file.parameters.observation_clip));
+  print_row("rates", fmt::format("policy {} Hz, control {} Hz", kPolicyHz, kControlHz));
+  print_spec(spec);
+  constexpr std::array<const char*, kEstimateSize> kEstimateNames = {
+      "body height, m",    "velocity x, m/s",   "velocity y, m/s",   "velocity z, m/s",
+      "foot height LF, m", "foot height RF, m", "foot height LH, m", "foot height RH, m"};
+  fmt::print("\n{:<20}{:>10}{:>12}\n", "estimate", "mean", "deviation");
+  for (int i = 0; i < kEstimateSize; ++i) {
+    fmt::print("{:<20}{:>10.3f}{:>12.3f}\n", kEstimateNames[i], spec.estimate_mean[i],
+               std::sqrt(spec.estimate_variance[i]));
+  }
+  print_provenance(spec, check_golden_example(path, file.parameters, file.golden));
 }
 
 int run(int argc, char** argv) {
@@ -145,7 +170,7 @@ int run(int argc, char** argv) {
                "sandrunner-policy");
   app.require_subcommand(1);
 
-  Import given;
+  PolicyImport given;
   CLI::App* import_command =
       app.add_subcommand("import", "turn bare weights (safetensors) into a policy file");
   import_command->add_option("IN", given.input, "weights (policy/README.md)")->required();
@@ -159,6 +184,11 @@ int run(int argc, char** argv) {
                    "robot that ships, or a robot file: joints, nominal pose, torque limit")
       ->type_name("NAME")
       ->capture_default_str();
+  import_command
+      ->add_option("--observation", given.observation,
+                   "what a network of others sees and how it answers: a description that ships, "
+                   "or a file (README.md)")
+      ->type_name("NAME");
   import_command
       ->add_option("--set", given.assignments,
                    "other gains, scales or limits, such as action_scale_rad=0.25")
@@ -198,6 +228,7 @@ int run(int argc, char** argv) {
   if (!parse_command_line(app, argc, argv)) return kExitOk;
   if (*import_command) {
     import_policy(given);
+    fmt::print("wrote {}\n", given.output);
   } else if (*envelope_command) {
     set_envelope(input, output, envelope, centripetal_mps2);
   } else if (*info_command) {

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "policy/policy_file.h"
+#include "sim/robot/robot_model.h"
+#include "tools/policy/description.h"
+#include "tools/policy/policy_import.h"
 #include "tools/python/bind.h"
 #include "tools/python/environments.h"
 #include "tools/train/policy_spec.h"
@@ -28,7 +31,7 @@ py::dict spec_dict(const PolicySpec& spec, float observation_clip) {
   all["name"] = spec.name;
   all["joint_names"] = spec.joint_names;
   all["nominal_position_rad"] = spec.nominal_position_rad;
-  all["action_scale_rad"] = spec.action_scale_rad;
+  all["action_scale_rad"] = spec.action_scale_rad[0];
   all["action_clip"] = spec.action_clip;
   all["kp_nmprad"] = spec.kp_nmprad;
   all["kd_nmsprad"] = spec.kd_nmsprad;
@@ -156,6 +159,28 @@ void bind_policy(py::module_& module) {
   module.def("read_policy", &read, py::arg("path"));
   module.def("write_policy", &write, py::kw_only(), py::arg("path"), py::arg("tensors"),
              py::arg("environments"), py::arg("name"), py::arg("provenance"));
+  module.def(
+      "import_policy",
+      [](const std::string& input, const std::string& output, const std::string& name,
+         const std::string& robot, const std::string& observation,
+         const std::vector<std::string>& settings) {
+        import_policy({.input = input,
+                       .output = output,
+                       .name = name,
+                       .robot = robot,
+                       .observation = observation,
+                       .assignments = settings});
+      },
+      py::kw_only(), py::arg("input"), py::arg("output"), py::arg("name"), py::arg("robot"),
+      py::arg("observation"), py::arg("settings"));
+  module.def(
+      "activation_in",
+      [](const std::string& observation, const std::string& robot) {
+        const sim::Robot known = sim::load_robot(robot);
+        return activation_text(
+            read_description(observation, known.description).parameters.activation);
+      },
+      py::arg("observation"), py::arg("robot"));
   py::class_<Policies>(module, "Policies")
       .def(py::init([](const std::string& path) {
              return Policies(shipped_policy_text(path).empty() ? load_policy(path)

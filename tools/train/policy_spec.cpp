@@ -11,7 +11,7 @@ PolicySpec policy_spec(const TaskConfig& config, const sim::Robot& robot, const 
   spec.name = robot.description.name;
   spec.joint_names = robot.description.joint_names;
   spec.nominal_position_rad = robot.nominal_rad;
-  spec.action_scale_rad = config.policy.action_scale_rad;
+  spec.action_scale_rad.fill(config.policy.action_scale_rad);
   spec.action_clip = config.policy.action_clip;
   spec.kp_nmprad = config.policy.kp_nmprad;
   spec.kd_nmsprad = config.policy.kd_nmsprad;

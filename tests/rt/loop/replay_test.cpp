@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "rt/loop/tick_fields.h"
+#include "tests/policy/random_perceptron.h"
 #include "tests/rt/support.h"
 #include "tests/support/unless_stalled.h"
 
@@ -127,31 +128,53 @@ TEST_F(ReplayTest, ContinuesFromTheStateOfAnotherReplay) {
   }
 }
 
-// On dry sand; the bytes of its state hold what its layers have read.
-TEST(TcnTest, WalksAndReplaysFromTheMiddle) {
-  const PolicyRunner policy(load_policy(SANDRUNNER_TCN));
+/// A walk on dry sand whose second half replays from the state after the first; `state_bytes` of
+/// that state.
+RunResult replay_from_the_middle(const PolicyRunner& policy, std::size_t& state_bytes) {
   const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   std::vector<TickRecord> ticks;
-  const RunResult result = simulate({.config = config,
-                                     .policy = policy,
-                                     .plan = {.walk_s = 4.0, .start_walking = true},
-                                     .at_tick = [&](const auto& tick) { ticks.push_back(tick); }});
-  EXPECT_EQ(result.fall_reason, "");
-  EXPECT_TRUE(result.survived);
-  EXPECT_NEAR(result.figures.motion.value().mean_velocity_mps[0], 1.0, 0.2);
+  RunResult result = simulate({.config = config,
+                               .policy = policy,
+                               .plan = {.walk_s = 4.0, .start_walking = true},
+                               .at_tick = [&](const auto& tick) { ticks.push_back(tick); }});
   Replay first(config.controller, Mode::kWalk, policy);
-  const auto middle = ticks.begin() + 8000;
-  for (auto tick = ticks.begin(); tick < middle; ++tick) ASSERT_FALSE(first.check(*tick));
+  const auto middle = ticks.begin() + std::ssize(ticks) / 2;
+  const auto expect_same = [](Replay& replay, auto tick, auto end) {
+    for (; tick < end; ++tick) {
+      const auto difference = replay.check(*tick);
+      ASSERT_FALSE(difference) << difference->tick << ": " << difference->what;
+    }
+  };
+  expect_same(first, ticks.begin(), middle);
   const std::string bytes = replay_state_bytes(first.state());
   Replay second(config.controller, Mode::kWalk, policy);
   second.restore(read_replay_state(bytes, "state"));
-  for (auto tick = middle; tick < ticks.end(); ++tick) {
-    const auto difference = second.check(*tick);
-    ASSERT_FALSE(difference) << difference->tick << ": " << difference->what;
-  }
-  EXPECT_EQ(bytes.size(), 16 + sizeof(ReplayState));
-  Replay lstm(config.controller, Mode::kWalk, PolicyRunner(load_shipped_policy()));
-  EXPECT_EQ(replay_state_bytes(lstm.state()).size(), 16 + sizeof(ReplayState) - sizeof(TcnPast));
+  expect_same(second, middle, ticks.end());
+  state_bytes = bytes.size();
+  return result;
+}
+
+constexpr std::size_t kBytesOfAnLstm =
+    16 + sizeof(ReplayState) - sizeof(TcnPast) - sizeof(PerceptronPast);
+
+TEST(OtherNetworkTest, TcnWalksAndReplaysFromWhatItsLayersHaveRead) {
+  std::size_t bytes = 0;
+  const RunResult result = replay_from_the_middle(PolicyRunner(load_policy(SANDRUNNER_TCN)), bytes);
+  EXPECT_EQ(result.fall_reason, "");
+  EXPECT_NEAR(result.figures.motion.value().mean_velocity_mps[0], 1.0, 0.2);
+  EXPECT_EQ(bytes, kBytesOfAnLstm + sizeof(TcnPast));
+}
+
+TEST(OtherNetworkTest, PerceptronReplaysFromTheObservationsThatItHasSeen) {
+  std::size_t bytes = 0;
+  replay_from_the_middle(PolicyRunner(policy_of_others()), bytes);
+  EXPECT_EQ(bytes, kBytesOfAnLstm + sizeof(PerceptronPast));
+}
+
+TEST(OtherNetworkTest, LstmKeepsTheStateOfOldRecordings) {
+  const PolicyRunner policy(load_shipped_policy());
+  const Replay lstm(config_of("dry-sand", {}, policy.spec()).controller, Mode::kWalk, policy);
+  EXPECT_EQ(replay_state_bytes(lstm.state()).size(), kBytesOfAnLstm);
 }
 
 TEST_F(ReplayTest, GateCounterIsComparedAndNamed) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "rt/operator/remote_operator.h"
+#include "tests/policy/random_perceptron.h"
 #include "tests/rt/realtime/watched_section.h"
 #include "tests/rt/support.h"
 #include "tests/support/child_process.h"
@@ -116,6 +117,10 @@ TEST(LoopProofTest, NoThreadAllocatesLocksCallsTheKernelOrFaults) {
 
 TEST(LoopProofTest, NoThreadDoesWithATcnEither) {
   expect_clean_run(PolicyRunner(load_policy(SANDRUNNER_TCN)));
+}
+
+TEST(LoopProofTest, NoThreadDoesWithANetworkOfOthersEither) {
+  expect_clean_run(PolicyRunner(policy_of_others()));
 }
 
 TEST(LoopProofTest, NoThreadOfARobotThatIsDrivenOverDdsDoesMoreThanWithTheSimulator) {

@@ -267,7 +267,7 @@ class InterruptTest : public CommandLineTest {
     PolicyFile file = random_policy_file();
     file.spec.nominal_position_rad = {0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672,
                                       0.0, 0.559836, -1.119672, 0.0, 0.559836, -1.119672};
-    file.spec.action_scale_rad = 1e-6;
+    file.spec.action_scale_rad.fill(1e-6);
     file.spec.kp_nmprad = 200.0;
     file.spec.kd_nmsprad = 3.0;
     write_policy_file(folder_.path("calm"), file);

@@ -123,7 +123,7 @@ TEST(RunTest, FallIsReportedWithReasonAndTime) {
   limp.kp_nmprad = 0.0;
   folding.kp_nmprad = 15.0;
   folding.kd_nmsprad = 4.0;
-  folding.action_scale_rad = 0.01;
+  folding.action_scale_rad.fill(0.01);
   for (int leg = 0; leg < kNumLegs; ++leg) {
     folding.nominal_position_rad[3 * leg + 1] = 2.5;
     folding.nominal_position_rad[3 * leg + 2] = -2.4;

@@ -20,7 +20,7 @@ inline Policy standing_policy() {
     file.spec.nominal_position_rad[kJointsPerLeg * leg + 1] = 0.559836;
     file.spec.nominal_position_rad[kJointsPerLeg * leg + 2] = -1.119672;
   }
-  file.spec.action_scale_rad = 0.02;
+  file.spec.action_scale_rad.fill(0.02);
   file.spec.kp_nmprad = 200.0;
   file.spec.kd_nmsprad = 4.0;
   return {file.spec, Network(file.parameters)};

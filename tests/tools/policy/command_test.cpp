@@ -32,7 +32,7 @@ TEST_F(PolicyCommandTest, ImportsBareWeightsWithTheConventionsOfRaibo) {
   EXPECT_EQ(file.spec.name, "weights");
   EXPECT_EQ(file.spec.nominal_position_rad[10], 0.559836);
   EXPECT_EQ(file.spec.nominal_position_rad[11], -1.119672);
-  EXPECT_EQ(file.spec.action_scale_rad, 0.3);
+  EXPECT_EQ(file.spec.action_scale_rad[0], 0.3);
   EXPECT_EQ(file.spec.kp_nmprad, 50.0);
   EXPECT_EQ(file.spec.kd_nmsprad, 0.5);
   EXPECT_EQ(file.spec.torque_limit_nm, 63.45);

@@ -29,27 +29,36 @@ def gates(matrix: np.ndarray, order: tuple[int, ...]) -> np.ndarray:
 TO_ONNX, FROM_ONNX = (0, 3, 1, 2), (0, 2, 3, 1)
 
 
-def _attributes(node: Any) -> dict[str, Any]:
+def attributes_of(node: Any) -> dict[str, Any]:
     from onnx import helper
 
     return {a.name: helper.get_attribute_value(a) for a in node.attribute}
 
 
-def _named(node: Any) -> str:
+def named(node: Any) -> str:
     return f"node '{node.name or node.output[0]}' ({node.op_type})"
 
 
-class _Graph:
-    def __init__(self, graph: Any) -> None:
+class Graph:
+    def __init__(self, graph: Any, producer: str) -> None:
         from onnx import numpy_helper
 
+        self.producer = producer
         self.nodes = list(graph.node)
         self.maker = {output: node for node in self.nodes for output in node.output if output}
         self.inputs = {value.name for value in graph.input}
+        self.outputs = [value.name for value in graph.output]
         self.constants = {tensor.name: numpy_helper.to_array(tensor) for tensor in graph.initializer}
         for node in self.nodes:
-            if node.op_type == "Constant" and (value := _attributes(node).get("value")) is not None:
+            if node.op_type == "Constant" and (value := attributes_of(node).get("value")) is not None:
                 self.constants[node.output[0]] = numpy_helper.to_array(value)
+
+        self.inputs_in_order = [value.name for value in graph.input if value.name not in self.constants]
+
+    def dense(self, node: Any) -> "Dense":
+        if node.input[1] not in self.constants:
+            raise ValueError(f"{named(node)}: found no weights, expected a constant matrix")
+        return Dense(self, node)
 
     def source(self, name: str) -> str:
         """The value that `name` is but for its shape."""
@@ -77,17 +86,17 @@ class _Graph:
         return value
 
 
-class _Dense:
+class Dense:
     """A Gemm, or a MatMul with the Add behind it: weight (outputs, inputs), bias (outputs), the values before and
     behind it."""
 
-    def __init__(self, graph: _Graph, node: Any) -> None:
+    def __init__(self, graph: Graph, node: Any) -> None:
         weight = graph.constants[node.input[1]]
-        attributes = {"alpha": 1.0, "beta": 1.0, "transA": 0, "transB": 0} | _attributes(node)
+        attributes = {"alpha": 1.0, "beta": 1.0, "transA": 0, "transB": 0} | attributes_of(node)
         self.node, self.input, self.output, bias = node, node.input[0], node.output[0], ""
         if node.op_type == "Gemm":
             if attributes["alpha"] != 1.0 or attributes["beta"] != 1.0 or attributes["transA"]:
-                raise ValueError(f"{_named(node)}: found alpha {attributes['alpha']:g}, beta {attributes['beta']:g}, "
+                raise ValueError(f"{named(node)}: found alpha {attributes['alpha']:g}, beta {attributes['beta']:g}, "
                                  f"transA {attributes['transA']}, expected 1, 1, 0")
             bias = node.input[2] if len(node.input) > 2 else ""
         else:
@@ -99,15 +108,15 @@ class _Dense:
         self.bias = graph.constants.get(bias, np.zeros(self.weight.shape[0], np.float32)).reshape(-1)
 
 
-def _dense_layers(graph: _Graph) -> dict[str, _Dense]:
-    layers: dict[str, _Dense] = {}
+def _dense_layers(graph: Graph) -> dict[str, Dense]:
+    layers: dict[str, Dense] = {}
     for node in graph.nodes:
         if node.op_type not in ("Gemm", "MatMul") or node.input[1] not in graph.constants:
             continue
-        dense = _Dense(graph, node)
+        dense = Dense(graph, node)
         layer = next((name for name, shape in DENSE.items() if shape == dense.weight.shape), None)
         if layer is None:
-            raise ValueError(f"{_named(node)}: found weights of shape {list(dense.weight.shape)}, expected those of a "
+            raise ValueError(f"{named(node)}: found weights of shape {list(dense.weight.shape)}, expected those of a "
                              "policy file")
         if layer in layers:
             raise ValueError(f"{layer}: found two layers of shape {list(DENSE[layer])}, expected one")
@@ -118,26 +127,26 @@ def _dense_layers(graph: _Graph) -> dict[str, _Dense]:
     return layers
 
 
-def _require_activation(graph: _Graph, before: _Dense, behind: _Dense) -> None:
+def _require_activation(graph: Graph, before: Dense, behind: Dense) -> None:
     """A leaky ReLU of 0.01 and nothing else lies between two layers."""
     if graph.hangs(behind.input):
         return
     node = graph.maker.get(graph.source(behind.input))
     if node is None or node.op_type != "LeakyRelu":
-        found = "no activation" if node is before.node or node is None else _named(node)
-        raise ValueError(f"activation: found {found} before {_named(behind.node)}, expected LeakyRelu of 0.01")
-    slope = _attributes(node).get("alpha", 0.01)
+        found = "no activation" if node is before.node or node is None else named(node)
+        raise ValueError(f"activation: found {found} before {named(behind.node)}, expected LeakyRelu of 0.01")
+    slope = attributes_of(node).get("alpha", 0.01)
     if abs(slope - 0.01) > 1e-6:
-        raise ValueError(f"activation: found LeakyRelu of {slope:g} at {_named(node)}, expected LeakyRelu of 0.01")
+        raise ValueError(f"activation: found LeakyRelu of {slope:g} at {named(node)}, expected LeakyRelu of 0.01")
     if graph.source(node.input[0]) != before.output:
-        raise ValueError(f"{_named(node)}: found another input than {_named(before.node)}")
+        raise ValueError(f"{named(node)}: found another input than {named(before.node)}")
 
 
-def _lstm(graph: _Graph) -> Any:
+def _lstm(graph: Graph) -> Any:
     nodes = [node for node in graph.nodes if node.op_type in ("LSTM", "GRU", "RNN")]
     if len(nodes) != 1 or nodes[0].op_type != "LSTM":
         raise ValueError(f"encoder: found {sum(n.op_type == 'LSTM' for n in nodes)} LSTM nodes, expected one")
-    node, attributes = nodes[0], _attributes(nodes[0])
+    node, attributes = nodes[0], attributes_of(nodes[0])
     usual = {"direction": b"forward", "activations": [b"Sigmoid", b"Tanh", b"Tanh"], "input_forget": 0, "clip": 0.0}
     for name, value in usual.items():
         if attributes.get(name, value) != value:
@@ -148,7 +157,7 @@ def _lstm(graph: _Graph) -> Any:
     return node
 
 
-def _lstm_weights(graph: _Graph, node: Any) -> dict[str, np.ndarray]:
+def _lstm_weights(graph: Graph, node: Any) -> dict[str, np.ndarray]:
     w = graph.constant(node.input[1], "encoder", (1, 4 * HIDDEN, INPUTS))[0]
     r = graph.constant(node.input[2], "encoder", (1, 4 * HIDDEN, HIDDEN))[0]
     bias = np.zeros(8 * HIDDEN, np.float32)  # left out, by an empty name too
@@ -159,47 +168,45 @@ def _lstm_weights(graph: _Graph, node: Any) -> dict[str, np.ndarray]:
     return {f"encoder.{name}": gates(part, FROM_ONNX) for name, part in parts.items()}
 
 
-def _require_wiring(graph: _Graph, lstm: Any, layers: dict[str, _Dense], is_ours: bool) -> None:
+def _require_wiring(graph: Graph, lstm: Any, layers: dict[str, Dense], is_ours: bool) -> None:
     encodings = {graph.source(name) for name in lstm.output if name}
     first, last = layers["estimator.0"], layers["actor.2"]
     if graph.source(first.input) not in encodings and not graph.hangs(first.input):
-        raise ValueError(f"{_named(first.node)}: found another input than the LSTM's output")
+        raise ValueError(f"{named(first.node)}: found another input than the LSTM's output")
     for part in ("estimator", "actor"):
         for number in (1, 2):
             _require_activation(graph, layers[f"{part}.{number - 1}"], layers[f"{part}.{number}"])
     behind = graph.users(last.output)
     if behind and not is_ours:
-        raise ValueError(f"{_named(behind[0])}: found behind the last layer, expected none")
+        raise ValueError(f"{named(behind[0])}: found behind the last layer, expected none")
     actor = layers["actor.0"]
     if graph.hangs(actor.input):
         return
     joined = graph.maker.get(graph.source(actor.input))
     parts = [graph.source(name) for name in joined.input] if joined is not None and joined.op_type == "Concat" else []
     if len(parts) != 3 or parts[1] not in encodings or parts[2] != layers["estimator.2"].output:
-        raise ValueError(f"{_named(actor.node)}: found another input than command, encoding, estimate, in this order")
+        raise ValueError(f"{named(actor.node)}: found another input than command, encoding, estimate, in this order")
     _require_split(graph, parts[0], graph.source(lstm.input[0]), is_ours)
 
 
-def _require_split(graph: _Graph, command: str, rest: str, is_ours: bool) -> None:
+def _require_split(graph: Graph, command: str, rest: str, is_ours: bool) -> None:
     """The observation's first three values are the command, the others go into the LSTM, as they are."""
     node = graph.maker.get(command)
     if node is None and graph.maker.get(rest) is None and command != rest:
         return  # two inputs
     if node is not None and node.op_type == "Split" and node is graph.maker.get(rest):
-        sizes = graph.constants.get(node.input[1]) if len(node.input) > 1 else _attributes(node).get("split")
+        sizes = graph.constants.get(node.input[1]) if len(node.input) > 1 else attributes_of(node).get("split")
         whole = graph.source(node.input[0])
         in_order = list(node.output[:2]) == [command, rest] and sizes is not None and list(sizes) == [COMMAND, INPUTS]
         if in_order and (is_ours or graph.maker.get(whole) is None):
             return
         node = graph.maker.get(whole, node) if in_order else node
     where = node or graph.maker.get(rest)
-    raise ValueError(f"{_named(where)}: found before the LSTM and the actor, expected one Split of the observation into "
+    raise ValueError(f"{named(where)}: found before the LSTM and the actor, expected one Split of the observation into "
                      f"{COMMAND} and {INPUTS}, or two inputs")
 
 
-def read_onnx(name: str) -> dict[str, np.ndarray]:
-    """An LSTM and six dense layers, wired as in a policy file. Of a file of `export_onnx`, the scales come along.
-    Raises ValueError, one line, for any other network."""
+def load_graph(name: str) -> Graph:
     try:
         import onnx
     except ImportError:
@@ -208,8 +215,14 @@ def read_onnx(name: str) -> dict[str, np.ndarray]:
         model = onnx.load(name)
     except Exception as error:  # of protobuf, whose classes differ from version to version
         raise ValueError(f"{name}: found no ONNX file: {str(error).splitlines()[0] if str(error) else error!r}") from None
-    graph = _Graph(model.graph)
-    lstm, is_ours = _lstm(graph), model.producer_name == "sandrunner"
+    return Graph(model.graph, model.producer_name)
+
+
+def read_onnx(name: str) -> dict[str, np.ndarray]:
+    """An LSTM and six dense layers, wired as in a policy file. Of a file of `export_onnx`, the scales come along.
+    Raises ValueError, one line, for any other network."""
+    graph = load_graph(name)
+    lstm, is_ours = _lstm(graph), graph.producer == "sandrunner"
     tensors = _lstm_weights(graph, lstm)
     layers = _dense_layers(graph)
     _require_wiring(graph, lstm, layers, is_ours)

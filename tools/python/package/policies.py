@@ -2,6 +2,7 @@
 """Policy files (policy/README.md): written from a network that was trained here, read, and run."""
 
 import os
+import tempfile
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -9,7 +10,8 @@ import numpy as np
 
 from . import _check, _native
 from .vector_env import VectorEnv
-from .weights import NETWORK, SCALES, torch_names
+from .foreign import read_perceptron
+from .weights import NETWORK, SCALES, read_weights, torch_names, write_safetensors
 
 class PolicyFile(NamedTuple):
     """What `read_policy` returns."""
@@ -69,6 +71,40 @@ def write_policy(
     _native.write_policy(
         path=_check.path("path", path), tensors=tensors, environments=env._native, name=str(name), provenance=texts
     )
+
+
+def import_policy(
+    weights: str | os.PathLike[str] | Mapping[str, Any],
+    path: str | os.PathLike[str],
+    robot: str = "raibo",
+    observation: str = "",
+    name: str = "",
+    settings: Mapping[str, Any] | None = None,
+) -> None:
+    """Writes the policy file of a network that was trained elsewhere.
+
+    weights: a state_dict, or the file of one (npz, safetensors), or ONNX. observation: a description of what the
+    network sees and how it answers, one that ships ("isaac_lab_go2", ...) or a file (tools/policy/README.md); empty: it
+    is a network of policy/README.md. settings: other gains, scales or limits by the keys of policy/README.md."""
+    robot, observation = str(robot), str(observation)
+    if isinstance(weights, Mapping):
+        source = {key: _plain(key, value) for key, value in weights.items()}
+    else:
+        source = _check.path("weights", weights)
+    if observation:
+        tensors, metadata = read_perceptron(source, _native.activation_in(observation, robot))
+    elif isinstance(source, str):
+        tensors, metadata = read_weights(source), {"origin": os.path.basename(source)}
+    else:
+        raise ValueError("weights: found a state_dict without a description, expected observation=..., or write_policy")
+    output = _check.path("path", path)
+    with tempfile.TemporaryDirectory() as folder:
+        bare = os.path.join(folder, metadata["origin"] + ".safetensors")
+        write_safetensors(bare, tensors, metadata)
+        _native.import_policy(
+            input=bare, output=output, name=name or os.path.splitext(os.path.basename(output))[0], robot=robot,
+            observation=observation, settings=[f"{key}={value}" for key, value in (settings or {}).items()],
+        )
 
 
 class Policy:

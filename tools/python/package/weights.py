@@ -59,12 +59,16 @@ def _safetensors(name: str) -> dict[str, np.ndarray]:
         raise ValueError(f"{name}: found no safetensors of F32 or F64: {error or type(error).__name__}") from None
 
 
+def read_tensors(name: str) -> dict[str, np.ndarray]:
+    """All tensors of an npz or of a safetensors file."""
+    return _safetensors(name) if name.endswith(".safetensors") else _npz(name)
+
+
 def read_weights(path: str | os.PathLike[str], theirs: Mapping[str, str] | None = None) -> dict[str, np.ndarray]:
     """All tensors of the network and its scales that a file has: an npz, or ONNX or safetensors by the name's end.
     They have PyTorch's names, those of a policy file, or what `theirs` calls the latter. Other tensors are left out."""
     name = os.fspath(path)
-    read = {".onnx": read_onnx, ".safetensors": _safetensors}.get(os.path.splitext(name)[1], _npz)
-    available = read(name)
+    available = read_onnx(name) if name.endswith(".onnx") else read_tensors(name)
     names = {ours: torch for torch, ours in torch_names().items()} if "actor.4.weight" in available else {}
     # An LSTM's names do not depend on those of the layers behind it.
     names |= {f"encoder.{part}": f"encoder.{part}_l0" for part in _LSTM if f"encoder.{part}_l0" in available}

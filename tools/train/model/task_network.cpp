@@ -54,7 +54,9 @@ void require_scales(const PolicySpec& spec, const ObservationScales& network,
     check(fmt::format("mean of observation {}", i), network.mean[k], task_scales.mean[i]);
   }
   check("clip of observations", network.clip, task_scales.clip);
-  check("action scale", spec.action_scale_rad, task.action_scale_rad);
+  for (const double scale : spec.action_scale_rad) {
+    check("action scale", scale, task.action_scale_rad);
+  }
   check("action clip", spec.action_clip, task.action_clip);
 }
 
