@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "rt/base/errors.h"
+#include "rt/base/input_file.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
@@ -37,6 +38,8 @@
 #include "rt/run/settings_reference.h"
 #include "rt/run/signals.h"
 #include "sim/robot/describe.h"
+#include "sim/robot/new_robot.h"
+#include "sim/robot/robot_model.h"
 
 namespace sandrunner {
 namespace {
@@ -158,6 +161,25 @@ int run(const Options& options) {
   return result.survived ? kExitOk : kExitFailed;
 }
 
+/// Writes a robot file, and lets the robot stand up and lie down.
+int begin_robot(const Options& options) {
+  const std::string &urdf = options.new_robot_urdf, &file = options.robot_path;
+  if (std::filesystem::exists(file)) {
+    throw InputError(fmt::format("new-robot: '{}' exists, expected a new file", file));
+  }
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  const std::string path =
+      std::filesystem::proximate(urdf, folder.empty() ? "." : folder).generic_string();
+  const sim::NewRobot robot = sim::new_robot(read_input_file(urdf, "a URDF"), urdf, path);
+  sim::parse_robot(robot.file, file, read_input_file(urdf, "a URDF"), urdf);
+  write_file(file, robot.file);
+  fmt::print("wrote {}\nguesses, for a person to check (sim/robot/README.md):\n", file);
+  for (const std::string& guess : robot.guesses) fmt::print("  {}\n", guess);
+  fmt::print("next: sandrunner --robot {} --describe\n\n", file);
+  std::fflush(stdout);
+  return run(options);
+}
+
 int run(int argc, char** argv) {
   const std::optional<Options> options = parse_options(argc, argv);
   if (!options) return kExitOk;
@@ -173,6 +195,7 @@ int run(int argc, char** argv) {
     print_rt_report();
     return kExitOk;
   }
+  if (!options->new_robot_urdf.empty()) return begin_robot(*options);
   return options->check.asked ? check(*options) : run(*options);
 }
 

@@ -57,6 +57,21 @@ CLI::App* add_check(CLI::App& app, Options& o) {
   return check;
 }
 
+/// The subcommand `new-robot`.
+CLI::App* add_new_robot(CLI::App& app, Options& o) {
+  CLI::App* const command = app.add_subcommand(
+      "new-robot",
+      "write a first robot file for a URDF, say what only a person can know, and let the robot "
+      "stand on hard ground (sim/robot/README.md)");
+  command->add_option("URDF", o.new_robot_urdf, "URDF of a robot with four legs of three joints")
+      ->required()
+      ->type_name("");
+  command->add_option("FILE", o.robot_path, "robot file to write; it must not exist yet")
+      ->required()
+      ->type_name("");
+  return command;
+}
+
 // Options whose words are not the values that they stand for.
 struct Words {
   std::string start = "stand", clock = "lockstep", seed = "0";
@@ -190,6 +205,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   const CLI::App* report = app.add_subcommand(
       "rt-report", "report what this machine allows a real-time process, with a 10 s sample");
   CLI::App* const check = add_check(app, o);
+  const CLI::App* const new_robot = add_new_robot(app, o);
   app.footer(
       "Examples:\n"
       "  sandrunner --command 2,0,0 --out results\n"
@@ -197,9 +213,15 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "  sandrunner --set terrain.sigma_flat_npm3=0.7e6 --record results\n"
       "  sandrunner --clock realtime --command dds\n"
       "  sandrunner --view --command live --terrain grass\n"
-      "  sandrunner check robot.toml");
+      "  sandrunner check robot.toml\n"
+      "  sandrunner new-robot a1/a1.urdf a1/a1.toml");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = t.start == "walk";
+  if (new_robot->parsed()) {
+    o.policy_path = kNoPolicy;
+    o.terrain = "rigid";
+    return o;
+  }
   if (check->parsed()) {
     if (app.count("--hardware") > 0 || o.arm || o.dry_run) {
       throw InputError("check: reads its own FILE, expected no --hardware, --arm or --dry-run");

@@ -35,6 +35,8 @@ struct Options {
     bool plan = false, move = false, nudge = false;
     std::string zero;  ///< pose in which the robot is held: "lying", "nominal"; empty: none
   } check;
+  /// The subcommand `new-robot`; empty: not asked for. The file to write is `robot_path`.
+  std::string new_robot_urdf;
   std::uint64_t seed = 0;
   std::vector<std::string> config_files;
   std::vector<std::string> assignments;  ///< of --set
