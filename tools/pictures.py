@@ -162,8 +162,8 @@ def run_picture(run, title, path):
         if t[end] - t[begin] > 0.05 * (t[-1] - t[0]):  # room for a word
             axes[0, 0].annotate(f" {modes[begin]}", (t[begin], 1.0), xycoords=("data", "axes fraction"), va="top", color=FAINT)
     axes[0, 1].set_title(detail)
-    for ax in axes[-1]:
-        ax.set_xlabel("time, s")
+    axes[-1, 0].set_xlabel("time, s (grey: not in Walk; red: Fault)")
+    axes[-1, 1].set_xlabel("time, s")
     return save(figure, path)
 
 
@@ -304,6 +304,8 @@ def draw_straight(part, folder):
                 for (label, column), style in zip(lines.items(), ("o-", "o:")):
                     ax.plot(part[x][rows], part[column][rows], style, color=color, markersize=4,
                             label=", ".join(filter(None, [policy, label])))
+            if not np.isfinite(part[[*lines.values()][0]][part["ground"] == ground]).any():
+                ax.text(0.5, 0.5, "no run finished", transform=ax.transAxes, ha="center", color=FAINT)
             if what == "speed":
                 ax.axline((0.0, 0.0), slope=1.0, linestyle="--", color=FAINT, label="command")
             ax.set(title=ground, ylabel="speed, m/s" if what == "speed" else "cost of transport")

@@ -91,6 +91,8 @@ constexpr Elsewhere kElsewhere[] = {
     {"--num-envs", "--threads", "the number of robots is a setting: --set run.envs=N"},
     {"--num_envs", "--threads", "the number of robots is a setting: --set run.envs=N"},
     {"--device", "--threads", "training runs on the processor: --threads N"},
+    {"--max_iterations", "--threads", "the length is a setting: --set run.transitions=N"},
+    {"--max-iterations", "--threads", "the length is a setting: --set run.transitions=N"},
     {"--gui", "--view", "--view shows the run in a browser"},
     {"--headless", "--view", "without --view nothing is shown"},
 };
@@ -122,6 +124,12 @@ constexpr Elsewhere kElsewhere[] = {
                                  fmt::join(owners, " or ")));
   }
   collect_names(app, names);
+  for (const char* program : {"bench", "ctl", "evaluate", "policy", "replay", "study", "train"}) {
+    if (app.get_name() == "sandrunner" && word == program) {
+      throw InputError(fmt::format("command line: unexpected '{0}', did you mean 'sandrunner-{0}'?",
+                                   word));
+    }
+  }
   throw InputError(fmt::format("command line: unexpected '{}'{}", word, did_you_mean(name, names)));
 }
 
@@ -138,6 +146,8 @@ std::string in_our_words(const CLI::App& app, const std::string& message) {
                        fmt::join(names, ", "));
   }
   const std::pair<std::regex, const char*> kWords[] = {
+      {std::regex("Could not convert: (\\S+) = ([-+]?[0-9]*[.eE][-+.eE0-9]*)"),
+       "$1: found '$2', expected a whole number"},
       {std::regex("Could not convert: (\\S+) = (.*)"), "$1: found '$2', expected a number"},
       {std::regex("(\\S+): At Most 1 required but received (\\d+)"),
        "$1: found $2 of them, expected one"},

@@ -2,12 +2,15 @@
 #include "rt/dds/participant.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <net/if.h>
 
 #include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "rt/base/errors.h"
 #include "rt/base/standard_error.h"
@@ -89,6 +92,15 @@ Log& dds_log() {
   return log;
 }
 
+/// Names of this computer's network interfaces.
+std::vector<std::string> interfaces() {
+  std::vector<std::string> names;
+  struct if_nameindex* const all = if_nameindex();
+  for (auto* one = all; one && one->if_index != 0; ++one) names.emplace_back(one->if_name);
+  if (all) if_freenameindex(all);
+  return names;
+}
+
 void log_sink(void*, const dds_log_data_t* data) { dds_log().say(data->message); }
 
 }  // namespace
@@ -126,6 +138,10 @@ DdsParticipant::DdsParticipant(const DdsNetwork& network, const std::string& ide
           "of them (ROS 2 nodes: `ros2 daemon stop`, fewer processes), or choose another domain: "
           "dds.domain",
           where, kMostParticipants));
+    }
+    if (reason.find("does not match an available interface") != std::string::npos) {
+      throw InputError(fmt::format("DDS: {}: found no such interface, expected one of {}", where,
+                                   fmt::join(interfaces(), ", ")));
     }
     check_dds(result, reason.empty() ? where : fmt::format("{} ({})", where, reason));
   }

@@ -162,6 +162,10 @@ void require_consistent(const CLI::App& app, const Options& o, const Words& t) {
         "--hardware: a robot lies first and has its own time: expected neither --start walk nor "
         "--clock lockstep");
   }
+  for (const char* option : {"--terrain", "--seed"}) {
+    if (!hardware || app.count(option) == 0) continue;
+    throw InputError(fmt::format("{}: is the simulator's, expected it without --hardware", option));
+  }
   if (o.live_page && !o.view) throw InputError("--command live: expected --view with it");
   if (o.live && !o.live_page && o.clock == RunClock::kLockstep) {
     throw InputError("--command dds: operators need --clock realtime");

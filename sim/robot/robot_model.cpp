@@ -11,6 +11,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
+#include "rt/base/likely_meant.h"
 #include "sim/robot/clearance.h"
 #include "sim/robot/embedded.h"
 #include "sim/robot/inertia.h"
@@ -259,7 +260,11 @@ Robot load_robot(const std::string& map_path) {
     return parse_robot(std::string(map), map_path + ".toml",
                        std::string(embedded_robot_file(map_path + ".urdf")), map_path + ".urdf");
   }
-  const std::string map_text = read_input_file(map_path, "raibo, go2 or a robot file");
+  const bool is_name = map_path.find_first_of("./") == std::string::npos;
+  const std::string meant = is_name ? likely_meant(map_path, {"raibo", "go2"}) : "";
+  const std::string map_text =
+      read_input_file(map_path, meant.empty() ? "raibo, go2 or a robot file"
+                                              : fmt::format("a robot file, or '{}'", meant));
   const std::size_t first = map_text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && map_text[first] == '<') {
     throw InputError(

@@ -78,7 +78,9 @@ sim::Robot recorded_robot(const RecordingInfo& info, const std::string& file) {
   const auto require = [&](const std::string& data, const char* attachment) {
     if (!data.empty()) return;
     throw InputError(
-        fmt::format("{}: has no attachment '{}', so its robot is not known", file, attachment));
+        fmt::format("{}: has no attachment '{}', so its robot is not known: the file is cut, or no "
+                    "recording of sandrunner",
+                    file, attachment));
   };
   require(info.robot_map, kRobotMapAttachment);
   require(info.robot.urdf, kRobotAttachment);

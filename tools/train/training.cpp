@@ -281,7 +281,10 @@ std::string Training::verdict() const {
   const bool walks = figures_.alive >= kWalksAlive && figures_.error <= kWalksError;
   return fmt::format(
       "{:.0f} % of the battery's runs ended without a fall, velocity error {:.2f}: {}",
-      100.0 * figures_.alive, figures_.error, walks ? "it walks" : "not a gait yet");
+      100.0 * figures_.alive, figures_.error,
+      walks ? "it walks"
+            : fmt::format("not a gait yet (a gait has {:.0f} % and at most {:.2f})",
+                          100.0 * kWalksAlive, kWalksError));
 }
 
 // Measures the averaged policy; keeps it if it is the best so far.

@@ -50,6 +50,27 @@ TEST_F(BadInputTest, OptionsAreRefusedBeforeAnyWork) {
                  "unexpected '0': several numbers of one option need commas, as in 1,0,0");
 }
 
+TEST_F(BadInputTest, AGuessIsLedToWhatIsThere) {
+  write("robot.toml", std::string(embedded_robot_file("go2.toml")));
+  write("file", "");
+  expect_refused("--config robot.toml", "robot.toml: found a robot file (its key 'urdf')");
+  expect_refused("--robot go1", "expected a robot file, or 'go2'");
+  expect_refused("replay", "unexpected 'replay', did you mean 'sandrunner-replay'?");
+  ProgramTest::expect_refused("--record file", "--record: 'file' is a file, expected a folder");
+  expect_refused("--hardware robot.toml --dry-run --terrain grass",
+                 "--terrain: is the simulator's, expected it without --hardware");
+  expect_refused("--hardware robot.toml --dry-run --seed 2", "--seed: is the simulator's");
+}
+
+TEST_F(BadInputTest, ANewRobotIsWrittenOnceAndStands) {
+  write("my.urdf", std::string(embedded_robot_file("go2.urdf")));
+  ASSERT_EQ(run("new-robot my.urdf my.toml"), 0) << error();
+  EXPECT_NE(output().find("limits.power_w: battery voltage"), std::string::npos) << output();
+  EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
+  expect_refused("new-robot my.urdf my.toml", "'my.toml' exists, expected a new file");
+  expect_refused("new-robot my.toml other.toml", "my.toml: not a URDF");
+}
+
 TEST_F(BadInputTest, EmptyValuesAreRefused) {
   for (const char* option : {"--policy", "--robot", "--terrain", "--command", "--dds-security",
                              "--config", "--set", "--record", "--seed"}) {
@@ -272,7 +293,8 @@ TEST_F(BadInputTest, WhatTakesAParserLongIsRefusedBeforeItBegins) {
 TEST_F(BadInputTest, UnwritableOutputFoldersAreRefused) {
   write("file", "precious");
   const std::set<std::string> before = files_in("");
-  for (const char* folder : {"file", "file/results", "/proc/results"}) {
+  ProgramTest::expect_refused("--out file", "--out: 'file' is a file, expected a folder");
+  for (const char* folder : {"file/results", "/proc/results"}) {
     ProgramTest::expect_refused(std::string("--out ") + folder,
                                 "--out: folder '" + std::string(folder) + "'");
   }

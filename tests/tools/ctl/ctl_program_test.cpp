@@ -49,7 +49,7 @@ TEST(CtlProgramTest, BadInputIsOneLineAndExitCodeTwo) {
   expect_error(run({"drive"}, config), 2, "not a terminal");
   expect_error(run({"status", "--once", "--security", "/nowhere"}, config), 2, "/nowhere/");
   expect_error(run({"status", "--once", "--interface", "nosuch0"}, config), 2,
-               "on interface nosuch0 (nosuch0: does not match an available interface");
+               "on interface nosuch0: found no such interface, expected one of lo");
 }
 
 TEST(CtlProgramTest, WithoutARobotItSaysSoWithExitCodeOne) {
