@@ -126,8 +126,8 @@ constexpr Elsewhere kElsewhere[] = {
   collect_names(app, names);
   for (const char* program : {"bench", "ctl", "evaluate", "policy", "replay", "study", "train"}) {
     if (app.get_name() == "sandrunner" && word == program) {
-      throw InputError(fmt::format("command line: unexpected '{0}', did you mean 'sandrunner-{0}'?",
-                                   word));
+      throw InputError(
+          fmt::format("command line: unexpected '{0}', did you mean 'sandrunner-{0}'?", word));
     }
   }
   throw InputError(fmt::format("command line: unexpected '{}'{}", word, did_you_mean(name, names)));

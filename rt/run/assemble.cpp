@@ -23,10 +23,10 @@ ConfigTree layers_of(const Options& options, const std::string* hardware) {
   }
   for (const std::string& file : options.config_files) tree.add_file(file);
   if (tree.has("urdf")) {
-    throw InputError(fmt::format("{}: found a robot file (its key 'urdf'), expected settings: "
-                                 "--robot takes it",
-                                 options.config_files.empty() ? options.hardware_path
-                                                              : options.config_files.back()));
+    throw InputError(fmt::format(
+        "{}: found a robot file (its key 'urdf'), expected settings: "
+        "--robot takes it",
+        options.config_files.empty() ? options.hardware_path : options.config_files.back()));
   }
   for (const std::string& assignment : options.assignments) tree.set(assignment);
   if (options.live) tree.set(options.live_page ? "view.drive=true" : "dds.enabled=true");

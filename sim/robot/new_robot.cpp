@@ -208,8 +208,8 @@ Texts tokens_of(const Texts& names) {
   return tokens;
 }
 
-/// The name of all four with {leg} for what differs.
-std::string pattern_of(const UrdfReader& urdf, const Texts& names, const Texts& tokens) {
+/// The name of all four with {leg} for what differs, or, without such a pattern, the four.
+std::string pattern_of(const Texts& names, const Texts& tokens) {
   Texts patterns;
   for (std::size_t l = 0; l < kNumLegs; ++l) {
     patterns[l] = names[l];
@@ -220,12 +220,10 @@ std::string pattern_of(const UrdfReader& urdf, const Texts& names, const Texts& 
       patterns[l].replace(at, tokens[l].size(), kLeg);
     }
   }
-  if (patterns[0].find("{leg}") == std::string::npos ||
-      std::ranges::any_of(patterns, [&](const std::string& p) { return p != patterns[0]; })) {
-    urdf.fail(fmt::format("found the names {}, expected a pattern with {} in them: rename them",
-                          fmt::join(names, ", "), fmt::join(tokens, ", ")));
-  }
-  return patterns[0];
+  const bool same =
+      patterns[0].find("{leg}") != std::string::npos &&
+      std::ranges::all_of(patterns, [&](const std::string& p) { return p == patterns[0]; });
+  return same ? patterns[0] : fmt::format("{}", fmt::join(names, ", "));
 }
 
 double mass_of(const UrdfReader& urdf) {
@@ -260,7 +258,7 @@ class Rows {
   std::string name_;
 };
 
-std::string quoted(const std::string& text) { return fmt::format("\"{}\"", text); }
+std::string in_quotes(const std::string& text) { return fmt::format("\"{}\"", text); }
 
 /// Of three joints the largest limit of their legs, or NaN where one has none in earnest.
 LegJoints<double> limits_of(const Found& found, double urdf::JointLimits::*limit, double most) {
@@ -299,21 +297,25 @@ NewRobot new_robot(const std::string& urdf_text, const std::string& urdf_name,
   const double weight_n = 9.81 * mass_of(urdf);
 
   Rows rows;
-  rows.known("name", quoted(std::filesystem::path(urdf_path).stem().string()));
-  rows.known("urdf", quoted(urdf_path));
+  rows.known("name", in_quotes(std::filesystem::path(urdf_path).stem().string()));
+  rows.known("urdf", in_quotes(urdf_path));
   rows.table("legs");
   Texts names;
   const auto names_of = [&](auto name_of) {
     for (std::size_t l = 0; l < kNumLegs; ++l) names[l] = name_of(l);
     return names;
   };
-  const Texts tokens = tokens_of(names_of([&](std::size_t l) { return found.legs[l][0]->name; }));
-  for (std::size_t l = 0; l < kNumLegs; ++l) rows.known(kLegKeys[l], quoted(tokens[l]));
+  Texts tokens = tokens_of(names_of([&](std::size_t l) { return found.legs[l][0]->name; }));
+  if (pattern_of(names_of([&](std::size_t l) { return found.legs[l][2]->name; }), tokens)
+          .find(',') != std::string::npos) {
+    tokens = {"LF", "RF", "LH", "RH"};
+  }
+  for (std::size_t l = 0; l < kNumLegs; ++l) rows.known(kLegKeys[l], in_quotes(tokens[l]));
   rows.table("joints");
   constexpr const char* kJointKeys[] = {"haa", "hfe", "kfe"};
   for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
     names_of([&](std::size_t l) { return found.legs[l][j]->name; });
-    rows.known(kJointKeys[j], quoted(pattern_of(urdf, names, tokens)));
+    rows.known(kJointKeys[j], in_quotes(pattern_of(names, tokens)));
   }
   const LegJoints<double> torque_nm = limits_or_guess(
       rows, "torque_limit_nm", limits_of(found, &urdf::JointLimits::effort, kMostTorque_nm),
@@ -337,13 +339,13 @@ NewRobot new_robot(const std::string& urdf_text, const std::string& urdf_name,
              fmt::format("[{:.2g}, {:.2g}, {:.2g}]", rotor[0], rotor[1], rotor[2]),
              "rotor inertia times gear ratio squared");
   rows.table("links");
-  rows.known("base", quoted(found.base));
+  rows.known("base", in_quotes(found.base));
   constexpr const char* kLinkKeys[] = {"hip", "thigh", "shank"};
   for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
     names_of([&](std::size_t l) { return found.legs[l][j]->child_link_name; });
-    rows.known(kLinkKeys[j], quoted(pattern_of(urdf, names, tokens)));
+    rows.known(kLinkKeys[j], in_quotes(pattern_of(names, tokens)));
   }
-  rows.known("foot", quoted(pattern_of(urdf, found.foot, tokens)));
+  rows.known("foot", in_quotes(pattern_of(found.foot, tokens)));
 
   rows.table("collision");
   double foot_radius_m = first.foot_radius_m;

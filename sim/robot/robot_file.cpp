@@ -28,9 +28,11 @@ constexpr Setting<F> kLegs[] = {
     {"right_hind", &F::right_hind, "What replaces {leg}: right hind.", kRequired},
 };
 constexpr Setting<F> kJoints[] = {
-    {"haa", &F::haa, "Name of the hip abduction joint in the URDF.", kRequired},
-    {"hfe", &F::hfe, "Name of the hip flexion joint in the URDF.", kRequired},
-    {"kfe", &F::kfe, "Name of the knee joint in the URDF.", kRequired},
+    {"haa", &F::haa,
+     "Name of the hip abduction joint in the URDF, or the four of LF, RF, LH, RH with commas.",
+     kRequired},
+    {"hfe", &F::hfe, "Name of the hip flexion joint in the URDF, or the four.", kRequired},
+    {"kfe", &F::kfe, "Name of the knee joint in the URDF, or the four.", kRequired},
     {"rotor_inertia_kgm2", repeated<1>(&F::rotor_inertia_kgm2), 0.0, 1.0,
      "Inertia of a motor's rotor at the joint: times the gear ratio squared.", kRequired},
     {"friction_nm", repeated<1>(&F::friction_nm), 0.0, 5.0,
@@ -46,10 +48,10 @@ constexpr Setting<F> kJoints[] = {
 };
 constexpr Setting<F> kLinks[] = {
     {"base", &F::base, "Name of the base's link in the URDF.", kRequired},
-    {"hip", &F::hip, "Name of the link that the HAA moves.", kRequired},
-    {"thigh", &F::thigh, "Name of the link that the HFE moves.", kRequired},
-    {"shank", &F::shank, "Name of the link that the KFE moves.", kRequired},
-    {"foot", &F::foot, "Name of the link that is fixed to the shank.", kRequired},
+    {"hip", &F::hip, "Name of the link that the HAA moves, or the four.", kRequired},
+    {"thigh", &F::thigh, "Name of the link that the HFE moves, or the four.", kRequired},
+    {"shank", &F::shank, "Name of the link that the KFE moves, or the four.", kRequired},
+    {"foot", &F::foot, "Name of the link that is fixed to the shank, or the four.", kRequired},
 };
 
 constexpr Setting<F> kShapes[] = {

@@ -35,8 +35,19 @@ struct Names {
   std::string foot;
 };
 
-std::string with_leg(std::string pattern, const std::string& leg) {
+// The part of leg l: of a pattern with {leg}, or of four names with commas between.
+std::string part_of(std::string pattern, const Names& names, int l) {
+  if (pattern.find(',') != std::string::npos) {
+    std::size_t begin = 0;
+    for (int skipped = 0; skipped < l && begin != std::string::npos; ++skipped) {
+      begin = pattern.find(',', begin) + 1;
+    }
+    begin = pattern.find_first_not_of(' ', begin);
+    if (begin == std::string::npos) return "";
+    return pattern.substr(begin, pattern.find(',', begin) - begin);
+  }
   constexpr std::string_view kLeg = "{leg}";
+  const std::string& leg = names.legs[l];
   for (auto at = pattern.find(kLeg); at != std::string::npos;
        at = pattern.find(kLeg, at + leg.size())) {
     pattern.replace(at, kLeg.size(), leg);
@@ -81,7 +92,7 @@ void read_limits(const UrdfReader& urdf, const RobotFile& file, const urdf::Join
 // Joint j of leg l; returns where it is from the parent's origin, base axes, m.
 Vec read_joint(const UrdfReader& urdf, const RobotFile& file, const Names& names, int l, int j,
                const std::string& parent, const std::string& child, Robot& robot) {
-  const std::string name = with_leg(names.joints[j], names.legs[l]);
+  const std::string name = part_of(names.joints[j], names, l);
   robot.description.joint_names[kJointsPerLeg * l + j] = name;
   Vec place_m, axis;
   const urdf::Joint& joint = urdf.joint(name, parent, child, place_m, axis);
@@ -131,10 +142,10 @@ void check_mass(const UrdfReader& urdf, const std::string& link, const Body<doub
 }
 
 LegLinks links_of(const Names& names, int l) {
-  return {.hip = with_leg(names.links[0], names.legs[l]),
-          .thigh = with_leg(names.links[1], names.legs[l]),
-          .shank = with_leg(names.links[2], names.legs[l]),
-          .foot = with_leg(names.foot, names.legs[l])};
+  return {.hip = part_of(names.links[0], names, l),
+          .thigh = part_of(names.links[1], names, l),
+          .shank = part_of(names.links[2], names, l),
+          .foot = part_of(names.foot, names, l)};
 }
 
 LegLinks read_leg(const UrdfReader& urdf, const RobotFile& file, const Names& names, int l,
@@ -178,8 +189,8 @@ void read_base(const UrdfReader& urdf, const RobotFile& file, RobotModel<double>
 void check_joints(const UrdfReader& urdf, const Names& names) {
   std::vector<std::string> others = urdf.moving_joints();
   const std::size_t found = others.size();
-  for (const std::string& leg : names.legs) {
-    for (const std::string& joint : names.joints) std::erase(others, with_leg(joint, leg));
+  for (int l = 0; l < kNumLegs; ++l) {
+    for (const std::string& joint : names.joints) std::erase(others, part_of(joint, names, l));
   }
   if (found == kNumJoints || others.empty()) return;
   if (others.size() > 4) {
