@@ -15,7 +15,7 @@ done
 packages=(
   g++ cmake ninja-build pkg-config git
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
-  liburdfdom-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
+  liburdfdom-dev libconsole-bridge-dev libtinyxml2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
   esbuild libjs-three libboost-dev
 )
 # Trainer, benches, tests and the Debian package with its man pages; the emulated machine of
@@ -23,7 +23,7 @@ packages=(
 # of tools/study and tools/pictures.py.
 [[ ${1:-all} == sandrunner ]] || packages+=(
   libeigen3-dev libgtest-dev libgmock-dev libmujoco-dev rt-tests openssl python3-numpy dpkg-dev file help2man
-  qemu-system-x86 busybox-static cpio xz-utils
+  qemu-system-x86 busybox-static cpio xz-utils zstd
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
   pybind11-dev python3-dev python3-onnx
   python3-scipy python3-sklearn python3-matplotlib
@@ -38,7 +38,7 @@ fail() {
 
 for tool in dpkg-query apt-get; do
   command -v "$tool" >/dev/null ||
-    fail "found no $tool, expected Debian 12; the packages needed are: ${packages[*]}"
+    fail "found no $tool, expected Debian 12 or 13; the packages needed are: ${packages[*]}"
 done
 
 installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' \

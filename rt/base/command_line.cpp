@@ -48,7 +48,8 @@ class HelpFormat : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override {
     std::string text = option->get_description();
     const std::string value = option->get_default_str();
-    const bool has_default = !value.empty() && value != "[]" && !option->get_required();
+    const bool is_empty = value.empty() || value == "[]" || value == "{}";
+    const bool has_default = !is_empty && !option->get_required();
     if (has_default) text += fmt::format(" (default {})", value);
     if (option->get_required() && !option->get_positional()) text += " (required)";
     return wrapped(text, kWidth - kColumn);

@@ -2,13 +2,15 @@
 #include "sim/robot/ros_description.h"
 
 #include <fmt/format.h>
-#include <tinyxml.h>
+#include <tinyxml2.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace sandrunner::sim {
 namespace {
+
+using Element = tinyxml2::XMLElement;
 
 constexpr const char* kBaseLink = "base_link";  // REP 105
 constexpr double kThinnestRod_m = 0.01;
@@ -91,22 +93,21 @@ class UrdfText {
 
   bool has_visuals() const {
     bool has = false;
-    for_each_link([&](const TiXmlElement& link) { has = has || link.FirstChild("visual"); });
+    for_each_link([&](const Element& link) { has = has || link.FirstChildElement("visual"); });
     return has;
   }
 
   /// `rod_radius_m`: of the rods in a link with this name.
   template <typename Radius>
   void add_visuals(const UrdfReader& urdf, const Radius& rod_radius_m) {
-    for_each_link([&](TiXmlElement& link) {
+    for_each_link([&](Element& link) {
       const std::string name = link.Attribute("name");
       if (name == kBaseLink && urdf.model().links_.count(name) == 0) return;  // the new root
-      const TiXmlElement* collision = link.FirstChildElement("collision");
+      const Element* collision = link.FirstChildElement("collision");
       for (; collision; collision = collision->NextSiblingElement("collision")) {
-        TiXmlElement visual = *collision;
-        visual.SetValue("visual");
+        Element& visual = add_copy(link, *collision);
+        visual.SetName("visual");
         colour(visual);
-        link.InsertEndChild(visual);
       }
       if (link.FirstChildElement("visual")) return;
       for (const auto& joint : urdf.link(name).child_joints) {
@@ -117,43 +118,46 @@ class UrdfText {
   }
 
   std::string text() const {
-    TiXmlPrinter printer;
-    document_.Accept(&printer);
+    tinyxml2::XMLPrinter printer;
+    document_.Print(&printer);
     return printer.CStr();
   }
 
  private:
   template <typename Use>
   void for_each_link(const Use& use) const {
-    TiXmlElement* link = robot_->FirstChildElement("link");
+    Element* link = robot_->FirstChildElement("link");
     for (; link; link = link->NextSiblingElement("link")) use(*link);
   }
 
-  static void add(TiXmlElement& parent, const std::string& text) {
-    TiXmlDocument part;
-    part.Parse(text.c_str());
-    parent.InsertEndChild(*part.FirstChildElement());
+  /// A copy of `element`, of whatever document, as the last child.
+  static Element& add_copy(Element& parent, const Element& element) {
+    return *parent.InsertEndChild(element.DeepClone(parent.GetDocument()))->ToElement();
   }
 
-  static void colour(TiXmlElement& visual) {
-    TiXmlElement* old = visual.FirstChildElement("material");
-    if (old) visual.RemoveChild(old);
+  static Element& add(Element& parent, const std::string& text) {
+    tinyxml2::XMLDocument part;
+    part.Parse(text.c_str());
+    return add_copy(parent, *part.FirstChildElement());
+  }
+
+  static void colour(Element& visual) {
+    if (Element* const old = visual.FirstChildElement("material")) visual.DeleteChild(old);
     add(visual, R"(<material name="grey"><color rgba="0.6 0.6 0.6 1"/></material>)");
   }
 
   // From the origin to `end`.
-  static void add_rod(TiXmlElement& link, const Vector3& end, double radius_m) {
+  static void add_rod(Element& link, const Vector3& end, double radius_m) {
     const double length_m = std::hypot(end[0], end[1], end[2]);
     if (length_m < kThinnestRod_m) return;
-    add(link, fmt::format(R"(<visual><origin xyz="{} {} {}" rpy="0 {} {}"/><geometry>)"
-                          R"(<cylinder radius="{}" length="{}"/></geometry></visual>)",
-                          end[0] / 2, end[1] / 2, end[2] / 2, std::acos(end[2] / length_m),
-                          std::atan2(end[1], end[0]), radius_m, length_m));
-    colour(*link.LastChild()->ToElement());
+    colour(add(link, fmt::format(R"(<visual><origin xyz="{} {} {}" rpy="0 {} {}"/><geometry>)"
+                                 R"(<cylinder radius="{}" length="{}"/></geometry></visual>)",
+                                 end[0] / 2, end[1] / 2, end[2] / 2, std::acos(end[2] / length_m),
+                                 std::atan2(end[1], end[0]), radius_m, length_m)));
   }
 
-  TiXmlDocument document_;
-  TiXmlElement* robot_;
+  tinyxml2::XMLDocument document_;
+  Element* robot_;
 };
 
 }  // namespace

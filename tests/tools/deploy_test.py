@@ -127,7 +127,7 @@ class Package(unittest.TestCase):
 
     def test_it_needs_libraries_at_run_time_only(self):
         packages = [re.match(r"\S+", need)[0] for need in self.field("Depends").split(", ")]
-        self.assertIn("libddsc0debian", packages)
+        self.assertTrue(any(name.startswith("libddsc0") for name in packages), packages)
         self.assertEqual([name for name in packages if not name.startswith(("lib", "zlib1g")) or "-dev" in name], [])
 
     def test_it_leaves_etc_to_the_administrator(self):

@@ -63,11 +63,11 @@ const std::vector<Metric>& metrics() {
   return all;
 }
 
-const Metric& metric(const std::string& key) {
+const Metric& metric(std::string_view key) {
   for (const Metric& m : metrics()) {
     if (key == m.key) return m;
   }
-  throw std::logic_error("no metric '" + key + "'");
+  throw std::logic_error("no metric '" + std::string(key) + "'");
 }
 
 Estimate pool(const Metric& metric, const std::vector<TrialFigures>& runs) {

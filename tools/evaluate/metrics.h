@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rt/core/command_shaping.h"
@@ -27,7 +28,7 @@ struct Metric {
 /// All of them.
 const std::vector<Metric>& metrics();
 /// The one with this key, which must exist.
-const Metric& metric(const std::string& key);
+const Metric& metric(std::string_view key);
 
 Estimate pool(const Metric& metric, const std::vector<TrialFigures>& runs);
 

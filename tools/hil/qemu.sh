@@ -62,17 +62,21 @@ if [[ ! -e $kernel/vmlinux ]]; then
   new=$(mktemp -d "$cache/new.XXXXXX")
   trap 'rm -rf "$new"' EXIT
   (cd "$new" && apt-get -qq -o APT::Sandbox::User=root download "$package" >&2) || skip "could not download $package"
-  dpkg-deb --fsys-tarfile "$new"/*.deb | tar -x -C "$new" --wildcards './boot/vmlinuz-*' '*/kernel/net/can/*.ko' \
-    '*/kernel/drivers/net/can/dev/can-dev.ko' '*/kernel/drivers/net/can/vcan.ko' '*/kernel/drivers/net/can/slcan/slcan.ko' \
-    '*/kernel/drivers/virtio/*.ko' '*/kernel/drivers/block/virtio_blk.ko'
+  dpkg-deb --fsys-tarfile "$new"/*.deb | tar -x -C "$new" --wildcards './boot/vmlinuz-*' '*/kernel/net/can/*.ko*' \
+    '*/kernel/drivers/net/can/dev/can-dev.ko*' '*/kernel/drivers/net/can/vcan.ko*' '*/kernel/drivers/net/can/slcan/slcan.ko*' \
+    '*/kernel/drivers/virtio/*.ko*' '*/kernel/drivers/block/virtio_blk.ko*'
   rm "$new"/*.deb
+  find "$new" -name '*.ko.xz' -exec xz -d {} + # Debian 13
   # The uncompressed kernel out of the bzImage: QEMU enters it directly, which saves the emulated xz
   # 3.5 s. Where it lies in there: Linux, Documentation/x86/boot.rst (setup_sects, payload_offset,
   # payload_length).
   image=$(echo "$new"/boot/vmlinuz-*)
   number() { od -An "-tu$2" "-j$1" "-N$2" "$image"; }
   dd if="$image" bs=1M iflag=skip_bytes,count_bytes skip=$((($(number 497 1) + 1) * 512 + $(number 584 4))) \
-    count=$(($(number 588 4) - 4)) status=none | xz -dc >"$new/vmlinux"
+    count=$(($(number 588 4) - 4)) status=none >"$new/payload"
+  # Debian 12 packs it with xz, 13 with zstd.
+  xz -dc <"$new/payload" >"$new/vmlinux" 2>/dev/null || zstd -qdc <"$new/payload" >"$new/vmlinux"
+  rm "$new/payload"
   mv -T "$new" "$kernel" 2>/dev/null || true # another call was quicker
   trap - EXIT
 fi

@@ -133,11 +133,9 @@ RunVerdict run_fault(const FaultRun& run, const RunPlace& place, const ProcessCo
   prepare_folder(dir, "--out");
   const RobotDescription& robot = config.robot.description;
   Bench bench(config, "", read_faults(config, run.faults_of(robot)), place.walk_s);
-  Lines command = {place.controller, "--hardware",
-                   place.hardware,   "--arm",
-                   "--command",      place.command,
-                   "--terrain",      place.terrain,
-                   "--duration",     fmt::format("{}", place.walk_s)};
+  Lines command = {
+      place.controller, "--hardware",  place.hardware, "--arm",
+      "--command",      place.command, "--duration",   fmt::format("{}", place.walk_s)};
   for (const std::string& assignment : place.assignments) {
     command.insert(command.end(), {"--set", assignment});
   }

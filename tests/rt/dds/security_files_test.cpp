@@ -74,11 +74,13 @@ TEST_F(SecurityFilesTest, AFileThatIsNoKeyOrNoCertificateIsNamed) {
 
 TEST_F(SecurityFilesTest, ACertificateOfAnotherAuthorityIsRefused) {
   certify("../theirs", 10);
-  EXPECT_THAT(refusal(), HasSubstr("certificate signature failure"));
+  EXPECT_THAT(refusal(), testing::AnyOf(HasSubstr("certificate signature failure"),
+                                        // OpenSSL 3.5, of Debian 13.
+                                        HasSubstr("unable to get local issuer certificate")));
 }
 
 TEST_F(SecurityFilesTest, ACertificateThatHasExpiredIsRefused) {
-  certify(".", -1);
+  certify(".", 0);
   EXPECT_THAT(refusal(), HasSubstr("certificate has expired"));
 }
 

@@ -96,7 +96,7 @@ TEST_F(EvaluateCommandTest, RefusesBadInputInOneLine) {
       {"--policy p --runs many", "--runs"},
       {"--policy p --only turn,jump", "'jump'"},
       {"--policy p --torque-speed-line perhaps", "'perhaps'"},
-      {"--policy p --out p", "--out: folder 'p'"},
+      {"--policy p --out p", "--out: 'p' is a file"},
       {"--policy p --unknown", "--unknown"},
   };
   for (const auto& [arguments, cause] : cases) expect_refused(arguments, cause);

@@ -134,9 +134,10 @@ inline void compute_rows(int rows, const Tile<Element<S>>& tile) {
   if constexpr (kRows > 1) {
     if (rows < kRows) return compute_rows<S, kRows - 1, kPacks, kAcross>(rows, tile);
   }
-  if (tile.columns >= kPacks * kWidth<S>) {
+  constexpr int kColumns = kPacks * kWidth<S>;  // of one there is no edge
+  if (kColumns == 1 || tile.columns >= kColumns) {
     compute_tile<S, kRows, kPacks, kAcross>(tile);
-  } else {
+  } else if constexpr (kColumns > 1) {
     compute_edge_tile<S, kRows, kPacks, kAcross>(tile);
   }
 }
