@@ -67,9 +67,10 @@ void Odometry::add(const ControllerInput& input, const ControllerOutput& output)
                            : source_ == Source::kStill ? 0.0
                                                        : kUnknownSpeed_mps;
   horizontal_variance_m2_ += error_mps * error_mps * kVelocityErrorTime_s * dt_s;
-  follow_height(source_ == Source::kNetwork ? estimate.body_height_m
-                                            : height_by_joints_m(sensors.joints.position_rad),
-                dt_s);
+  const bool knows_height = source_ == Source::kNetwork && std::isfinite(estimate.body_height_m);
+  follow_height(
+      knows_height ? estimate.body_height_m : height_by_joints_m(sensors.joints.position_rad),
+      dt_s);
   has_last_ = true;
 }
 

@@ -55,7 +55,9 @@ std::optional<double> number_of(const std::string& word) {
   double value = 0.0;
   const char* const end = word.data() + word.size();
   const auto result = std::from_chars(word.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value)) return std::nullopt;
+  const double size = std::fabs(value);
+  const bool good = value == 0.0 || (size >= 1e-6 && size <= 1e6);  // NaN: neither
+  if (result.ec != std::errc() || result.ptr != end || !good) return std::nullopt;
   return value;
 }
 
@@ -85,7 +87,8 @@ ObservationTerm parse_term(const std::string& where, const std::string& text) {
       continue;
     }
     const std::optional<double> value = number_of(word);
-    if (!values || !value) fail_term(where, text, "'NAME scale NUMBER ... clip NUMBER'");
+    if (!values || !value)
+      fail_term(where, text, "'NAME scale NUMBER ... clip NUMBER', numbers of 1e-6 to 1e6");
     values->push_back(*value);
   }
   const auto scales = static_cast<int>(term.scale.size());
@@ -99,6 +102,9 @@ ObservationTerm parse_term(const std::string& where, const std::string& text) {
     return found[0];
   };
   if (!clip.empty()) term.clip = one_positive(clip, "clip");
+  if (term.kind != TermKind::kPhase && !period.empty()) {
+    fail_term(where, text, "a period of the phase alone");
+  }
   if (term.kind == TermKind::kPhase) term.period_s = one_positive(period, "period (s)");
   return term;
 }

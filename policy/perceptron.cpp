@@ -132,11 +132,9 @@ std::vector<NamedTensor> tensors_of(const std::string& where, PerceptronParamete
                       "a latent",
                       where, parameters.estimator.back()));
     }
-    if (layout.order == HistoryOrder::kByTerm) {
-      throw InputError(
-          fmt::format("{}: found an estimator and a history by_term, expected whole "
-                      "observations",
-                      where));
+    if (layout.history > 1 && layout.order != HistoryOrder::kNewestFirst) {
+      throw InputError(fmt::format("{}: found an estimator and a history {}, expected newest_first",
+                                   where, history_order_text(layout.order)));
     }
     add("estimator", layout.inputs(), parameters.estimator, parameters.estimator_layers);
   }
@@ -155,7 +153,6 @@ struct Perceptron::Packed {
   int interval = 1;  ///< steps at kPolicyHz between two answers
   double period_s = 0.0;
   float velocity_scale = 1.0f;
-  std::size_t newest_at = 0;  ///< of the newest observation in the input
   int numbers = 0;
   std::vector<Layer> estimator, actor;
   std::size_t size = 0;  ///< of the weights
@@ -246,9 +243,6 @@ Perceptron::Perceptron(const PerceptronParameters& parameters,
   p.period_s = 1.0 / parameters.policy_hz;
   p.velocity_scale = static_cast<float>(parameters.velocity_scale);
   p.numbers = p.observation.numbers();
-  if (p.observation.order == HistoryOrder::kOldestFirst) {
-    p.newest_at = static_cast<std::size_t>(p.observation.inputs() - p.numbers);
-  }
   p.add(parameters.estimator_layers, p.estimator);
   p.add(parameters.actor_layers, p.actor);
   const std::size_t bytes = p.size * sizeof(float);
@@ -279,7 +273,7 @@ void Perceptron::answer(const float* input, JointArray<float>& action,
     }
     for (int i = kVelocity; i < size; ++i) values[i] /= divisor;
     std::copy_backward(values, values + size, values + p.numbers + size);
-    std::copy_n(input + p.newest_at, p.numbers, values);
+    std::copy_n(input, p.numbers, values);  // the newest observation
     const int end = p.numbers + size;
     std::fill(values + end, values + padded(end, kMostChains), 0.0f);
   }

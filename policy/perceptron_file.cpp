@@ -80,7 +80,11 @@ PerceptronParameters read_parameters(Metadata& values, const PolicySpec& spec) {
   p.activation = parse_activation(where(kActivationKey), values.text(kActivationKey));
   p.actor = widths_of(values, kActorLayersKey);
   p.estimator = widths_of(values, kEstimatorKey);
-  p.velocity_scale = values.positive(kVelocityKey);
+  p.velocity_scale = values.from_zero_to(kVelocityKey, kLargest);
+  if (p.velocity_scale < 1.0 / kLargest) {
+    fail_file(values.path(), "metadata '{}' is {}, expected at least {}", kVelocityKey,
+              p.velocity_scale, 1.0 / kLargest);
+  }
   return p;
 }
 

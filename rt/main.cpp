@@ -164,12 +164,13 @@ int run(const Options& options) {
 /// Writes a robot file, and lets the robot stand up and lie down.
 int begin_robot(const Options& options) {
   const std::string &urdf = options.new_robot_urdf, &file = options.robot_path;
-  if (std::filesystem::exists(file)) {
+  std::error_code none;
+  if (std::filesystem::exists(file, none)) {
     throw InputError(fmt::format("new-robot: '{}' exists, expected a new file", file));
   }
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   const std::string path =
-      std::filesystem::proximate(urdf, folder.empty() ? "." : folder).generic_string();
+      std::filesystem::proximate(urdf, folder.empty() ? "." : folder, none).generic_string();
   const sim::NewRobot robot = sim::new_robot(read_input_file(urdf, "a URDF"), urdf, path);
   sim::parse_robot(robot.file, file, read_input_file(urdf, "a URDF"), urdf);
   write_file(file, robot.file);

@@ -5,9 +5,7 @@
 # kept, with packages and build, in ~/.cache/sandrunner/SUITE (5 GB). What git ignores does not come
 # along. As root. Reports on stderr.
 set -euo pipefail
-for word; do
-  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
-done
+case ${1:-} in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
 
 fail() {
   echo "debian.sh: $1" >&2
@@ -22,11 +20,13 @@ shift
 
 cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 root=${XDG_CACHE_HOME:-$HOME/.cache}/sandrunner/$suite
-if [[ ! -e $root/etc/debian_version ]]; then
-  mkdir -p "$root"
-  debootstrap --variant=minbase "$suite" "$root" >&2
-  printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" # packages start no services
-  chmod +x "$root/usr/sbin/policy-rc.d"
+if [[ ! -e $root ]]; then
+  rm -rf "$root.new"
+  mkdir -p "$root.new"
+  debootstrap --variant=minbase "$suite" "$root.new" >&2
+  printf '#!/bin/sh\nexit 101\n' >"$root.new/usr/sbin/policy-rc.d" # packages start no services
+  chmod +x "$root.new/usr/sbin/policy-rc.d"
+  mv "$root.new" "$root"
 fi
 # The commit, and what differs from it.
 [[ -e $root/sandrunner/.git ]] || git clone --quiet --no-checkout "$PWD" "$root/sandrunner"

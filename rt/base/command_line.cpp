@@ -147,7 +147,7 @@ std::string in_our_words(const CLI::App& app, const std::string& message) {
                        fmt::join(names, ", "));
   }
   const std::pair<std::regex, const char*> kWords[] = {
-      {std::regex("Could not convert: (\\S+) = ([-+]?[0-9]*[.eE][-+.eE0-9]*)"),
+      {std::regex("Could not convert: (\\S+) = ([-+]?[0-9]*\\.[0-9]+)"),
        "$1: found '$2', expected a whole number"},
       {std::regex("Could not convert: (\\S+) = (.*)"), "$1: found '$2', expected a number"},
       {std::regex("(\\S+): At Most 1 required but received (\\d+)"),

@@ -37,10 +37,12 @@ void flush_folder_of(const std::string& path) {
 void prepare_folder(const std::string& folder, const std::string& option) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
+  std::error_code none;
+  if (std::filesystem::is_regular_file(folder, none)) {
     throw InputError(fmt::format("{}: '{}' is a file, expected a folder", option, folder));
   }
-  if (error || !std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK | X_OK) != 0) {
+  if (error || !std::filesystem::is_directory(folder, none) ||
+      access(folder.c_str(), W_OK | X_OK) != 0) {
     throw InputError(fmt::format("{}: folder '{}' cannot be written", option, folder));
   }
 }

@@ -21,12 +21,15 @@ ConfigTree layers_of(const Options& options, const std::string* hardware) {
   } else if (!options.hardware_path.empty()) {
     tree.add_file(options.hardware_path);
   }
-  for (const std::string& file : options.config_files) tree.add_file(file);
-  if (tree.has("urdf")) {
+  const auto reject_robot_file = [&tree](const std::string& file) {
+    if (!tree.has("urdf")) return;
     throw InputError(fmt::format(
-        "{}: found a robot file (its key 'urdf'), expected settings: "
-        "--robot takes it",
-        options.config_files.empty() ? options.hardware_path : options.config_files.back()));
+        "{}: found a robot file (its key 'urdf'), expected settings: --robot takes it", file));
+  };
+  reject_robot_file(options.hardware_path);
+  for (const std::string& file : options.config_files) {
+    tree.add_file(file);
+    reject_robot_file(file);
   }
   for (const std::string& assignment : options.assignments) tree.set(assignment);
   if (options.live) tree.set(options.live_page ? "view.drive=true" : "dds.enabled=true");

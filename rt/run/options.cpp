@@ -222,6 +222,11 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
   o.start_walking = t.start == "walk";
   if (new_robot->parsed()) {
+    for (const CLI::Option* option : app.get_options()) {
+      if (option->count() == 0 || option->get_name() == "--out") continue;
+      throw InputError(fmt::format("new-robot: stands a simulated robot, expected no {} with it",
+                                   option->get_name()));
+    }
     o.policy_path = kNoPolicy;
     o.terrain = "rigid";
     return o;

@@ -84,6 +84,9 @@ LegJoints<double> mean_fold(const UrdfReader& urdf, const std::array<LegGeometry
       lower = std::max(lower, leg.lower_rad[j]);
       upper = std::min(upper, leg.upper_rad[j]);
     }
+    if (lower > upper) {
+      urdf.fail(fmt::format("joint {} of the legs has no angle between all of their stops", j + 1));
+    }
     mean[j] = std::clamp(mean[j], lower, upper);
   }
   return mean;

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "rt/base/errors.h"
+#include "rt/base/toml_text.h"
 #include "sim/robot/leg_poses.h"
 #include "sim/robot/urdf_legs.h"
 #include "sim/robot/urdf_reader.h"
@@ -109,8 +110,6 @@ class Rows {
   std::string name_;
 };
 
-std::string in_quotes(const std::string& text) { return fmt::format("\"{}\"", text); }
-
 /// Of three joints the largest limit of their legs, or NaN where one has none in earnest.
 LegJoints<double> limits_of(const UrdfLegs& found, double urdf::JointLimits::*limit, double most) {
   LegJoints<double> result{};
@@ -145,13 +144,14 @@ class Draft {
         weight_n_(9.81 * mass_of(urdf)) {}
 
   NewRobot write(const std::string& urdf_path) {
-    const std::string name = std::filesystem::path(urdf_path).stem().string();
+    std::string name = std::filesystem::path(urdf_path).stem().string();
+    replace_controls(name, '?');
     rows_.text = fmt::format(
         "# Robot file of {}, derived from its URDF. Every GUESS is for a person to check:\n"
         "# sim/robot/README.md says how to find each figure.\n",
         name);
-    rows_.known("name", in_quotes(name));
-    rows_.known("urdf", in_quotes(urdf_path));
+    rows_.known("name", toml_quoted(name));
+    rows_.known("urdf", toml_quoted(urdf_path));
     write_names();
     write_shapes();
     write_poses_and_gains();
@@ -177,19 +177,19 @@ class Draft {
       tokens = {"LF", "RF", "LH", "RH"};
     }
     rows_.table("legs");
-    for (std::size_t l = 0; l < kNumLegs; ++l) rows_.known(kLegKeys[l], in_quotes(tokens[l]));
+    for (std::size_t l = 0; l < kNumLegs; ++l) rows_.known(kLegKeys[l], toml_quoted(tokens[l]));
     rows_.table("links");
-    rows_.known("base", in_quotes(legs_.base));
+    rows_.known("base", toml_quoted(legs_.base));
     constexpr const char* kLinkKeys[] = {"hip", "thigh", "shank"};
     for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
       const Texts links = texts(j, [](const urdf::Joint& joint) { return joint.child_link_name; });
-      rows_.known(kLinkKeys[j], in_quotes(pattern_of(links, tokens)));
+      rows_.known(kLinkKeys[j], toml_quoted(pattern_of(links, tokens)));
     }
-    rows_.known("foot", in_quotes(pattern_of(legs_.foot, tokens)));
+    rows_.known("foot", toml_quoted(pattern_of(legs_.foot, tokens)));
     rows_.table("joints");
     constexpr const char* kJointKeys[] = {"haa", "hfe", "kfe"};
     for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
-      rows_.known(kJointKeys[j], in_quotes(pattern_of(joints(j), tokens)));
+      rows_.known(kJointKeys[j], toml_quoted(pattern_of(joints(j), tokens)));
     }
     write_joint_limits();
   }
@@ -206,9 +206,15 @@ class Draft {
       return joint.type == urdf::Joint::CONTINUOUS;
     });
     if (is_free) {
-      rows_.guess("lower_rad", array_text(legs_.geometry[0].lower_rad),
-                  "joints turn for ever; where a leg touches");
-      rows_.guess("upper_rad", array_text(legs_.geometry[0].upper_rad), "the same");
+      LegJoints<double> lower = legs_.geometry[0].lower_rad, upper = legs_.geometry[0].upper_rad;
+      for (const LegGeometry& leg : legs_.geometry) {
+        for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
+          lower[j] = std::max(lower[j], leg.lower_rad[j]);
+          upper[j] = std::min(upper[j], leg.upper_rad[j]);
+        }
+      }
+      rows_.guess("lower_rad", array_text(lower), "joints turn for ever; where a leg touches");
+      rows_.guess("upper_rad", array_text(upper), "the same");
     }
     rows_.guess("rotor_inertia_kgm2", array_text(scaled(torque_nm_, 2e-4), 4),
                 "rotor inertia times gear ratio squared");

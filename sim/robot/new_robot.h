@@ -14,7 +14,7 @@ struct NewRobot {
 
 /// Finds legs, links and feet in a URDF, and derives poses, gains and limits from it. `urdf_name`:
 /// of the text, for errors; `urdf_path`: as the robot file is to name it. Throws InputError if the
-/// URDF has no four legs of three joints, or their names follow no pattern.
+/// URDF has no four legs of three joints.
 NewRobot new_robot(const std::string& urdf_text, const std::string& urdf_name,
                    const std::string& urdf_path);
 

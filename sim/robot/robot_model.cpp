@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <sstream>
+#include <vector>
 
 #include "rt/base/errors.h"
 #include "rt/base/input_file.h"
@@ -28,6 +30,7 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 // Names of the URDF's parts.
 struct Names {
+  const RobotFile* file;  // for errors
   std::string base;
   std::array<std::string, kNumLegs> legs;
   std::array<std::string, kJointsPerLeg> joints;
@@ -38,13 +41,19 @@ struct Names {
 // The part of leg l: of a pattern with {leg}, or of four names with commas between.
 std::string part_of(std::string pattern, const Names& names, int l) {
   if (pattern.find(',') != std::string::npos) {
-    std::size_t begin = 0;
-    for (int skipped = 0; skipped < l && begin != std::string::npos; ++skipped) {
-      begin = pattern.find(',', begin) + 1;
+    std::istringstream list(pattern);
+    std::vector<std::string> four;
+    for (std::string name; std::getline(list, name, ',');) {
+      const std::size_t begin = std::min(name.find_first_not_of(' '), name.size());
+      four.push_back(name.substr(begin, name.find_last_not_of(' ') + 1 - begin));
     }
-    begin = pattern.find_first_not_of(' ', begin);
-    if (begin == std::string::npos) return "";
-    return pattern.substr(begin, pattern.find(',', begin) - begin);
+    if (four.size() != kNumLegs) {
+      names.file->fail(
+          fmt::format("found {} names in '{}', expected one with {{leg}}, or those of "
+                      "LF, RF, LH and RH",
+                      four.size(), pattern));
+    }
+    return four[static_cast<std::size_t>(l)];
   }
   constexpr std::string_view kLeg = "{leg}";
   const std::string& leg = names.legs[l];
@@ -56,7 +65,8 @@ std::string part_of(std::string pattern, const Names& names, int l) {
 }
 
 Names names_in(const RobotFile& f) {
-  return {.base = f.base,
+  return {.file = &f,
+          .base = f.base,
           .legs = {f.left_front, f.right_front, f.left_hind, f.right_hind},
           .joints = {f.haa, f.hfe, f.kfe},
           .links = {f.hip, f.thigh, f.shank},

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/base/errors.h"
+
 namespace sandrunner::sim {
 namespace {
 
@@ -79,16 +81,23 @@ std::vector<OutlinePoint> outline_of(const RobotModel<double>& model, const std:
 // The URDF's text with these changes.
 class UrdfText {
  public:
-  explicit UrdfText(const std::string& text) {
+  /// `name` stands for the text in errors.
+  UrdfText(const std::string& text, const std::string& name) {
     document_.Parse(text.c_str());
     robot_ = document_.FirstChildElement("robot");
+    if (document_.Error() || !robot_) {
+      throw InputError(fmt::format("{}: not a valid URDF: line {}: {}", name,
+                                   document_.ErrorLineNum(), document_.ErrorName()));
+    }
   }
 
   void add_root(const std::string& base) {
-    add(*robot_, fmt::format(R"(<link name="{}"/>)", kBaseLink));
-    add(*robot_, fmt::format(R"(<joint name="{0}_to_{1}" type="fixed"><parent link="{0}"/>)"
-                             R"(<child link="{1}"/></joint>)",
-                             kBaseLink, base));
+    robot_->InsertNewChildElement("link")->SetAttribute("name", kBaseLink);
+    Element& joint = *robot_->InsertNewChildElement("joint");
+    joint.SetAttribute("name", fmt::format("{}_to_{}", kBaseLink, base).c_str());
+    joint.SetAttribute("type", "fixed");
+    joint.InsertNewChildElement("parent")->SetAttribute("link", kBaseLink);
+    joint.InsertNewChildElement("child")->SetAttribute("link", base.c_str());
   }
 
   bool has_visuals() const {
@@ -166,7 +175,7 @@ void describe_for_ros(const UrdfReader& urdf, const std::string& base,
                       const std::array<LegLinks, kNumLegs>& legs, Robot& robot) {
   RobotDescription& description = robot.description;
   const urdf::Link& base_link = urdf.link(base);
-  UrdfText text(description.urdf);
+  UrdfText text(description.urdf, description.name);
   if (const urdf::Link* const above = base_link_above(urdf, base_link)) {
     description.base_frame = kBaseLink;
     add_frames_below(*above, description);

@@ -84,6 +84,12 @@ UrdfReader::UrdfReader(const std::string& text, std::string name, std::string ba
   if (!urdf_) {
     fail(message.text.empty() ? "not a valid URDF" : "not a valid URDF: " + message.text);
   }
+  // So links are a tree: the parser lets circles pass.
+  std::set<std::string> children;
+  for (const auto& [joint_name, joint] : urdf_->joints_) {
+    if (children.insert(joint->child_link_name).second) continue;
+    fail(fmt::format("two joints carry the link '{}', expected one", joint->child_link_name));
+  }
 }
 
 void UrdfReader::fail(const std::string& what) const {

@@ -131,12 +131,12 @@ TEST_P(PerceptronCase, StepsAsPlainlyWritten) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, PerceptronCase,
-    testing::Values(Case{"RslRl", Activation::kElu, 1, HistoryOrder::kNewestFirst, false, 50},
-                    Case{"Himloco", Activation::kElu, 6, HistoryOrder::kNewestFirst, true, 50},
-                    Case{"OldestFirst", Activation::kRelu, 3, HistoryOrder::kOldestFirst, true, 25},
-                    Case{"ByTerm", Activation::kTanh, 5, HistoryOrder::kByTerm, false, 100},
-                    Case{"Leaky", Activation::kLeakyRelu, 2, HistoryOrder::kOldestFirst, false,
-                         20}),
+    testing::Values(
+        Case{"RslRl", Activation::kElu, 1, HistoryOrder::kNewestFirst, false, 50},
+        Case{"Himloco", Activation::kElu, 6, HistoryOrder::kNewestFirst, true, 50},
+        Case{"OldestFirst", Activation::kRelu, 3, HistoryOrder::kOldestFirst, false, 25},
+        Case{"ByTerm", Activation::kTanh, 5, HistoryOrder::kByTerm, false, 100},
+        Case{"Leaky", Activation::kLeakyRelu, 2, HistoryOrder::kOldestFirst, false, 20}),
     [](const auto& each) { return std::string(each.param.name); });
 
 TEST(PerceptronTest, EveryWidthOfALayerIsWholeInItsPanels) {
@@ -182,6 +182,8 @@ TEST(PerceptronTest, WrongTermsAreNamed) {
       {"command scale x", "expected 'NAME scale NUMBER"},
       {"command clip 0", "expected a clip above 0"},
       {"phase", "expected a period (s) above 0"},
+      {"gravity period 3", "expected a period of the phase alone"},
+      {"command scale 1e300", "numbers of 1e-6 to 1e6"},
       {"", "found 0 numbers, expected 1 to 64"},
       {"joint_position, joint_position, joint_position, joint_position, joint_position, phase "
        "period 1, gravity",

@@ -86,9 +86,8 @@ inline PerceptronFile random_perceptron(const std::string& terms, int history, H
     Doubles input;
     for (int i = 0; i < p.observation.inputs(); ++i) input.push_back(random.next());
     file.golden_observation.insert(file.golden_observation.end(), input.begin(), input.end());
-    const int numbers = p.observation.numbers();
-    const auto newest = order == HistoryOrder::kOldestFirst ? input.end() - numbers : input.begin();
-    const PlainAnswer answer = plain_answer(p, input, Doubles(newest, newest + numbers));
+    const PlainAnswer answer =
+        plain_answer(p, input, Doubles(input.begin(), input.begin() + p.observation.numbers()));
     file.golden_action.insert(file.golden_action.end(), answer.action.begin(), answer.action.end());
   }
   return file;

@@ -19,7 +19,7 @@ constexpr std::string_view kEnding = ".toml";
 /// Names with commas, blanks or ends of lines between.
 std::vector<std::string> words_of(std::string text) {
   std::ranges::replace_if(
-      text, [](char c) { return c == ',' || c == '\n'; }, ' ');
+      text, [](char c) { return c == ',' || c == '\n' || c == '\t' || c == '\r'; }, ' ');
   std::vector<std::string> words;
   for (std::size_t begin = 0; (begin = text.find_first_not_of(' ', begin)) != std::string::npos;) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
@@ -66,6 +66,11 @@ PerceptronFile read_description(const std::string& name_or_path, const RobotDesc
   } else {
     config.add_file(name_or_path);
   }
+  for (const char* key : {"joints", "pose_rad", "observation", "kp_nmprad", "kd_nmsprad",
+                          "action_scale_rad", "policy_hz"}) {
+    if (!config.has(key))
+      throw InputError(fmt::format("{}: found no '{}', expected it", origin, key));
+  }
   PerceptronFile file;
   PerceptronParameters& p = file.parameters;
   PolicySpec& spec = file.spec;
@@ -93,11 +98,6 @@ PerceptronFile read_description(const std::string& name_or_path, const RobotDesc
   spec.kp_nmprad = config.number("kp_nmprad", 20.0, 0.0, 1e4);
   spec.kd_nmsprad = config.number("kd_nmsprad", 0.5, 0.0, 1e3);
   spec.yaw_command_clip_mps2 = config.number("yaw_command_clip_mps2", 2.943, 1e-3, 100.0);
-  for (const char* key : {"joints", "pose_rad", "observation", "kp_nmprad", "kd_nmsprad",
-                          "action_scale_rad", "policy_hz"}) {
-    if (!config.has(key))
-      throw InputError(fmt::format("{}: found no '{}', expected it", origin, key));
-  }
   config.reject_unknown();
   return file;
 }

@@ -36,7 +36,7 @@ def activation_in(description):
         found = tomllib.loads(path.read_text(encoding="utf-8")).get("activation", "elu")
     except (OSError, ValueError) as error:
         raise ValueError(f"{description}: found no description: {error}") from None
-    if found not in foreign.ACTIVATIONS:
+    if not isinstance(found, str) or found not in foreign.ACTIVATIONS:
         raise ValueError(f"{description}: activation: found {found!r}, expected one of {', '.join(foreign.ACTIVATIONS)}")
     return found
 

@@ -31,7 +31,11 @@ py::dict spec_dict(const PolicySpec& spec, float observation_clip) {
   all["name"] = spec.name;
   all["joint_names"] = spec.joint_names;
   all["nominal_position_rad"] = spec.nominal_position_rad;
-  all["action_scale_rad"] = spec.action_scale_rad[0];
+  const JointArray<double>& scale = spec.action_scale_rad;
+  all["action_scale_rad"] = scale[0];
+  if (std::ranges::any_of(scale, [&](double s) { return s != scale[0]; })) {
+    all["action_scale_rad"] = scale;
+  }
   all["action_clip"] = spec.action_clip;
   all["kp_nmprad"] = spec.kp_nmprad;
   all["kd_nmsprad"] = spec.kd_nmsprad;

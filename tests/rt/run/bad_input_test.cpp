@@ -69,6 +69,10 @@ TEST_F(BadInputTest, ANewRobotIsWrittenOnceAndStands) {
   EXPECT_NE(output().find("finished on its feet"), std::string::npos) << output();
   expect_refused("new-robot my.urdf my.toml", "'my.toml' exists, expected a new file");
   expect_refused("new-robot my.toml other.toml", "my.toml: not a URDF");
+  for (const char* option : {"--hardware my.toml", "--start walk", "--duration nan", "--seed 1"}) {
+    expect_refused(std::string(option) + " new-robot my.urdf other.toml",
+                   "new-robot: stands a simulated robot, expected no --");
+  }
 }
 
 TEST_F(BadInputTest, EmptyValuesAreRefused) {
@@ -294,6 +298,7 @@ TEST_F(BadInputTest, UnwritableOutputFoldersAreRefused) {
   write("file", "precious");
   const std::set<std::string> before = files_in("");
   ProgramTest::expect_refused("--out file", "--out: 'file' is a file, expected a folder");
+  ProgramTest::expect_refused("--out " + std::string(300, 'a'), "cannot be written");
   for (const char* folder : {"file/results", "/proc/results"}) {
     ProgramTest::expect_refused(std::string("--out ") + folder,
                                 "--out: folder '" + std::string(folder) + "'");

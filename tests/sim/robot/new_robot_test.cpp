@@ -118,6 +118,16 @@ TEST(NewRobotTest, ARobotThatIsNoneOfOursIsRefusedWithItsCause) {
       "<child link=\"w\"/><axis xyz=\"0 1 0\"/></joint></robot>";
   EXPECT_NE(refusal(edited(kRaibo, "</robot>", "</robot>", wheel)).find("'LF_HAA' and 3 behind it"),
             std::string::npos);
+  const std::string circle =
+      "<joint name=\"back\" type=\"revolute\"><parent link=\"LF_SHANK\"/>"
+      "<child link=\"LF_HIP\"/><axis xyz=\"0 1 0\"/>"
+      "<limit lower=\"-1\" upper=\"1\" effort=\"9\" velocity=\"9\"/></joint></robot>";
+  EXPECT_NE(
+      refusal(edited(kRaibo, "</robot>", "</robot>", circle)).find("two joints carry the link"),
+      std::string::npos);
+  EXPECT_NE(refusal(edited(kRaibo, "joint name=\"LF_HAA\"", "upper=\"", "upper=\"-9\" old=\""))
+                .find("expected lower < upper"),
+            std::string::npos);
   EXPECT_NE(refusal(edited(kRaibo, "joint name=\"LF_KFE\"", "revolute", "fixed"))
                 .find("'LF_HAA' and 1 behind it"),
             std::string::npos);

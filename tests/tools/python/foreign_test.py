@@ -85,6 +85,16 @@ class Foreign(unittest.TestCase):
             target, _ = policy.step(raw[None])
             np.testing.assert_allclose(target[0][ISAAC_JOINT_OF], POSE + 0.25 * last, atol=2e-5)
 
+    def test_a_himloco_state_dict_gives_its_encoder_and_not_its_target(self):
+        rng = np.random.default_rng(3)
+        state = {"critic.0.weight": np.ones((4, 45)), "estimator.proto.weight": np.ones((16, 16))}
+        for part, sizes in (("estimator.encoder", (270, 32, 19)), ("estimator.target", (45, 32, 16)), ("actor", (64, 32, 12))):
+            for k, (inputs, outputs) in enumerate(zip(sizes, sizes[1:])):
+                state[f"{part}.{2 * k}.weight"] = rng.normal(size=(outputs, inputs)) / np.sqrt(inputs)
+                state[f"{part}.{2 * k}.bias"] = 0.1 * rng.normal(size=outputs)
+        import_policy(state, self.path("theirs.safetensors"), robot="go2", observation="himloco_go2")
+        Policy(self.path("theirs.safetensors"))
+
     def test_a_state_dict_walks_in_three_lines(self):
         self.answers_as(self.state)
 
@@ -109,6 +119,8 @@ class Foreign(unittest.TestCase):
             (onnx_model(self.state, zeros, ones, ("Softplus", {})), r"node '/actor/0' \(Softplus\): not understood"),
             (onnx_model(self.state, zeros, ones, ("Tanh", {})), "found tanh between the layers, the description says elu"),
             (onnx_model(self.state, zeros, ones, between=("Sin",)), r"\(Sin\): not understood"),
+            (onnx_model(self.state, zeros, ones, between=("Transpose",)), r"\(Transpose\): not understood"),
+            (onnx_model(self.state, zeros, ones, between=("Elu",)), r"\(Elu\): not understood"),
         ]
         for model, cause in cases:
             onnx.save(model, self.path("theirs.onnx"))
@@ -122,6 +134,10 @@ class Foreign(unittest.TestCase):
             ({"actor.4.bias": np.ones(7)}, {}, r"actor.4: found weight \[12, 24\] and bias \[7\]"),
             ({"actor.0.weight": np.ones((32, 48))}, {}, r"'actor.0.weight' has shape \[32, 48\], expected \[32, 45\]"),
             ({"golden_observation": np.ones((50, 45)), "golden_action": np.ones((50, 12))}, {}, "golden example fails"),
+            ({"golden_observation": np.ones((50, 45))}, {}, "found golden_observation alone"),
+            ({"actor.0.weight": np.array(1.0)}, {}, r"actor.0: found weight \[1\]"),
+            ({3: np.ones(4)}, {}, "tensor 3 is not of numbers by a name"),
+            ({}, {"settings": ["kp"]}, "settings: found"),
             ({}, {"observation": "isaac"}, "expected a file or one of himloco_go2, isaac_lab_go2"),
             ({}, {"robot": "raibo"}, "expected each joint of robot 'raibo' once"),
             ({}, {"settings": {"kp_nmprad": -1}}, "expected at least 0"),

@@ -57,8 +57,8 @@ def _folded(layers: Layers, mean: np.ndarray, deviation: np.ndarray) -> Layers:
 def _stack(name: str, part: str, numbered: dict[int, dict[str, np.ndarray]]) -> Layers:
     layers: Layers = []
     for number in sorted(numbered):
-        weight = numbered[number].get("weight", np.zeros(0))
-        bias = numbered[number].get("bias", np.zeros(len(weight)))
+        weight = np.atleast_1d(numbered[number].get("weight", np.zeros(0)))
+        bias = numbered[number].get("bias", np.zeros(weight.shape[0]))
         inputs = layers[-1][0].shape[0] if layers else weight.shape[-1]
         if weight.ndim != 2 or weight.shape[1] != inputs or bias.shape != weight.shape[:1]:
             raise ValueError(f"{name}: {part}.{number}: found weight {list(weight.shape)} and bias {list(bias.shape)}, "
@@ -72,14 +72,20 @@ def _from_state_dict(name: str, found: dict[str, np.ndarray]) -> tuple[Layers, L
     parts: dict[str, dict[int, dict[str, np.ndarray]]] = {"actor": {}, "estimator": {}}
     normaliser, rest = {}, {}
     for key, value in found.items():
+        if not isinstance(key, str) or getattr(value, "dtype", np.dtype(object)).kind not in "fiu":
+            raise ValueError(f"{name}: tensor {key!r} is not of numbers by a name")
+        if _UNUSED.fullmatch(key):
+            continue
         if match := _LAYER.fullmatch(key):
-            part = match[1].split(".")[0]
-            parts[part].setdefault(int(match[2]), {})[match[3]] = value.astype(np.float64)
+            layer = parts[match[1].split(".")[0]].setdefault(int(match[2]), {})
+            if match[3] in layer:
+                raise ValueError(f"{name}: found two tensors for {match[1]}.{match[2]}.{match[3]}, one is '{key}'")
+            layer[match[3]] = value.astype(np.float64)
         elif match := _NORMALISER.fullmatch(key):
             normaliser[match[1] or match[2]] = value.astype(np.float64).reshape(-1)
         elif key in ("golden_observation", "golden_action"):
             rest[key] = value.astype(np.float32)
-        elif not _UNUSED.fullmatch(key):
+        else:
             raise ValueError(f"{name}: found tensor '{key}', expected layers of an actor and at most an estimator, such as "
                              "actor.0.weight: another network")
     actor, estimator = (_stack(name, part, numbered) for part, numbered in parts.items())
@@ -105,7 +111,14 @@ class _OnnxPerceptron:
             raise ValueError(f"{name}: found {len(graph.outputs)} outputs, expected the actions")
         self.layers: Layers = []
         self.activation = ""
-        shift, factor, value = 0.0, 1.0, graph.inputs_in_order[0]
+        if len(graph.inputs_in_order) != 1:
+            raise ValueError(f"{name}: found {len(graph.inputs_in_order)} inputs, expected the observation")
+        for node in graph.nodes:
+            # FLOAT, DOUBLE.
+            kept = node.op_type != "Cast" or attributes_of(node).get("to") in (1, 11)
+            if node.op_type == "Transpose" or not kept or (node.op_type == "Reshape" and not self._flattens(node)):
+                raise ValueError(f"{name}: {named(node)}: not understood, expected the numbers in their order")
+        shift, factor, value, is_dense = 0.0, 1.0, graph.inputs_in_order[0], False
         while (users := graph.users(value)):
             if len(users) != 1:
                 raise ValueError(f"{name}: {named(users[1])}: found a branch, expected layers in a row")
@@ -116,8 +129,10 @@ class _OnnxPerceptron:
                 weight, bias = dense.weight.astype(np.float64), dense.bias.astype(np.float64)
                 if not self.layers:  # x = (input + shift) * factor
                     weight, bias = weight * factor, bias + weight @ (np.zeros(weight.shape[1]) + shift * factor)
+                if is_dense:
+                    raise ValueError(f"{name}: {named(node)}: found no activation before it")
                 self.layers.append((weight, bias))
-                value = dense.output
+                value, is_dense = dense.output, True
                 continue
             if not self.layers and constant is not None and node.op_type in ("Sub", "Add", "Div", "Mul"):
                 constant = constant.reshape(-1)
@@ -127,14 +142,20 @@ class _OnnxPerceptron:
                     factor = factor * (constant if node.op_type == "Mul" else 1.0 / constant)
                 if node.op_type in ("Sub", "Div") and node.input[0] in graph.constants:
                     raise ValueError(f"{name}: {named(node)}: found the input subtracted or divided by")
-            elif node.op_type in _OF_ONNX and self.layers:
+            elif node.op_type in _OF_ONNX and is_dense:
                 self._activate(node)
+                is_dense = False
             else:
                 raise ValueError(f"{name}: {named(node)}: not understood, expected Gemm or MatMul with {', '.join(_OF_ONNX)} "
                                  "between them")
             value = node.output[0]
-        if graph.source(graph.outputs[0]) != value or not self.layers:
-            raise ValueError(f"{name}: found an output that is not the last layer's")
+        if graph.source(graph.outputs[0]) != value or not is_dense:
+            raise ValueError(f"{name}: found an output that is not the last dense layer's")
+
+    def _flattens(self, node: Any) -> bool:
+        """To rows of numbers, whose order stays."""
+        shape = self.graph.constants.get(node.input[1]) if len(node.input) > 1 else None
+        return shape is not None and shape.size == 2
 
     def _activate(self, node: Any) -> None:
         activation = _OF_ONNX[node.op_type]
@@ -149,7 +170,7 @@ class _OnnxPerceptron:
     def evaluate(self, x: np.ndarray) -> np.ndarray:
         """The graph itself, node by node, in double precision: not what was taken out of it."""
         values = {key: value.astype(np.float64) for key, value in self.graph.constants.items()
-                  if value.dtype.kind == "f"} | {self.graph.inputs_in_order[0]: x}
+                  if value.dtype.kind in "fiu"} | {self.graph.inputs_in_order[0]: x}
         for node in self.graph.nodes:
             given = [values[n] for n in node.input if n in values]
             a = attributes_of(node)
@@ -192,12 +213,14 @@ def read_perceptron(weights: str | dict[str, np.ndarray], activation: str) -> tu
 
     inputs = (estimator or actor)[0][0].shape[1]
     observation = rest.get("golden_observation")
+    if len(rest) == 1:
+        raise ValueError(f"{name}: found {next(iter(rest))} alone, expected golden_observation and golden_action")
     if observation is None:
         observation = np.random.default_rng(1).normal(size=(GOLDEN_STEPS, inputs)).astype(np.float32)
         action = evaluate(observation.astype(np.float64)).astype(np.float32)
     else:
         action = rest["golden_action"]
-        if observation.ndim != 2 or len(action) != len(observation) or not len(observation):
+        if observation.ndim != 2 or action.shape != (len(observation), 12) or not len(observation):
             raise ValueError(f"{name}: golden_observation: found shape {list(observation.shape)}, expected rows of "
                              f"{inputs} numbers, as many as in golden_action")
     rows = np.arange(GOLDEN_STEPS) % len(observation)

@@ -53,11 +53,18 @@ class Graph:
             if node.op_type == "Constant" and (value := attributes_of(node).get("value")) is not None:
                 self.constants[node.output[0]] = numpy_helper.to_array(value)
 
+        known = self.inputs | self.constants.keys()
+        for node in self.nodes:  # each after what it reads: no circles
+            late = [name for name in node.input if name in self.maker and name not in known]
+            if late or known & set(node.output) - self.constants.keys():
+                raise ValueError(f"{named(node)}: found before what it reads, expected the order of the computation")
+            known |= set(node.output)
         self.inputs_in_order = [value.name for value in graph.input if value.name not in self.constants]
 
     def dense(self, node: Any) -> "Dense":
-        if node.input[1] not in self.constants:
-            raise ValueError(f"{named(node)}: found no weights, expected a constant matrix")
+        weight = self.constants.get(node.input[1])
+        if weight is None or weight.ndim != 2 or weight.dtype.kind != "f":
+            raise ValueError(f"{named(node)}: found no weights, expected a constant matrix of floats")
         return Dense(self, node)
 
     def source(self, name: str) -> str:

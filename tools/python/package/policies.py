@@ -86,9 +86,11 @@ def import_policy(
     weights: a state_dict, or the file of one (npz, safetensors), or ONNX. observation: a description of what the
     network sees and how it answers, one that ships ("isaac_lab_go2", ...) or a file (tools/policy/README.md); empty: it
     is a network of policy/README.md. settings: other gains, scales or limits by the keys of policy/README.md."""
-    robot, observation = str(robot), str(observation)
+    robot, observation, name = str(robot), str(observation), str(name)
+    if settings is not None and not isinstance(settings, Mapping):
+        raise ValueError(f"settings: found {_check.shown(settings)}, expected values by key")
     if isinstance(weights, Mapping):
-        source = {key: _plain(key, value) for key, value in weights.items()}
+        source = {key: _plain(str(key), value) for key, value in weights.items()}
     else:
         source = _check.path("weights", weights)
     if observation:
@@ -99,12 +101,16 @@ def import_policy(
         raise ValueError("weights: found a state_dict without a description, expected observation=..., or write_policy")
     output = _check.path("path", path)
     with tempfile.TemporaryDirectory() as folder:
-        bare = os.path.join(folder, metadata["origin"] + ".safetensors")
+        bare = os.path.join(folder, metadata["origin"])
         write_safetensors(bare, tensors, metadata)
-        _native.import_policy(
-            input=bare, output=output, name=name or os.path.splitext(os.path.basename(output))[0], robot=robot,
-            observation=observation, settings=[f"{key}={value}" for key, value in (settings or {}).items()],
-        )
+        texts = {key: ",".join(map(str, v)) if isinstance(v, (list, tuple)) else str(v) for key, v in (settings or {}).items()}
+        try:
+            _native.import_policy(
+                input=bare, output=output, name=name or os.path.splitext(os.path.basename(output))[0], robot=robot,
+                observation=observation, settings=[f"{key}={text}" for key, text in texts.items()],
+            )
+        except ValueError as error:
+            raise ValueError(str(error).replace(bare, metadata["origin"])) from None
 
 
 class Policy:

@@ -23,6 +23,9 @@ NETWORK = [f"encoder.{name}" for name in _LSTM] + [f"{layer}.{kind}" for layer i
 SCALES = [f"{of}.{what}" for of in ("observation", "estimate") for what in ("mean", "variance")]
 
 
+_DTYPES = {"F16": "<f2", "F32": "<f4", "F64": "<f8", "I32": "<i4", "I64": "<i8"}
+
+
 def torch_names() -> dict[str, str]:
     """Names of the file by those of nn.LSTM and of nn.Sequential with an activation after each layer."""
     names = {f"encoder.{name}_l0": f"encoder.{name}" for name in _LSTM}
@@ -52,11 +55,11 @@ def _safetensors(name: str) -> dict[str, np.ndarray]:
         tensors = {}
         for key, entry in header.items():
             first, last = (begin + offset for offset in entry["data_offsets"])
-            values = np.frombuffer(data[first:last], {"F32": "<f4", "F64": "<f8"}[entry["dtype"]])
+            values = np.frombuffer(data[first:last], _DTYPES[entry["dtype"]])
             tensors[key] = values.reshape(entry["shape"])
         return tensors
     except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, struct.error) as error:
-        raise ValueError(f"{name}: found no safetensors of F32 or F64: {error or type(error).__name__}") from None
+        raise ValueError(f"{name}: found no safetensors of numbers: {error or type(error).__name__}") from None
 
 
 def read_tensors(name: str) -> dict[str, np.ndarray]:
