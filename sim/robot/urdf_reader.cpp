@@ -88,6 +88,7 @@ UrdfReader::UrdfReader(const std::string& text, std::string name, std::string ba
   std::set<std::string> children;
   for (const auto& [joint_name, joint] : urdf_->joints_) {
     if (children.insert(joint->child_link_name).second) continue;
+    for (const auto& [link_name, link] : urdf_->links_) link->child_links.clear();  // frees circles
     fail(fmt::format("two joints carry the link '{}', expected one", joint->child_link_name));
   }
 }
