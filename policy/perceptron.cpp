@@ -170,7 +170,8 @@ void Perceptron::Packed::add(const std::vector<DenseParameters>& layers,
     const int inputs = padded(static_cast<int>(layer.weight.size()) / outputs, kMostChains);
     packed.push_back({inputs, outputs, size});
     for (int row = 0; row < outputs; row += kPanelRows) {
-      size += static_cast<std::size_t>(panel_rows(outputs, row) * (1 + inputs));
+      const auto columns = 1 + static_cast<std::size_t>(inputs);
+      size += columns * static_cast<std::size_t>(panel_rows(outputs, row));
     }
   }
 }
@@ -184,7 +185,7 @@ void Perceptron::Packed::fill(const std::vector<DenseParameters>& layers,
       const int rows = panel_rows(packed[k].outputs, row);
       const int used = std::min(rows, packed[k].outputs - row);
       for (int lane = 0; lane < used; ++lane) {
-        const auto r = static_cast<std::size_t>(row + lane);
+        const std::size_t r = static_cast<std::size_t>(row) + static_cast<std::size_t>(lane);
         at[lane] = layers[k].bias[r];
         for (std::size_t j = 0; j < columns; ++j) {
           at[(1 + j) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(lane)] =
@@ -293,13 +294,15 @@ void Perceptron::step(const std::array<float, kObservationSize>& observation, Ne
       position[j] = observation[9 + joint] - p.nominal_rad[j];
       velocity[j] = observation[9 + kNumJoints + joint];
     }
-    const auto answers = static_cast<double>(step / static_cast<std::uint64_t>(p.interval));
+    const std::uint64_t answers = step / static_cast<std::uint64_t>(p.interval);
     const JointArray<float> last_action = past.last_action;
     float* const seen = past.observations.data();
     std::copy_backward(seen, seen + p.observation.inputs() - p.numbers,
                        seen + p.observation.inputs());
-    write_observation(p.observation,
-                      {observation, position, velocity, last_action, answers * p.period_s}, seen);
+    write_observation(
+        p.observation,
+        {observation, position, velocity, last_action, static_cast<double>(answers) * p.period_s},
+        seen);
     for (int k = 1; step == 0 && k < p.observation.history; ++k) {
       std::copy_n(seen, p.numbers, seen + k * p.numbers);
     }
