@@ -122,6 +122,9 @@ class Foreign(unittest.TestCase):
             (onnx_model(self.state, zeros, ones, between=("Transpose",)), r"\(Transpose\): not understood"),
             (onnx_model(self.state, zeros, ones, between=("Elu",)), r"\(Elu\): not understood"),
         ]
+        circle = onnx_model(self.state, zeros, ones)
+        circle.graph.node[2].input[0] = "actions"
+        cases.append((circle, "found a circle"))
         for model, cause in cases:
             onnx.save(model, self.path("theirs.onnx"))
             with self.assertRaisesRegex(ValueError, cause):

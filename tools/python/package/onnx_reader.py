@@ -53,13 +53,22 @@ class Graph:
             if node.op_type == "Constant" and (value := attributes_of(node).get("value")) is not None:
                 self.constants[node.output[0]] = numpy_helper.to_array(value)
 
-        known = self.inputs | self.constants.keys()
-        for node in self.nodes:  # each after what it reads: no circles
-            late = [name for name in node.input if name in self.maker and name not in known]
-            if late or known & set(node.output) - self.constants.keys():
-                raise ValueError(f"{named(node)}: found before what it reads, expected the order of the computation")
-            known |= set(node.output)
+        self.nodes = self._in_order(self.nodes)
         self.inputs_in_order = [value.name for value in graph.input if value.name not in self.constants]
+
+    def _in_order(self, nodes: list[Any]) -> list[Any]:
+        """Each node behind what it reads; a circle is a ValueError."""
+        known, ordered, waiting = self.inputs | self.constants.keys(), [], nodes
+        while waiting:
+            ready = [node for node in waiting if all(n in known or n not in self.maker for n in node.input)]
+            clash = next((node for node in ready if set(node.output) & self.inputs), None)
+            if clash is not None or not ready:
+                raise ValueError(f"{named(clash or waiting[0])}: found a circle, expected layers behind each other")
+            for node in ready:
+                known |= set(node.output)
+            ordered += ready
+            waiting = [node for node in waiting if node not in ready]
+        return ordered
 
     def dense(self, node: Any) -> "Dense":
         weight = self.constants.get(node.input[1])
