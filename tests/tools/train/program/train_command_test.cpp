@@ -288,7 +288,9 @@ TEST_F(TrainCommandTest, TheLastLinesSayWhatCameOfItAndHowToRunThePolicy) {
   EXPECT_NE(ended.out.find(" % of the battery's runs ended without a fall, velocity error "),
             std::string::npos)
       << ended.out;
-  EXPECT_NE(ended.out.find(": not a gait yet (a gait has 80 % and at most 0.20)\nwrote "), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find(": not a gait yet (a gait has 80 % and at most 0.20)\nwrote "),
+            std::string::npos)
+      << ended.out;
   const auto found = ended.out.find("run it with sandrunner --policy ");
   ASSERT_NE(found, std::string::npos) << ended.out;
   const auto path = ended.out.rfind(' ') + 1;
