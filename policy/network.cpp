@@ -170,13 +170,7 @@ void Network::step(const std::array<float, kObservationSize>& observation, Netwo
   std::copy_n(action.value, kNumJoints, output.action.begin());
 }
 
-void Network::touch_weights() const noexcept {
-  const auto* at = reinterpret_cast<const volatile float*>(weights_.get());
-  constexpr std::size_t kLine = 64 / sizeof(float);
-  for (std::size_t i = 0; i < weights_->bytes_read() / sizeof(float); i += kLine) {
-    static_cast<void>(at[i]);  // volatile: is read
-  }
-}
+void Network::touch_weights() const noexcept { touch_lines(weights_.get(), weight_bytes()); }
 
 std::size_t Network::weight_bytes() const noexcept { return weights_->bytes_read(); }
 

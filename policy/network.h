@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "policy/network_parameters.h"
+#include "policy/observation_layout.h"
 #include "rt/core/state_hash.h"
 
 namespace sandrunner {
@@ -30,11 +31,12 @@ struct TcnPast {
 
 /// What a network of others remembers (perceptron.h).
 struct PerceptronPast {
-  std::uint64_t steps = 0;                 ///< at kPolicyHz, since the start
-  JointArray<float> last_action{};         ///< in its own order, limited
-  std::array<float, 3> velocity_mps{};     ///< of its estimator
-  float unused = 0.0f;                     ///< no padding
-  std::array<float, 1024> observations{};  ///< that it sees, the newest first
+  std::uint64_t steps = 0;              ///< at kPolicyHz, since the start
+  JointArray<float> last_action{};      ///< in its own order, limited
+  std::array<float, 3> velocity_mps{};  ///< of its estimator
+  float unused = 0.0f;                  ///< no padding
+  /// That it sees, the newest first.
+  std::array<float, ObservationLayout::kMostInputs> observations{};
 };
 
 /// What the network remembers from step to step. All zero at the start.

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "policy/activations.h"
-#include "policy/text.h"
+#include "policy/names.h"
 
 namespace sandrunner {
 namespace {
@@ -32,23 +32,12 @@ constexpr TermRow kTerms[] = {{TermKind::kAngularVelocity, "angular_velocity", 3
 /// What networks of others see, and no robot measures.
 constexpr const char* kNotMeasured[] = {"linear_velocity", "height_scan", "foot_contact"};
 
-struct OrderRow {
-  HistoryOrder order;
-  const char* name;
-};
-constexpr OrderRow kOrders[] = {{HistoryOrder::kNewestFirst, "newest_first"},
-                                {HistoryOrder::kOldestFirst, "oldest_first"},
-                                {HistoryOrder::kByTerm, "by_term"}};
+constexpr Named<HistoryOrder> kOrders[] = {{HistoryOrder::kNewestFirst, "newest_first"},
+                                           {HistoryOrder::kOldestFirst, "oldest_first"},
+                                           {HistoryOrder::kByTerm, "by_term"}};
 
 const TermRow& row_of(TermKind kind) {
   return *std::ranges::find_if(kTerms, [&](const TermRow& row) { return row.kind == kind; });
-}
-
-template <typename Rows>
-std::string names_of(const Rows& rows) {
-  std::vector<std::string> names;
-  for (const auto& row : rows) names.emplace_back(row.name);
-  return joined(names, ", ");
 }
 
 std::optional<double> number_of(const std::string& word) {
@@ -183,16 +172,10 @@ std::string terms_text(const std::vector<ObservationTerm>& terms) {
 }
 
 HistoryOrder parse_history_order(const std::string& where, const std::string& text) {
-  for (const OrderRow& row : kOrders) {
-    if (text == row.name) return row.order;
-  }
-  fail_term(where, text, "one of " + names_of(kOrders));
+  return value_named(kOrders, where, text);
 }
 
-std::string history_order_text(HistoryOrder order) {
-  return std::ranges::find_if(kOrders, [&](const OrderRow& row) { return row.order == order; })
-      ->name;
-}
+std::string history_order_text(HistoryOrder order) { return name_of(kOrders, order); }
 
 void write_observation(const ObservationLayout& layout, const TermInputs& in,
                        float* numbers) noexcept {

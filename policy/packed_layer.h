@@ -4,6 +4,7 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <cstddef>
 
 #include "policy/activations.h"
 #include "policy/network_parameters.h"
@@ -11,6 +12,12 @@
 namespace sandrunner {
 
 inline constexpr int kPackedLanes = 8;  // in an AVX register
+
+/// Reads each cache line. Real-time safe.
+inline void touch_lines(const void* memory, std::size_t bytes) noexcept {
+  const auto* at = static_cast<const volatile char*>(memory);
+  for (std::size_t i = 0; i < bytes; i += 64) static_cast<void>(at[i]);  // volatile: is read
+}
 
 /// A layer's weights in the order in which `multiply_panel` reads them, so that a step is one
 /// forward stream through memory: panels of up to 64 rows; in each the bias, then one column after

@@ -9,12 +9,11 @@
 #include <iterator>
 #include <limits>
 #include <new>
-#include <tuple>
 #include <utility>
 
 #include "policy/activations.h"
+#include "policy/names.h"
 #include "policy/packed_layer.h"
-#include "policy/text.h"
 
 namespace sandrunner {
 namespace {
@@ -26,14 +25,10 @@ constexpr int kMostChains = 8;
 constexpr int kWidestInput =
     std::max(ObservationLayout::kMostInputs, PerceptronParameters::kWidest);
 
-struct ActivationRow {
-  Activation activation;
-  const char* name;
-};
-constexpr ActivationRow kActivations[] = {{Activation::kElu, "elu"},
-                                          {Activation::kRelu, "relu"},
-                                          {Activation::kLeakyRelu, "leaky_relu"},
-                                          {Activation::kTanh, "tanh"}};
+constexpr Named<Activation> kActivations[] = {{Activation::kElu, "elu"},
+                                              {Activation::kRelu, "relu"},
+                                              {Activation::kLeakyRelu, "leaky_relu"},
+                                              {Activation::kTanh, "tanh"}};
 
 constexpr int padded(int count, int to) { return (count + to - 1) / to * to; }
 
@@ -68,9 +63,6 @@ void apply(Activation activation, float* values, int count) noexcept {
   }
 }
 
-static_assert(std::tuple_size_v<decltype(PerceptronPast::observations)> ==
-              ObservationLayout::kMostInputs);
-
 /// Memory on cache lines.
 struct AlignedDelete {
   void operator()(float* memory) const noexcept {
@@ -81,20 +73,10 @@ struct AlignedDelete {
 }  // namespace
 
 Activation parse_activation(const std::string& where, const std::string& text) {
-  std::vector<std::string> names;
-  for (const ActivationRow& row : kActivations) {
-    if (text == row.name) return row.activation;
-    names.emplace_back(row.name);
-  }
-  throw InputError(fmt::format("{}: found '{}', expected one of {}", where, printable(text),
-                               joined(names, ", ")));
+  return value_named(kActivations, where, text);
 }
 
-std::string activation_text(Activation activation) {
-  return std::ranges::find_if(kActivations,
-                              [&](const ActivationRow& r) { return r.activation == activation; })
-      ->name;
-}
+std::string activation_text(Activation activation) { return name_of(kActivations, activation); }
 
 int PerceptronParameters::actor_inputs() const {
   return estimator.empty() ? observation.inputs() : observation.numbers() + estimator.back();
@@ -153,7 +135,7 @@ struct Perceptron::Packed {
   int interval = 1;  ///< steps at kPolicyHz between two answers
   double period_s = 0.0;
   float velocity_scale = 1.0f;
-  int numbers = 0;
+  int numbers = 0, all_numbers = 0;  ///< of one observation, of all that it sees
   std::vector<Layer> estimator, actor;
   std::size_t size = 0;  ///< of the weights
   std::unique_ptr<float, AlignedDelete> weights;
@@ -244,6 +226,7 @@ Perceptron::Perceptron(const PerceptronParameters& parameters,
   p.period_s = 1.0 / parameters.policy_hz;
   p.velocity_scale = static_cast<float>(parameters.velocity_scale);
   p.numbers = p.observation.numbers();
+  p.all_numbers = p.observation.inputs();
   p.add(parameters.estimator_layers, p.estimator);
   p.add(parameters.actor_layers, p.actor);
   const std::size_t bytes = p.size * sizeof(float);
@@ -258,8 +241,7 @@ void Perceptron::answer(const float* input, JointArray<float>& action,
                         std::array<float, 3>& velocity_mps) const noexcept {
   const Packed& p = *packed_;
   alignas(64) float values[kWidestInput + kMostChains] = {};
-  const int inputs = p.observation.inputs();
-  std::copy_n(input, inputs, values);
+  std::copy_n(input, p.all_numbers, values);
   velocity_mps.fill(kNone);
   if (!p.estimator.empty()) {
     p.run(p.estimator, values);
@@ -297,8 +279,7 @@ void Perceptron::step(const std::array<float, kObservationSize>& observation, Ne
     const std::uint64_t answers = step / static_cast<std::uint64_t>(p.interval);
     const JointArray<float> last_action = past.last_action;
     float* const seen = past.observations.data();
-    std::copy_backward(seen, seen + p.observation.inputs() - p.numbers,
-                       seen + p.observation.inputs());
+    std::copy_backward(seen, seen + p.all_numbers - p.numbers, seen + p.all_numbers);
     write_observation(
         p.observation,
         {observation, position, velocity, last_action, static_cast<double>(answers) * p.period_s},
@@ -321,11 +302,7 @@ void Perceptron::step(const std::array<float, kObservationSize>& observation, Ne
 }
 
 void Perceptron::touch_weights() const noexcept {
-  const volatile float* const at = packed_->weights.get();
-  constexpr std::size_t kLine = 64 / sizeof(float);
-  for (std::size_t i = 0; i < packed_->size; i += kLine) {
-    static_cast<void>(at[i]);  // volatile: is read
-  }
+  touch_lines(packed_->weights.get(), weight_bytes());
 }
 
 std::size_t Perceptron::weight_bytes() const noexcept { return packed_->size * sizeof(float); }

@@ -10,7 +10,6 @@
 
 #include "policy/named_tensors.h"
 #include "policy/network.h"
-#include "policy/observation_layout.h"
 
 namespace sandrunner {
 

@@ -9,6 +9,11 @@
 
 namespace sandrunner {
 
+bool has_one_scale(const PolicySpec& spec) {
+  return std::ranges::all_of(spec.action_scale_rad,
+                             [&](double scale) { return scale == spec.action_scale_rad[0]; });
+}
+
 void require_joints(const PolicySpec& spec, const RobotDescription& robot) {
   for (int j = 0; j < kNumJoints; ++j) {
     if (spec.joint_names[j] == robot.joint_names[j]) continue;

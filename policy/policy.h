@@ -40,6 +40,9 @@ struct PolicySpec {
   std::map<std::string, std::string> provenance;
 };
 
+/// Whether all joints have the same action scale.
+bool has_one_scale(const PolicySpec& spec);
+
 /// Throws InputError unless the policy is for a robot with these joints, in the same order.
 void require_joints(const PolicySpec& spec, const RobotDescription& robot);
 

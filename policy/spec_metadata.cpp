@@ -176,7 +176,7 @@ std::map<std::string, std::string> spec_metadata(const PolicySpec& spec) {
   // fmt writes the shortest text that reads back as the same number.
   const auto text = [](auto value) { return fmt::format("{}", value); };
   const JointArray<double>& scale = spec.action_scale_rad;
-  const bool one = std::ranges::all_of(scale, [&](double s) { return s == scale[0]; });
+  const bool one = has_one_scale(spec);
   std::map<std::string, std::string> metadata = {
       {"sandrunner.name", spec.name},
       {"sandrunner.joint_names", joined(spec.joint_names, ",")},

@@ -7,17 +7,14 @@
 #include <iterator>
 #include <vector>
 
+#include "policy/names.h"
 #include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {
 
-struct EncoderName {
-  const char* name;
-  EncoderKind kind;
-};
-constexpr EncoderName kEncoders[] = {
-    {"lstm", EncoderKind::kLstm}, {"tcn", EncoderKind::kTcn}, {"insight", EncoderKind::kInsight}};
+constexpr Named<EncoderKind> kEncoders[] = {
+    {EncoderKind::kLstm, "lstm"}, {EncoderKind::kTcn, "tcn"}, {EncoderKind::kInsight, "insight"}};
 
 struct PartName {
   const char* name;
@@ -28,21 +25,10 @@ constexpr PartName kParts[] = {{"encoding", &ActorInputs::encoding},
                                {"proprioception", &ActorInputs::proprioception},
                                {"terrain", &ActorInputs::terrain}};
 
-template <typename Table>
-std::string names_of(const Table& table) {
-  std::vector<std::string> names;
-  for (const auto& row : table) names.emplace_back(row.name);
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
 }  // namespace
 
 EncoderKind parse_encoder(const std::string& key, const std::string& text) {
-  for (const EncoderName& encoder : kEncoders) {
-    if (text == encoder.name) return encoder.kind;
-  }
-  throw InputError(
-      fmt::format("{}: found '{}', expected one of {}", key, text, names_of(kEncoders)));
+  return value_named(kEncoders, key, text);
 }
 
 ActorInputs parse_actor_inputs(const std::string& key, const std::string& text) {
@@ -63,10 +49,7 @@ ActorInputs parse_actor_inputs(const std::string& key, const std::string& text) 
   return sees;
 }
 
-std::string encoder_text(EncoderKind encoder) {
-  return std::ranges::find_if(kEncoders, [&](const EncoderName& e) { return e.kind == encoder; })
-      ->name;
-}
+std::string encoder_text(EncoderKind encoder) { return name_of(kEncoders, encoder); }
 
 std::string actor_inputs_text(const ActorInputs& actor) {
   std::vector<std::string> seen;

@@ -171,8 +171,9 @@ int begin_robot(const Options& options) {
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   const std::string path =
       std::filesystem::proximate(urdf, folder.empty() ? "." : folder, none).generic_string();
-  const sim::NewRobot robot = sim::new_robot(read_input_file(urdf, "a URDF"), urdf, path);
-  sim::parse_robot(robot.file, file, read_input_file(urdf, "a URDF"), urdf);
+  const std::string text = read_input_file(urdf, "a URDF");
+  const sim::NewRobot robot = sim::new_robot(text, urdf, path);
+  sim::parse_robot(robot.file, file, text, urdf);
   write_file(file, robot.file);
   fmt::print("wrote {}\nguesses, for a person to check (sim/robot/README.md):\n", file);
   for (const std::string& guess : robot.guesses) fmt::print("  {}\n", guess);

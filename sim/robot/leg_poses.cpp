@@ -33,14 +33,19 @@ std::optional<double> within_stops(const LegGeometry& leg, int j, double turn_ra
   return best;
 }
 
+/// How far the foot's direction from the hip is turned from the thigh's.
+double thigh_to_foot(const LegGeometry& leg, double bend_rad) {
+  const double shank = length_of(leg.foot);
+  return std::atan2(shank * std::sin(bend_rad), length_of(leg.kfe) + shank * std::cos(bend_rad));
+}
+
 /// The pose with the knee bent by `bend_rad` and the foot in direction `foot_rad` from the hip,
 /// both turns about y; HAA at 0, or at the stop next to it.
 std::optional<LegJoints<double>> bent(const LegGeometry& leg, double bend_rad, double foot_rad) {
-  const double thigh = length_of(leg.kfe), shank = length_of(leg.foot);
   const double straight = angle_of(leg.foot) - angle_of(leg.kfe);
   const auto kfe = within_stops(leg, 2, bend_rad - straight);
-  const double to_foot = std::atan2(shank * std::sin(bend_rad), thigh + shank * std::cos(bend_rad));
-  const auto hfe = within_stops(leg, 1, foot_rad - to_foot - angle_of(leg.kfe));
+  const auto hfe =
+      within_stops(leg, 1, foot_rad - thigh_to_foot(leg, bend_rad) - angle_of(leg.kfe));
   if (!kfe || !hfe) return std::nullopt;
   return LegJoints<double>{std::clamp(0.0, leg.lower_rad[0], leg.upper_rad[0]), *hfe, *kfe};
 }
@@ -50,15 +55,19 @@ double reach_of(const LegGeometry& leg, double bend_rad) {
   return std::sqrt(thigh * thigh + shank * shank + 2.0 * thigh * shank * std::cos(bend_rad));
 }
 
+/// Whether all stops allow this bend with the foot straight below.
+bool all_bend(const std::array<LegGeometry, kNumLegs>& legs, double bend_rad) {
+  return std::ranges::all_of(
+      legs, [&](const LegGeometry& leg) { return bent(leg, bend_rad, 0.0).has_value(); });
+}
+
 /// The first of the bends that all stops allow with the foot straight below; knees behind the hips
 /// if they can. NaN: none.
 double first_bend(const std::array<LegGeometry, kNumLegs>& legs,
                   std::initializer_list<double> bends) {
   for (const double side : {-1.0, 1.0}) {
     for (const double bend : bends) {
-      const bool all = std::ranges::all_of(
-          legs, [&](const LegGeometry& leg) { return bent(leg, side * bend, 0.0).has_value(); });
-      if (all) return side * bend;
+      if (all_bend(legs, side * bend)) return side * bend;
     }
   }
   return std::nan("");
@@ -120,9 +129,7 @@ LegPoses leg_poses(const UrdfReader& urdf, const std::array<LegGeometry, kNumLeg
   double fold = nominal;
   for (double more = 0.05; std::fabs(nominal) + more <= kMostBend_rad; more += 0.05) {
     const double bend = std::copysign(std::fabs(nominal) + more, nominal);
-    const bool all = std::ranges::all_of(
-        legs, [&](const LegGeometry& leg) { return bent(leg, bend, 0.0).has_value(); });
-    if (!all) break;
+    if (!all_bend(legs, bend)) break;
     fold = bend;
   }
   poses.fold_rad = mean_fold(urdf, legs, fold);
@@ -134,9 +141,8 @@ LegPoses leg_poses(const UrdfReader& urdf, const std::array<LegGeometry, kNumLeg
     std::copy_n(stands.begin(), kJointsPerLeg, &poses.nominal_rad[kJointsPerLeg * l]);
     std::copy_n(lies.begin(), kJointsPerLeg, &poses.lying_rad[kJointsPerLeg * l]);
   }
-  const double thigh = length_of(legs[0].kfe), shank = length_of(legs[0].foot);
-  const double to_foot = std::atan2(shank * std::sin(nominal), thigh + shank * std::cos(nominal));
-  poses.knee_lever_m = std::fabs(thigh * std::sin(to_foot));
+  poses.knee_lever_m =
+      std::fabs(length_of(legs[0].kfe) * std::sin(thigh_to_foot(legs[0], nominal)));
   return poses;
 }
 

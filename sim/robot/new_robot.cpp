@@ -11,6 +11,7 @@
 
 #include "rt/base/errors.h"
 #include "rt/base/toml_text.h"
+#include "rt/core/gate_config.h"
 #include "sim/robot/leg_poses.h"
 #include "sim/robot/urdf_legs.h"
 #include "sim/robot/urdf_reader.h"
@@ -22,8 +23,8 @@ using Texts = std::array<std::string, kNumLegs>;
 
 /// Largest torque and speed that a URDF may say in earnest; more stands for "no limit".
 constexpr double kMostTorque_nm = 999.0, kMostSpeed_radps = 99.0;
-/// The gate's own largest limits.
-constexpr double kMostKp_nmprad = 1000.0, kMostKd_nmsprad = 50.0;
+constexpr double kMostKp_nmprad = gate_threshold(&GateConfig::kp_limit_nmprad).ceiling;
+constexpr double kMostKd_nmsprad = gate_threshold(&GateConfig::kd_limit_nmsprad).ceiling;
 /// In a Stand that holds its pose, a knee gives way by this.
 constexpr double kSag_rad = 0.05;
 

@@ -93,10 +93,7 @@ void read_limits(const UrdfReader& urdf, const RobotFile& file, const urdf::Join
                     "joints.torque_limit_nm, joints.speed_limit_radps",
                     joint.name));
   }
-  if (!(m.lower_rad[i] < m.upper_rad[i])) {
-    urdf.fail(fmt::format("joint '{}': found stops {} and {}, expected lower < upper", joint.name,
-                          m.lower_rad[i], m.upper_rad[i]));
-  }
+  urdf.check_stops(joint.name, m.lower_rad[i], m.upper_rad[i]);
 }
 
 // Joint j of leg l; returns where it is from the parent's origin, base axes, m.

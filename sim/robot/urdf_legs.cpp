@@ -126,10 +126,7 @@ LegGeometry geometry_of(const UrdfReader& urdf, std::string parent, const Chain&
     const bool stops = joint.type == urdf::Joint::REVOLUTE && joint.limits;
     g.lower_rad[j] = stops ? joint.limits->lower : kFreeStops_rad[j][0];
     g.upper_rad[j] = stops ? joint.limits->upper : kFreeStops_rad[j][1];
-    if (!(g.lower_rad[j] < g.upper_rad[j])) {
-      urdf.fail(fmt::format("joint '{}': found stops {} and {}, expected lower < upper", joint.name,
-                            g.lower_rad[j], g.upper_rad[j]));
-    }
+    urdf.check_stops(joint.name, g.lower_rad[j], g.upper_rad[j]);
     parent = joint.child_link_name;
   }
   return g;

@@ -128,6 +128,13 @@ const urdf::Joint& UrdfReader::joint(const std::string& joint_name, const std::s
   return j;
 }
 
+void UrdfReader::check_stops(const std::string& joint_name, double lower_rad,
+                             double upper_rad) const {
+  if (lower_rad < upper_rad) return;
+  fail(fmt::format("joint '{}': found stops {} and {}, expected lower < upper", joint_name,
+                   lower_rad, upper_rad));
+}
+
 // Of the link itself; without a mass it is a frame.
 Body<double> UrdfReader::body_alone(const urdf::Link& link) const {
   if (!link.inertial || link.inertial->mass == 0.0) return {};

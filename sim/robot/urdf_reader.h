@@ -49,6 +49,8 @@ class UrdfReader {
   const urdf::Joint& joint(const std::string& joint_name, const std::string& parent,
                            const std::string& child, Vec3<double>& place_m,
                            Vec3<double>& axis) const;
+  /// Fails unless a joint can move between these stops.
+  void check_stops(const std::string& joint_name, double lower_rad, double upper_rad) const;
   /// Mass, centre of mass (from the link's origin) and inertia of a link and all that is fixed to
   /// it; of the base also of what it is fixed to.
   Body<double> body(const std::string& link_name) const;

@@ -66,7 +66,7 @@ void print_row(const char* label, const std::string& text) {
 void print_spec(const PolicySpec& spec) {
   print_row("joints", printable(joined(spec.joint_names, ", "), 200));
   const JointArray<double>& scale = spec.action_scale_rad;
-  const bool one = std::ranges::all_of(scale, [&](double s) { return s == scale[0]; });
+  const bool one = has_one_scale(spec);
   print_row("joint target",
             fmt::format("nominal + {} rad * action, action {}",
                         one ? fmt::format("{}", scale[0]) : "(" + joined(scale, ", ") + ")",

@@ -13,15 +13,20 @@
 namespace sandrunner {
 namespace {
 
+/// What every import takes from its robot and its file.
+void set_origin(const PolicyImport& given, const sim::Robot& robot, PolicySpec& spec) {
+  spec.torque_limit_nm = *std::ranges::max_element(robot.model.torque_limit_nm);
+  const std::filesystem::path input = given.input;
+  spec.name = given.name.empty() ? input.stem().string() : given.name;
+  spec.provenance["imported_from"] = input.filename().string();
+}
+
 /// Of a network of others, with the golden example that import_policy.py adds.
 void import_perceptron(const PolicyImport& given, const sim::Robot& robot) {
   PerceptronFile file = read_description(given.observation, robot.description);
   take_bare_tensors(given.input, read_safetensors(given.input), file);
   PolicySpec& spec = file.spec;
-  spec.torque_limit_nm = *std::ranges::max_element(robot.model.torque_limit_nm);
-  const std::filesystem::path input = given.input;
-  spec.name = given.name.empty() ? input.stem().string() : given.name;
-  spec.provenance["imported_from"] = input.filename().string();
+  set_origin(given, robot, spec);
   TensorFile content = encode_perceptron(given.input, file);
   for (const std::string& assignment : given.assignments) {
     set_in_metadata(content.metadata, assignment);
@@ -41,15 +46,12 @@ void import_policy(const PolicyImport& given) {
   PolicySpec& spec = file.spec;
   spec.joint_names = robot.description.joint_names;
   spec.nominal_position_rad = robot.nominal_rad;
-  spec.torque_limit_nm = *std::ranges::max_element(robot.model.torque_limit_nm);
   spec.action_scale_rad.fill(0.3);
   spec.kp_nmprad = 50.0;
   spec.kd_nmsprad = 0.5;
   spec.yaw_command_clip_mps2 = 2.943;  // 0.3 g
   file.parameters.observation_clip = 10.0f;
-  const std::filesystem::path input = given.input;
-  spec.name = given.name.empty() ? input.stem().string() : given.name;
-  spec.provenance["imported_from"] = input.filename().string();
+  set_origin(given, robot, spec);
   for (const std::string& assignment : given.assignments) set_in_spec(file, assignment);
   file.golden = make_golden_example(file.parameters);
   write_policy_file(given.output, file);

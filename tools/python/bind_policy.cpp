@@ -32,10 +32,7 @@ py::dict spec_dict(const PolicySpec& spec, float observation_clip) {
   all["joint_names"] = spec.joint_names;
   all["nominal_position_rad"] = spec.nominal_position_rad;
   const JointArray<double>& scale = spec.action_scale_rad;
-  all["action_scale_rad"] = scale[0];
-  if (std::ranges::any_of(scale, [&](double s) { return s != scale[0]; })) {
-    all["action_scale_rad"] = scale;
-  }
+  all["action_scale_rad"] = has_one_scale(spec) ? py::cast(scale[0]) : py::cast(scale);
   all["action_clip"] = spec.action_clip;
   all["kp_nmprad"] = spec.kp_nmprad;
   all["kd_nmsprad"] = spec.kd_nmsprad;
