@@ -5,7 +5,9 @@
 # kept, with packages and build, in ~/.cache/sandrunner/SUITE (5 GB). What git ignores does not come
 # along. As root. Reports on stderr.
 set -euo pipefail
-case ${1:-} in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+for word; do
+  case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
+done
 
 fail() {
   echo "debian.sh: $1" >&2
