@@ -65,9 +65,7 @@ void apply(Activation activation, float* values, int count) noexcept {
 
 /// Memory on cache lines.
 struct AlignedDelete {
-  void operator()(float* memory) const noexcept {
-    ::operator delete (memory, std::align_val_t{64});
-  }
+  void operator()(float* memory) const noexcept { ::operator delete(memory, std::align_val_t{64}); }
 };
 
 }  // namespace
@@ -230,7 +228,7 @@ Perceptron::Perceptron(const PerceptronParameters& parameters,
   p.add(parameters.estimator_layers, p.estimator);
   p.add(parameters.actor_layers, p.actor);
   const std::size_t bytes = p.size * sizeof(float);
-  p.weights.reset(static_cast<float*>(::operator new (bytes, std::align_val_t{64})));
+  p.weights.reset(static_cast<float*>(::operator new(bytes, std::align_val_t{64})));
   std::fill_n(p.weights.get(), p.size, 0.0f);
   p.fill(parameters.estimator_layers, p.estimator);
   p.fill(parameters.actor_layers, p.actor);

@@ -19,7 +19,7 @@ constexpr std::string_view kProvenancePrefix = "provenance.";
 /// Keys of the envelope in the metadata.
 struct EnvelopeKey {
   const char* name;
-  double CommandEnvelope::*value;
+  double CommandEnvelope::* value;
 };
 constexpr EnvelopeKey kEnvelopeKeys[] = {
     {"sandrunner.envelope.forward_mps", &CommandEnvelope::forward_mps},

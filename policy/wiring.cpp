@@ -18,7 +18,7 @@ constexpr Named<EncoderKind> kEncoders[] = {
 
 struct PartName {
   const char* name;
-  bool ActorInputs::*seen;
+  bool ActorInputs::* seen;
 };
 constexpr PartName kParts[] = {{"encoding", &ActorInputs::encoding},
                                {"estimate", &ActorInputs::estimate},

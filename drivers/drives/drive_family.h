@@ -84,59 +84,53 @@ struct DriveQuestion {
 };
 
 template <typename Drive>
-concept DriveFamily = std::is_trivially_copyable_v<Drive> &&
+concept DriveFamily =
+    std::is_trivially_copyable_v<Drive> &&
     requires(const Drive& drive, Drive& changed, const CanFrame& received, CanFrame& frame,
              DriveState& state, ConfigTree& table, std::vector<SettingLine>& lines) {
-  /// The value of hardware.bus.protocol.
-  { Drive::kProtocol } -> std::convertible_to<const char*>;
+      /// The value of hardware.bus.protocol.
+      { Drive::kProtocol } -> std::convertible_to<const char*>;
 
-  // --- configuration; throws InputError ---
+      // --- configuration; throws InputError ---
 
-  { can_formats(drive) } -> std::same_as<CanFormats>;
-  set_address(changed, int{}, CanFormat{});
-  /// Reads the family's own keys of a table [[hardware.drive]]; the text names the drive in errors.
-  read_drive(changed, table, std::string{});
-  /// Lists these keys for the reference, as keys of the table that the text names.
-  list_drive_settings(drive, lines, std::string{});
-  { drive_id(drive) } -> std::same_as<int>;
-  /// The identifier of its replies, where that is a setting.
-  { reply_id(drive) } -> std::same_as<std::optional<std::uint32_t>>;
-  { drive_ranges(drive) } -> std::same_as<DriveRanges>;
-  /// Whether the drive forgets the time-out of bring-up without its supply.
-  { forgets_timeout(drive) } -> std::same_as<bool>;
-  /// Whether the drive's time-out can neither be read nor set over CAN.
-  { hides_timeout(drive) } -> std::same_as<bool>;
-  { drive_questions(drive, double{}) } -> std::same_as<std::vector<DriveQuestion>>;
+      { can_formats(drive) } -> std::same_as<CanFormats>;
+      set_address(changed, int{}, CanFormat{});
+      /// Reads the family's own keys of a table [[hardware.drive]]; the text names the drive in
+      /// errors.
+      read_drive(changed, table, std::string{});
+      /// Lists these keys for the reference, as keys of the table that the text names.
+      list_drive_settings(drive, lines, std::string{});
+      { drive_id(drive) } -> std::same_as<int>;
+      /// The identifier of its replies, where that is a setting.
+      { reply_id(drive) } -> std::same_as<std::optional<std::uint32_t>>;
+      { drive_ranges(drive) } -> std::same_as<DriveRanges>;
+      /// Whether the drive forgets the time-out of bring-up without its supply.
+      { forgets_timeout(drive) } -> std::same_as<bool>;
+      /// Whether the drive's time-out can neither be read nor set over CAN.
+      { hides_timeout(drive) } -> std::same_as<bool>;
+      { drive_questions(drive, double{}) } -> std::same_as<std::vector<DriveQuestion>>;
 
-  // --- frames; real-time safe ---
+      // --- frames; real-time safe ---
 
-  /// Switches the drive off. True: clears its fault instead, where that is another frame.
-  { encode_off(drive, bool{}, frame) }
-  noexcept;
-  { encode_enable(drive, DriveTerms{}, frame) }
-  noexcept;
-  { encode_command(drive, SetPoint{}, DriveTerms{}, frame) }
-  noexcept;
-  /// Queries the state and enables nothing. Only the address has to be set.
-  { encode_probe(drive, frame) }
-  noexcept;
-  { is_probe_reply(drive, received) }
-  noexcept->std::same_as<bool>;
-  /// `state` is left as it is unless the result is kState.
-  { decode_state(drive, received, state) }
-  noexcept->std::same_as<ReplyKind>;
-  /// Whether this frame is a command of some host to the drive.
-  { is_command_to(drive, received) }
-  noexcept->std::same_as<bool>;
+      /// Switches the drive off. True: clears its fault instead, where that is another frame.
+      { encode_off(drive, bool{}, frame) } noexcept;
+      { encode_enable(drive, DriveTerms{}, frame) } noexcept;
+      { encode_command(drive, SetPoint{}, DriveTerms{}, frame) } noexcept;
+      /// Queries the state and enables nothing. Only the address has to be set.
+      { encode_probe(drive, frame) } noexcept;
+      { is_probe_reply(drive, received) } noexcept -> std::same_as<bool>;
+      /// `state` is left as it is unless the result is kState.
+      { decode_state(drive, received, state) } noexcept -> std::same_as<ReplyKind>;
+      /// Whether this frame is a command of some host to the drive.
+      { is_command_to(drive, received) } noexcept -> std::same_as<bool>;
 
-  // --- texts ---
+      // --- texts ---
 
-  { fault_words(drive, std::uint8_t{}) } -> std::convertible_to<std::string>;
-  /// The meaning of a frame of encode_off, encode_enable or encode_command.
-  { describe(drive, received) } -> std::same_as<std::string>;
-  /// A reply to `received` of the length that the drive's has.
-  { encode_example_reply(drive, received, frame) }
-  noexcept;
-};
+      { fault_words(drive, std::uint8_t{}) } -> std::convertible_to<std::string>;
+      /// The meaning of a frame of encode_off, encode_enable or encode_command.
+      { describe(drive, received) } -> std::same_as<std::string>;
+      /// A reply to `received` of the length that the drive's has.
+      { encode_example_reply(drive, received, frame) } noexcept;
+    };
 
 }  // namespace sandrunner

@@ -22,7 +22,7 @@ template <typename T>
 class Shared {
  public:
   /// Throws InputError, which begins with `key`.
-  explicit Shared(const char* key) : value_(new (map_shared(sizeof(T), key)) T) {}
+  explicit Shared(const char* key) : value_(new(map_shared(sizeof(T), key)) T) {}
   ~Shared() { munmap(value_, sizeof(T)); }
   Shared(const Shared&) = delete;
   Shared& operator=(const Shared&) = delete;

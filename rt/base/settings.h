@@ -29,11 +29,11 @@ namespace sandrunner {
 /// An angle that is kept in rad and set in degrees.
 template <typename Settings>
 struct DegreesSetting {
-  constexpr explicit DegreesSetting(double Settings::*member_rad) noexcept : member(member_rad) {}
-  double Settings::*member;
+  constexpr explicit DegreesSetting(double Settings::* member_rad) noexcept : member(member_rad) {}
+  double Settings::* member;
 };
 template <typename Settings>
-constexpr DegreesSetting<Settings> degrees(double Settings::*member_rad) noexcept {
+constexpr DegreesSetting<Settings> degrees(double Settings::* member_rad) noexcept {
   return DegreesSetting<Settings>(member_rad);
 }
 
@@ -41,11 +41,11 @@ constexpr DegreesSetting<Settings> degrees(double Settings::*member_rad) noexcep
 /// for three joints that are alike, three for four legs that are.
 template <typename Settings, std::size_t kSize, std::size_t kFew>
 struct RepeatedSetting {
-  std::array<double, kSize> Settings::*member;
+  std::array<double, kSize> Settings::* member;
 };
 template <std::size_t kFew, typename Settings, std::size_t kSize>
 constexpr RepeatedSetting<Settings, kSize, kFew> repeated(
-    std::array<double, kSize> Settings::*array) noexcept {
+    std::array<double, kSize> Settings::* array) noexcept {
   return {array};
 }
 

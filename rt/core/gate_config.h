@@ -96,7 +96,7 @@ struct GateConfig {
 template <typename T, typename Value = T>
 struct GateThreshold {
   const char* key;  ///< setting controller.gate.<key>; null: no setting has it
-  Value GateConfig::*value;
+  Value GateConfig::* value;
   T least, ceiling;
   const char* meaning;  ///< of that setting, in a sentence
 };
@@ -157,14 +157,14 @@ inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
 };
 
 /// The row of a threshold. Does not compile for one that has none.
-consteval GateThreshold<double> gate_threshold(double GateConfig::*value) {
+consteval GateThreshold<double> gate_threshold(double GateConfig::* value) {
   for (const GateThreshold<double>& threshold : kGateThresholds) {
     if (threshold.value == value) return threshold;
   }
   throw "no such threshold";
 }
 consteval GateThreshold<double, LegJoints<double>> gate_threshold(
-    LegJoints<double> GateConfig::*value) {
+    LegJoints<double> GateConfig::* value) {
   for (const auto& threshold : kGateJointThresholds) {
     if (threshold.value == value) return threshold;
   }

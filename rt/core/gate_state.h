@@ -33,7 +33,7 @@ struct GateCounters {
 /// Names of the counters, for all who show them.
 struct GateCounterName {
   const char* name;
-  std::uint64_t GateCounters::*ticks;
+  std::uint64_t GateCounters::* ticks;
 };
 inline constexpr std::array kGateCounters = {
     GateCounterName{"joint_past_stop", &GateCounters::joint_past_stop},

@@ -153,7 +153,7 @@ std::vector<Setting<GateConfig>> gate_settings(const RobotRanges& r) {
   };
   for (const auto& threshold : kGateThresholds) {
     add(threshold);
-    const auto from_robot = [&](double GateConfig::*member, double most, const char* range) {
+    const auto from_robot = [&](double GateConfig::* member, double most, const char* range) {
       if (threshold.value != member) return;
       rows.back().max = most;
       rows.back().fallback = kFromRobotFile;

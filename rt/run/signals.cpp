@@ -106,7 +106,7 @@ void SignalWatch::run_begins() noexcept {
 CutInACrash::CutInACrash(RobotIo& robot) {
   robot_of_a_crash = &robot;
   for (const int number : kCrashes) {
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = crash;
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     sigaction(number, &action, nullptr);

@@ -112,7 +112,7 @@ class Rows {
 };
 
 /// Of three joints the largest limit of their legs, or NaN where one has none in earnest.
-LegJoints<double> limits_of(const UrdfLegs& found, double urdf::JointLimits::*limit, double most) {
+LegJoints<double> limits_of(const UrdfLegs& found, double urdf::JointLimits::* limit, double most) {
   LegJoints<double> result{};
   for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
     for (const auto& leg : found.joints) {

@@ -217,11 +217,8 @@ TEST_F(PolicyFileTest, RefusesOtherSizesAndNamesThem) {
         f.tensors["encoder.weight_hh"] = {{512, 128}, std::vector<float>(512 * 128)};
       },
       "tensor 'encoder.weight_hh' has shape [512, 128], expected [256, 64]");
-  expect_refused_after(
-      [](TensorFile& f) {
-        f.tensors["actor.0.weight"].shape = {75, 256};
-      },
-      "tensor 'actor.0.weight' has shape [75, 256], expected [256, 75]");
+  expect_refused_after([](TensorFile& f) { f.tensors["actor.0.weight"].shape = {75, 256}; },
+                       "tensor 'actor.0.weight' has shape [75, 256], expected [256, 75]");
   expect_refused_after(
       [](TensorFile& f) {
         f.tensors["golden.action"] = {{49, kNumJoints}, std::vector<float>(49 * kNumJoints)};
@@ -232,11 +229,8 @@ TEST_F(PolicyFileTest, RefusesOtherSizesAndNamesThem) {
 TEST_F(PolicyFileTest, RefusesMissingAndUnknownTensors) {
   expect_refused_after([](TensorFile& f) { f.tensors.erase("estimator.1.bias"); },
                        "tensor 'estimator.1.bias' is missing");
-  expect_refused_after(
-      [](TensorFile& f) {
-        f.tensors["critic.0.bias"] = {{1}, {0.0f}};
-      },
-      "unknown tensor 'critic.0.bias'");
+  expect_refused_after([](TensorFile& f) { f.tensors["critic.0.bias"] = {{1}, {0.0f}}; },
+                       "unknown tensor 'critic.0.bias'");
 }
 
 TEST_F(PolicyFileTest, RefusesNaN) {

@@ -39,7 +39,7 @@ RawTerminal::RawTerminal() {
   if (tcgetattr(STDIN_FILENO, &before) != 0) {
     throw InputError("drive: found a standard input that is not a terminal, expected a keyboard");
   }
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = crash;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   for (const int number : kCrashes) sigaction(number, &action, nullptr);

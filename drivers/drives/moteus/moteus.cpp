@@ -61,7 +61,7 @@ constexpr CodeWords kFaultWords[] = {
 template <typename Values>
 struct RegisterOf {
   MoteusRegister reg;
-  double Values::*member;
+  double Values::* member;
   double factor;
 };
 constexpr RegisterOf<MoteusReply> kReplyRegisters[] = {

@@ -111,7 +111,7 @@ void McapWriter::FreeCompressor::operator()(void* context) const noexcept {
 }
 
 void McapWriter::try_path(const std::string& path) {
-  struct stat before {};
+  struct stat before{};
   const bool there = ::stat(path.c_str(), &before) == 0;
   ::close(open_file(path, 0));
   if (!there) ::unlink(path.c_str());

@@ -18,7 +18,7 @@ namespace {
 using MakeSpoil = std::function<decltype(FaultyRobot::spoil)()>;
 
 /// Low-pass of first order of a joint's speed or torque.
-MakeSpoil low_pass(JointArray<double> JointState::*values, double time_s) {
+MakeSpoil low_pass(JointArray<double> JointState::* values, double time_s) {
   return [=] {
     return [=, low = JointArray<double>{}](SensorFrame& fresh, auto&&...) mutable {
       for (int j = 0; j < kNumJoints; ++j) {

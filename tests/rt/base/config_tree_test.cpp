@@ -90,9 +90,7 @@ TEST(ConfigTreeTest, NumbersThatRepeatMayBeGivenOnce) {
             "of 3");
   EXPECT_EQ(error_of([&] { read("one", 4, 2); }),
             "a.toml:1: one: found 2, expected an array of 2 finite numbers from 0 to 9, or of 4");
-  EXPECT_EQ(error_of([&] {
-              config.repeated("all", {0.0, 0.0, 0.0}, 1, 0.0, 2.0);
-            }),
+  EXPECT_EQ(error_of([&] { config.repeated("all", {0.0, 0.0, 0.0}, 1, 0.0, 2.0); }),
             "a.toml:2: all[2]: found 3, expected a finite number from 0 to 2, or an array of 3");
 }
 
@@ -122,9 +120,7 @@ TEST(ConfigTreeTest, RefusesOtherTypesThanAskedFor) {
   EXPECT_EQ(error_of([&] { config.flag("a", true); }),
             "a.toml:1: a: found 1.5, expected true or false");
   EXPECT_EQ(error_of([&] { config.text("a", ""); }), "a.toml:1: a: found 1.5, expected a string");
-  EXPECT_EQ(error_of([&] {
-              config.choice("b", "u", {"u", "v"});
-            }),
+  EXPECT_EQ(error_of([&] { config.choice("b", "u", {"u", "v"}); }),
             "a.toml:2: b: found \"x\\ny\", expected one of \"u\", \"v\"");
   EXPECT_EQ(
       error_of([&] { config.numbers("v", {}, 3, 0.0, kInf); }),

@@ -91,10 +91,7 @@ std::vector<Case> cases() {
       frame(Fault::kJointTorque, 19, [](auto& f, auto&) { f.joints.torque_nm[7] = 76.2; }),
       push(Fault::kJointPosition, [](auto& s) { s.robot.rigid.q[5] = -0.0262 + 0.351; }),
       push(Fault::kJointSpeed, [](auto& s) { s.robot.rigid.qd[1] = -60.1; }),
-      push(Fault::kTilt,
-           [](auto& s) {
-             s.robot.rigid.orientation = {0.86, 0.0, 0.51, 0.0};
-           }),
+      push(Fault::kTilt, [](auto& s) { s.robot.rigid.orientation = {0.86, 0.0, 0.51, 0.0}; }),
   };
   Case command = {Fault::kNonFiniteCommand, kDisturbed_tick, nullptr};
   command.ask = [](OperatorCommand& c) {

@@ -32,8 +32,7 @@ RealtimeConfig all_off() {
 }
 
 /// Sets a thread up and calls `check` in it afterwards.
-void with_control_thread(
-    RealtimeSetup& setup, const std::function<void()>& check = [] {}) {
+void with_control_thread(RealtimeSetup& setup, const std::function<void()>& check = [] {}) {
   std::atomic<bool> adopted{false};
   std::thread thread([&] {
     adopted.wait(false);

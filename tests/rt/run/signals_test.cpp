@@ -281,7 +281,9 @@ TEST(SignalWatchDeathTest, AStartIsEndedByWhatWouldStopIt) {
 TEST(SignalWatchDeathTest, AfterItASignalKillsAgain) {
   const auto child = [] {
     signal(SIGTERM, SIG_DFL);
-    { SignalWatch watch; }
+    {
+      SignalWatch watch;
+    }
     kill(getpid(), SIGTERM);
     _exit(0);
   };

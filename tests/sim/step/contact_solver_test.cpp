@@ -226,12 +226,13 @@ TEST_P(ContactSolverTest, ImpulsesMeetTheConditionsWithKneesAndBaseOnTheGround) 
                               worst.opening, worst.disc}));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Grounds, ContactSolverTest,
-    testing::Values(GroundKind::kGranular, GroundKind::kRigid, GroundKind::kLinear),
-    [](const auto& kind) {
-      return std::string(std::array{"granular", "rigid", "linear"}[static_cast<int>(kind.param)]);
-    });
+INSTANTIATE_TEST_SUITE_P(Grounds, ContactSolverTest,
+                         testing::Values(GroundKind::kGranular, GroundKind::kRigid,
+                                         GroundKind::kLinear),
+                         [](const auto& kind) {
+                           return std::string(std::array{"granular", "rigid",
+                                                         "linear"}[static_cast<int>(kind.param)]);
+                         });
 
 TEST(HardContactTest, OneFootStopsAtAnyVelocity) {
   // One hard foot of a trotting robot, hit from anywhere: sticking, sliding and jamming (friction

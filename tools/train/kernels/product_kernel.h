@@ -51,10 +51,9 @@ struct Tile {
 /// registers.
 template <int kRows, int kPacks, typename F>
 [[gnu::always_inline]] inline void for_each(const F& f) {
-  const auto all = [&]<int... kIndex>(std::integer_sequence<int, kIndex...>)
-      __attribute__((always_inline)) {
-    (f(kIndex / kPacks, kIndex % kPacks), ...);
-  };
+  const auto all =
+      [&]<int... kIndex>(std::integer_sequence<int, kIndex...>)
+          __attribute__((always_inline)) { (f(kIndex / kPacks, kIndex % kPacks), ...); };
   all(std::make_integer_sequence<int, kRows * kPacks>());
 }
 
