@@ -26,8 +26,13 @@
 #include <vector>
 
 #include "tests/support/fastdds_loopback.h"
+#ifdef SANDRUNNER_FASTDDS_3
+#include "unitree_apiPubSubTypes.hpp"
+#include "unitree_goPubSubTypes.hpp"
+#else
 #include "unitree_apiPubSubTypes.h"
 #include "unitree_goPubSubTypes.h"
+#endif
 
 namespace {
 
@@ -173,8 +178,7 @@ template <typename Message, typename Use>
 void take(dds::DataReader* reader, const Use& use) {
   dds::SampleInfo info;
   Message message;
-  while (reader->take_next_sample(&message, &info) ==
-         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+  while (reader->take_next_sample(&message, &info) == sandrunner::RETCODE_OK) {
     if (info.valid_data) use(message);
   }
 }

@@ -22,8 +22,12 @@
 #include <string>
 #include <thread>
 
-#include "rosPubSubTypes.h"
 #include "tests/support/fastdds_loopback.h"
+#ifdef SANDRUNNER_FASTDDS_3
+#include "rosPubSubTypes.hpp"
+#else
+#include "rosPubSubTypes.h"
+#endif
 
 namespace {
 
@@ -39,11 +43,7 @@ dds::DomainParticipantQos participant_qos(const std::string& discovery) {
 
 template <typename PubSubType>
 dds::Topic* make_topic(dds::DomainParticipant* participant, const char* topic, const char* type) {
-  dds::TypeSupport support(new PubSubType());
-  support->setName(type);
-  support->auto_fill_type_object(false);
-  support->auto_fill_type_information(false);
-  support.register_type(participant);
+  sandrunner::named_type<PubSubType>(type).register_type(participant);
   return participant->create_topic(topic, type, dds::TOPIC_QOS_DEFAULT);
 }
 
@@ -63,8 +63,7 @@ struct Received {
   void take() {
     dds::SampleInfo info;
     typename PubSubType::type sample;
-    while (reader->take_next_sample(&sample, &info) ==
-           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    while (reader->take_next_sample(&sample, &info) == sandrunner::RETCODE_OK) {
       if (!info.valid_data) continue;
       last = sample;
       ++count;
