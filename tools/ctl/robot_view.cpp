@@ -11,11 +11,11 @@
 #include "rt/core/messages.h"
 #include "rt/core/mode_machine.h"
 #include "rt/telemetry/diagnostics.h"
+#include "tools/ctl/interrupt.h"
 
 namespace sandrunner::ctl {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kRateWindow_ns = 3 * kSecond_ns;
 constexpr std::size_t kRecentTicks = 2 * kControlHz;
 

@@ -57,8 +57,8 @@ void require_finite(const char* name, const double* values, py::ssize_t rows) {
   }
 }
 
-py::array step(const Feet& feet, py::array contact_array, const py::object& position_array,
-               const py::object& velocity_array, double step_s) {
+py::array step_feet(const Feet& feet, py::array contact_array, const py::object& position_array,
+                    const py::object& velocity_array, double step_s) {
   Contact* const contact = checked_contacts(contact_array);
   const py::ssize_t count = contact_array.shape(0);
   const auto position = checked_array<double>("position", position_array, {count, 3});
@@ -81,7 +81,7 @@ void bind_ground(py::module_& module) {
       .def(py::init<const std::string&, const std::vector<std::string>&, double, double>(),
            py::kw_only(), py::arg("ground"), py::arg("settings"), py::arg("foot_radius_m"),
            py::arg("foot_width_m"))
-      .def("step", &step);
+      .def("step", &step_feet);
   module.def("contacts", &contacts);
   module.def("terrain_preset_names", &sim::terrain_preset_names);
 }

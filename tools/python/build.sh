@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # tools/python/build.sh: installs missing packages (sudo apt-get) and builds the Python module and
-# what its tests need into build/python, apart from the programs: a module's code is
-# position-independent. PYTHONPATH=build/python/python then finds the package.
-# Reports on stderr.
+# what its tests need, and no more, into build/release. PYTHONPATH=build/release/python then finds
+# the package. Reports on stderr.
 set -euo pipefail
 for word; do
   case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
@@ -12,5 +11,5 @@ done
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 bash "$root/tools/install_packages.sh" all
 cd "$root"
-[[ -f build/python/build.ninja ]] || cmake --preset python >&2
-cmake --build build/python --target sandrunner_python rollout_reference >&2
+cmake --preset release >&2
+cmake --build build/release --target sandrunner_python rollout_reference >&2

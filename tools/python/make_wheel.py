@@ -6,7 +6,9 @@ its module needs and that a Python on the same system need not have. Prints the 
 import argparse
 import base64
 import hashlib
+import importlib.metadata
 import pathlib
+import platform
 import re
 import subprocess
 import sysconfig
@@ -44,11 +46,11 @@ def main() -> None:
     needed = libraries(module)
     contents |= {f"sandrunner/lib/{name}": file.read_bytes() for name, file in needed.items()}
     python = f"cp{sysconfig.get_config_var('py_version_nodot')}"
-    tag = f"{python}-{python}-manylinux_{oldest_libc([module, *needed.values()])}_x86_64"
+    tag = f"{python}-{python}-manylinux_{oldest_libc([module, *needed.values()])}_{platform.machine()}"
     info = f"sandrunner-{version}.dist-info"
     contents[f"{info}/METADATA"] = (
         f"Metadata-Version: 2.1\nName: sandrunner\nVersion: {version}\nSummary: Legged robots on sand as numpy arrays\n"
-        "License: BSD-3-Clause\nRequires-Python: >=3.11\nRequires-Dist: numpy<2\n"
+        "License: BSD-3-Clause\nRequires-Python: >=3.11\nRequires-Dist: numpy<{int(importlib.metadata.version('numpy').split('.')[0]) + 1}\n"
     ).encode()
     contents[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: sandrunner\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     record = ""
