@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <cstddef>
 
 #include "policy/activations.h"
+#include "policy/eight_floats.h"
 #include "policy/network_parameters.h"
 
 namespace sandrunner {
 
-inline constexpr int kPackedLanes = 8;  // in an AVX register
+inline constexpr int kPackedLanes = 8;  // of EightFloats
 
 /// Reads each cache line. Real-time safe.
 inline void touch_lines(const void* memory, std::size_t bytes) noexcept {
@@ -44,19 +43,18 @@ template <int kVectors, int kChains>
 inline void multiply_rows(const float* weight, int inputs, const float* input,
                           float* result) noexcept {
   constexpr int kRows = kVectors * kPackedLanes;
-  __m256 sum[kChains][kVectors];
+  EightFloats sum[kChains][kVectors];
   for (int chain = 0; chain < kChains; ++chain) {
     for (int v = 0; v < kVectors; ++v) {
-      sum[chain][v] = chain == 0 ? _mm256_load_ps(weight + v * kPackedLanes) : _mm256_setzero_ps();
+      sum[chain][v] = chain == 0 ? load_eight(weight + v * kPackedLanes) : eight_times(0.0f);
     }
   }
   weight += kRows;
   for (int column = 0; column < inputs; column += kChains) {
     for (int chain = 0; chain < kChains; ++chain) {
-      const __m256 x = _mm256_broadcast_ss(input + column + chain);
+      const EightFloats x = eight_times(input[column + chain]);
       for (int v = 0; v < kVectors; ++v) {
-        sum[chain][v] =
-            _mm256_fmadd_ps(_mm256_load_ps(weight + v * kPackedLanes), x, sum[chain][v]);
+        sum[chain][v] = multiply_add(load_eight(weight + v * kPackedLanes), x, sum[chain][v]);
       }
       weight += kRows;
     }
@@ -64,11 +62,11 @@ inline void multiply_rows(const float* weight, int inputs, const float* input,
   for (int stride = kChains / 2; stride > 0; stride /= 2) {
     for (int chain = 0; chain < stride; ++chain) {
       for (int v = 0; v < kVectors; ++v) {
-        sum[chain][v] = _mm256_add_ps(sum[chain][v], sum[chain + stride][v]);
+        sum[chain][v] = add(sum[chain][v], sum[chain + stride][v]);
       }
     }
   }
-  for (int v = 0; v < kVectors; ++v) _mm256_store_ps(result + v * kPackedLanes, sum[0][v]);
+  for (int v = 0; v < kVectors; ++v) store_eight(result + v * kPackedLanes, sum[0][v]);
 }
 
 /// The same of one panel of a layer.

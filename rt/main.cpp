@@ -20,7 +20,7 @@
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "rt/realtime/rt_report.h"
 #include "rt/report/summary.h"
 #include "rt/run/assemble.h"

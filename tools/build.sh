@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/build.sh [sandrunner|deb]: installs missing packages (sudo apt-get) and builds in release,
-# into build/release.
+# tools/build.sh [--arm64] [sandrunner|deb]: installs missing packages (sudo apt-get) and builds in
+# release, into build/release.
 #   (without)   everything
 #   sandrunner  the program sandrunner only: half the packages and a fifth of the time
 #   deb         the Debian package for a robot's computer (tools/deploy)
+#   --arm64     for 64-bit ARM, on an x86-64 machine, into build/arm64
 # Reports on stderr; prints nothing if nothing is to be done.
 set -euo pipefail
 for word; do
@@ -12,14 +13,22 @@ for word; do
 done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
-build=$root/build/release
-what=${1:-all}
+preset=release what=all
+for word; do
+  case $word in
+    --arm64) preset=arm64 ;;
+    sandrunner | deb) what=$word ;;
+    *) echo "build.sh: found '$word', expected --arm64, sandrunner or deb" >&2 && exit 2 ;;
+  esac
+done
+build=$root/build/$preset
 bash "$root/tools/install_packages.sh" "$what"
+[[ $preset != arm64 ]] || bash "$root/tools/install_packages.sh" arm64
 
 # Configured for this very folder (a copied tree brings the build of its original along), and for
 # all that is asked for?
 cached() { grep -qsxF "$1" "$build/CMakeCache.txt"; }
-configure=(cmake --preset release)
+configure=(cmake --preset "$preset")
 [[ $what != sandrunner ]] || configure+=(-D SANDRUNNER_ALL=OFF)
 if [[ ! -f $build/build.ninja ]] || ! cached "CMAKE_HOME_DIRECTORY:INTERNAL=$root"; then
   (cd "$root" && "${configure[@]}" --fresh) >&2

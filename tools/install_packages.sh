@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/install_packages.sh [all|sandrunner|deb|test|checks]: installs the missing Debian packages
-# with apt-get, as root or with sudo. If none is missing it only queries dpkg: no network and no
-# permissions are needed.
+# tools/install_packages.sh [all|sandrunner|deb|test|checks|arm64]: installs the missing Debian
+# packages with apt-get, as root or with sudo. If none is missing it only queries dpkg: no network
+# and no permissions are needed.
 #   all, deb    everything, the Debian package included
 #   sandrunner  the program sandrunner only
 #   test        everything, and what only tests run
 #   checks      everything, and the checks of .ci/run
+#   arm64       what builds for 64-bit ARM, and runs it, on another machine; beside all
 set -euo pipefail
 for word; do
   case $word in -h | --help) sed -n '3,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac
 done
 
 packages=(
-  g++ cmake ninja-build pkg-config git
+  g++ cmake ninja-build git
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   liburdfdom-dev libconsole-bridge-dev libtinyxml2-dev cyclonedds-dev cyclonedds-tools libssl-dev libzstd-dev zlib1g-dev
   esbuild libjs-three libboost-dev
@@ -29,7 +30,15 @@ packages=(
   python3-scipy python3-sklearn python3-matplotlib
 )
 [[ ${1:-all} != @(test|checks) ]] || packages+=(chromium-headless-shell python3-venv spin)
-[[ ${1:-all} != checks ]] || packages+=(clang clang-format clang-tidy libclang-rt-dev)
+[[ ${1:-all} != checks ]] || packages+=(clang clang-format-19 clang-tidy libclang-rt-dev)
+arm64=(
+  libtomlplusplus-dev libfmt-dev liburdfdom-dev libconsole-bridge-dev libtinyxml2-dev cyclonedds-dev libssl-dev
+  libzstd-dev zlib1g-dev libgtest-dev libgmock-dev libmujoco-dev
+)
+[[ ${1:-all} != arm64 ]] || packages=(g++-aarch64-linux-gnu qemu-user-static "${arm64[@]/%/:arm64}")
+# Named otherwise in Debian 13.
+[[ $(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release) == bookworm ]] ||
+  packages=("${packages[@]/#libfastrtps-dev/libfastdds-dev}")
 
 fail() {
   echo "install_packages.sh: $1" >&2
@@ -41,11 +50,11 @@ for tool in dpkg-query apt-get; do
     fail "found no $tool, expected Debian 12 or 13; the packages needed are: ${packages[*]}"
 done
 
-installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' \
+installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}:${Architecture}\n' \
   "${packages[@]}" 2>/dev/null | sed -n 's/^installed //p') || true
-missing=()
+native=$(dpkg --print-architecture) missing=()
 for package in "${packages[@]}"; do
-  grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
+  grep -qxF -e "$package" -e "$package:$native" -e "$package:all" <<<"$installed" || missing+=("$package")
 done
 ((${#missing[@]})) || exit 0
 
@@ -57,6 +66,7 @@ if ((EUID != 0)); then
 fi
 echo "installing Debian packages: ${missing[*]}" >&2
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
+[[ ${1:-all} != arm64 ]] || "${as_root[@]}" dpkg --add-architecture arm64
 "${apt[@]}" update >&2 || fail "apt-get update failed, see above"
 "${apt[@]}" install --yes --no-install-recommends "${missing[@]}" >&2 ||
   fail "apt-get could not install: ${missing[*]}"

@@ -11,7 +11,11 @@ std::string processor_name() {
     const std::size_t colon = line.find(": ");
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
-  return "unknown";
+  // A board with ARM tells what it is.
+  std::ifstream model("/proc/device-tree/model");
+  std::string name;
+  std::getline(model, name, '\0');
+  return name.empty() ? "unknown" : name;
 }
 
 }  // namespace sandrunner

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 
 namespace sandrunner {
 

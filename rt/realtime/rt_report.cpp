@@ -49,7 +49,8 @@ void print_kernel() {
   } else {
     row("preemption",
         version.find("PREEMPT") != std::string::npos ? "some (no PREEMPT_RT)" : "none named",
-        "a kernel with PREEMPT_RT (Debian: linux-image-rt-amd64) bounds what a driver can delay");
+        "a kernel with PREEMPT_RT (Debian: linux-image-rt-amd64 or -arm64) bounds what a driver "
+        "can delay");
   }
   std::ifstream cpuinfo("/proc/cpuinfo");
   for (std::string line; std::getline(cpuinfo, line);) {

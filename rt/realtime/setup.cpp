@@ -18,7 +18,7 @@
 #include <system_error>
 
 #include "rt/base/errors.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 
 namespace sandrunner {
 namespace {

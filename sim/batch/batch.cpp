@@ -6,7 +6,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "sim/lanes/processor.h"
+#include "rt/core/processor.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -28,7 +28,7 @@ const detail::BatchKernel& kernel_of(BatchWidth width) {
 constexpr std::size_t kAlignment = 64;
 
 template <typename Member>
-std::size_t offset_of(Member BatchRobot<float>::*member) noexcept {
+std::size_t offset_of(Member BatchRobot<float>::* member) noexcept {
   static const BatchRobot<float> robot;
   return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(robot.*member)) -
                                   reinterpret_cast<const std::byte*>(&robot));

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SIMD packs of float with a robot in every lane: the pack counterpart of lanes.h. Pack<8> needs
-// AVX2 and FMA (x86-64-v3), Pack<16> AVX-512 (x86-64-v4) and exists only in sources compiled for
-// it.
+// SIMD packs of float with a robot in every lane: the pack counterpart of lanes.h. On x86-64
+// Pack<8> needs AVX2 and FMA (x86-64-v3), Pack<16> AVX-512 (x86-64-v4) and exists only in sources
+// compiled for it.
 //
 // Every operation is the IEEE one of the scalar code, lane by lane, so that a robot's trajectory
 // has the same bits in any lane of any width.
 #pragma once
 
+#ifdef __aarch64__
+#include "sim/lanes/pack_neon.h"
+#else
 #include <immintrin.h>
 
 #include "sim/lanes/lanes.h"
@@ -19,7 +22,7 @@ template <int kLanes>
 struct PackMask;
 
 template <int kLanes>
-struct MaskOf<Pack<kLanes>> {
+struct MaskOf<Pack<kLanes> > {
   using type = PackMask<kLanes>;
 };
 
@@ -150,3 +153,4 @@ inline void store(Pack<16> from, float* to) noexcept { _mm512_storeu_ps(to, from
 #endif
 
 }  // namespace sandrunner::sim
+#endif

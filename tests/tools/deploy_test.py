@@ -122,7 +122,7 @@ class Package(unittest.TestCase):
         return run("dpkg-deb", "--field", self.package, name).strip()
 
     def test_it_carries_the_version_of_the_project(self):
-        self.assertEqual(self.package.name, f"sandrunner_{VERSION}_amd64.deb")
+        self.assertEqual(self.package.name, f"sandrunner_{VERSION}_{run('dpkg', '--print-architecture').strip()}.deb")
         self.assertEqual(self.field("Version"), VERSION)
 
     def test_it_needs_libraries_at_run_time_only(self):

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "rt/base/processor_name.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "tools/bench/clock.h"
 #include "tools/bench/standing_mujoco.h"
 #include "tools/bench/trotting_robots.h"

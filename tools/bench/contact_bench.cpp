@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "rt/base/processor_name.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "sim/lanes/random.h"
 #include "sim/robot/dynamics.h"
 #include "tools/bench/clock.h"

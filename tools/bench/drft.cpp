@@ -1,35 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/drft.h"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace sandrunner::bench {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// Four elements at a time.
-using Four = __m256d;
+// Four elements at a time, in the vectors of gcc and clang: one register of AVX, two of NEON.
+using Four = double __attribute__((vector_size(32)));
+using FourBits = std::int64_t __attribute__((vector_size(32)));  // of a comparison: all or none
 constexpr int kWidth = 4;
-inline Four all(double a) noexcept { return _mm256_set1_pd(a); }
+inline Four all(double a) noexcept { return Four{a, a, a, a}; }
 inline Four load(const std::vector<double>& a, int i) noexcept {
-  return _mm256_loadu_pd(a.data() + i);
+  Four four;
+  std::memcpy(&four, a.data() + i, sizeof four);
+  return four;
 }
-inline Four fma(Four a, Four b, Four c) noexcept { return _mm256_fmadd_pd(a, b, c); }
-inline Four fms(Four a, Four b, Four c) noexcept { return _mm256_fmsub_pd(a, b, c); }
-inline Four above(Four a, Four b) noexcept { return _mm256_cmp_pd(a, b, _CMP_GT_OQ); }
-inline bool none(Four mask) noexcept { return _mm256_movemask_pd(mask) == 0; }
+template <typename F>
+inline Four each(const F& f) noexcept {
+  Four four;
+  for (int i = 0; i < kWidth; ++i) four[i] = f(i);
+  return four;
+}
+inline Four fma(Four a, Four b, Four c) noexcept {
+  return each([&](int i) { return std::fma(a[i], b[i], c[i]); });
+}
+inline Four fms(Four a, Four b, Four c) noexcept { return fma(a, b, -c); }
+inline bool none(FourBits mask) noexcept { return (mask[0] | mask[1] | mask[2] | mask[3]) == 0; }
+inline FourBits bits(Four a) noexcept { return reinterpret_cast<FourBits>(a); }
+/// `a` where the mask is, else 0; `a` with the sign turned where `signs` has one.
+inline Four where(FourBits mask, Four a) noexcept { return reinterpret_cast<Four>(mask & bits(a)); }
+inline Four turned(Four a, FourBits signs) noexcept {
+  return reinterpret_cast<Four>(bits(a) ^ signs);
+}
 // 1/|v| of the square of |v|; finite at 0, where the masks leave nothing to be multiplied by it.
 inline Four inverse_root(Four square) noexcept {
-  return all(1.0) / _mm256_sqrt_pd(_mm256_max_pd(square, all(1e-60)));
+  const Four least = all(1e-60), above = square > least ? square : least;
+  return all(1.0) / each([&](int i) { return std::sqrt(above[i]); });
 }
-inline double sum(Four a) noexcept {
-  const __m128d pair = _mm256_castpd256_pd128(a) + _mm256_extractf128_pd(a, 1);
-  return _mm_cvtsd_f64(pair) + _mm_cvtsd_f64(_mm_unpackhi_pd(pair, pair));
-}
+inline double sum(Four a) noexcept { return (a[0] + a[2]) + (a[1] + a[3]); }
 
 // Li, Zhang & Goldman 2013, generic coefficients (zeta = 1), with beta the tilt of the element and
 // gamma the angle of its velocity below the horizontal:
@@ -124,7 +138,7 @@ Wrench PlanarDrft::wrench(const DrftMedium& medium, const BodyMotion& motion) co
     const Four nx = fma(cosine, bnx, sine * bnz), nz = fms(cosine, bnz, sine * bnx);
     const Four ux = fma(spin, z, vx), uz = fma(-spin, x, vz);
     const Four depth = depth_of_centre - z, vn = fma(ux, nx, uz * nz);
-    const Four acts = _mm256_and_pd(above(depth, zero), above(vn, zero));
+    const FourBits acts = (depth > zero) & (vn > zero);
     if (none(acts)) continue;
     const Four inverse = inverse_root(fma(ux, ux, uz * uz));
     const Four cos_g = ux * inverse, sin_g = -(uz * inverse);
@@ -134,7 +148,7 @@ Wrench PlanarDrft::wrench(const DrftMedium& medium, const BodyMotion& motion) co
             fma(all(kB11 - kBm11) * sin_2b, cos_g, fma(all(kB01), sin_g, all(kA00))));
     const Four alpha_x = fma(cos_g, fma(all(kC11 + kCm11), cos_2b, all(kC01)),
                              sin_2b * fma(all(kCm11 - kC11), sin_g, all(kD10)));
-    const Four area = _mm256_and_pd(acts, load(area_, i));
+    const Four area = where(acts, load(area_, i));
     const Four stress = zeta * depth * area, momentum = drag * area * (vn * vn);
     const Four fx = -fma(stress, alpha_x, momentum * nx);
     const Four fz = fms(stress, alpha_z, momentum * nz);
@@ -151,7 +165,8 @@ Wrench SpatialDrft::wrench(const DrftMedium& medium, const BodyMotion& motion) c
   const sim::Mat3<double>& r = motion.rotation;
   const Vector v = sim::transposed_times(r, motion.velocity_mps);
   const Vector w = sim::transposed_times(r, motion.spin_radps);
-  const Four zero = all(0.0), sign = all(-0.0);
+  const Four zero = all(0.0);
+  const FourBits sign = bits(all(-0.0));
   const Four up_x = all(r.r2.x), up_y = all(r.r2.y), up_z = all(r.r2.z);
   const Four vx = all(v.x), vy = all(v.y), vz = all(v.z);
   const Four wx = all(w.x), wy = all(w.y), wz = all(w.z);
@@ -167,20 +182,20 @@ Wrench SpatialDrft::wrench(const DrftMedium& medium, const BodyMotion& motion) c
     const Four uy = fma(wz, x, fma(-wx, z, vy));
     const Four uz = fma(wx, y, fma(-wy, x, vz));
     const Four vn = fma(ux, nx, fma(uy, ny, uz * nz));
-    const Four acts = _mm256_and_pd(above(depth, zero), above(vn, zero));
+    const FourBits acts = (depth > zero) & (vn > zero);
     if (none(acts)) continue;
     const Four inverse = inverse_root(fma(ux, ux, fma(uy, uy, uz * uz)));
     // alpha = f1 n' + f2 v/|v| - f3 up, n' the normal of the element's lower side.
     const Four n_up = fma(up_x, nx, fma(up_y, ny, up_z * nz));
-    const Four flip = _mm256_andnot_pd(n_up, sign);
+    const FourBits flip = ~bits(n_up) & sign;
     const Four x1 = -(fma(up_x, ux, fma(up_y, uy, up_z * uz)) * inverse);
-    const Four x2 = _mm256_andnot_pd(sign, n_up);
-    const Four x3 = _mm256_xor_pd(vn * inverse, flip);
+    const Four x2 = where(~sign, n_up);
+    const Four x3 = turned(vn * inverse, flip);
     const Four x12 = x1 * x2, x23 = x2 * x3, x31 = x3 * x1;
-    const Four f1 = _mm256_xor_pd(polynomial(kF1, x1, x2, x3, x12, x23, x31), flip);
+    const Four f1 = turned(polynomial(kF1, x1, x2, x3, x12, x23, x31), flip);
     const Four f2 = polynomial(kF2, x1, x2, x3, x12, x23, x31);
     const Four f3 = polynomial(kF3, x1, x2, x3, x12, x23, x31);
-    const Four area = _mm256_and_pd(acts, load(area_, i));
+    const Four area = where(acts, load(area_, i));
     const Four stress = zeta * depth * area;
     const Four along_n = fms(stress, f1, drag * area * (vn * vn));
     const Four along_v = stress * f2 * inverse, down = stress * f3;

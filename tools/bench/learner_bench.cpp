@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "rt/base/processor_name.h"
-#include "rt/core/floating_point.h"
-#include "sim/lanes/processor.h"
+#include "rt/core/processor.h"
 #include "tools/bench/clock.h"
+#include "tools/bench/fma_peak.h"
 #include "tools/train/kernels/kernels.h"
 
 namespace sandrunner::bench {
@@ -107,30 +107,7 @@ const Pass kPasses[] = {
      [](Layer& l) { l.dw.noalias() += l.dy * l.x.transpose(); }},
 };
 
-/// `loops` times a fused multiply-add into each of twelve registers, which hides its latency.
-constexpr int kPeakRegisters = 12;
-#define SANDRUNNER_FMA_LOOP(registers)                                                        \
-  asm volatile(                                                                               \
-      ".irp i, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 15\n"                                    \
-      "vxorps %%xmm\\i, %%xmm\\i, %%xmm\\i\n"                                                 \
-      ".endr\n"                                                                               \
-      "1:\n"                                                                                  \
-      ".irp i, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11\n"                                        \
-      "vfmadd231ps %%" registers "15, %%" registers "15, %%" registers                        \
-      "\\i\n"                                                                                 \
-      ".endr\n"                                                                               \
-      "dec %0\n"                                                                              \
-      "jnz 1b\n"                                                                              \
-      "vzeroupper\n"                                                                          \
-      : "+r"(loops)                                                                           \
-      :                                                                                       \
-      : "cc", "xmm0", "xmm1", "xmm2", "xmm3", "xmm4", "xmm5", "xmm6", "xmm7", "xmm8", "xmm9", \
-        "xmm10", "xmm11", "xmm12", "xmm13", "xmm14", "xmm15")
-void fma_loop_x8(long loops) { SANDRUNNER_FMA_LOOP("ymm"); }
-void fma_loop_x16(long loops) { SANDRUNNER_FMA_LOOP("zmm"); }
-#undef SANDRUNNER_FMA_LOOP
-
-double peak_gflops(void (*fma_loop)(long), int lanes) {
+double peak_gflops(void (*fma_loop)(long) noexcept, int lanes) {
   const double flops_per_loop = 2.0 * kPeakRegisters * lanes;
   const double start = thread_cpu_s();
   fma_loop(std::lround(kFlopsPerRun / flops_per_loop));
@@ -174,7 +151,7 @@ void require_agreement(const Kernels<float>& kernels) {
 
 Report run_learner_bench(int rounds) {
   flush_denormals_to_zero();
-  const bool has_x16 = sim::has_avx512();
+  const bool has_x16 = has_avx512();
   require_agreement(learner::kernels_x8());
   if (has_x16) require_agreement(learner::kernels_x16());
   std::vector<Layer> layers(std::begin(kSizes), std::end(kSizes));

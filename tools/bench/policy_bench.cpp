@@ -2,7 +2,6 @@
 #include "tools/bench/policy_bench.h"
 
 #include <fmt/format.h>
-#include <immintrin.h>
 #include <pthread.h>
 #include <sched.h>
 
@@ -17,10 +16,11 @@
 #include <thread>
 #include <utility>
 
+#include "policy/eight_floats.h"
 #include "policy/network.h"
 #include "policy/perceptron.h"
 #include "rt/base/processor_name.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "tools/bench/clock.h"
 
 namespace sandrunner::bench {
@@ -107,14 +107,15 @@ class Bytes {
  public:
   explicit Bytes(std::size_t size) : lines_((size + sizeof(Line) - 1) / sizeof(Line)) {}
 
-  /// One forward pass of AVX2 loads into eight sums.
+  /// One forward pass of loads into eight sums.
   void read() const {
-    __m256 sum[8] = {};
+    EightFloats sum[8];
+    for (EightFloats& part : sum) part = eight_times(0.0f);
     const float* at = lines_.front().value;
     for (std::size_t i = 0; i < lines_.size(); ++i, at += 64) {
-      for (int k = 0; k < 8; ++k) sum[k] = _mm256_or_ps(sum[k], _mm256_load_ps(at + 8 * k));
+      for (int k = 0; k < 8; ++k) sum[k] = add(sum[k], load_eight(at + 8 * k));
     }
-    for (const __m256& part : sum) asm volatile("" : : "x"(part));
+    for (const EightFloats& part : sum) asm volatile("" : : "m"(part));
   }
 
  private:

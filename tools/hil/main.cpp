@@ -22,7 +22,7 @@
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "tools/hil/bench.h"
 #include "tools/hil/bench_config.h"
 #include "tools/hil/run_fault.h"

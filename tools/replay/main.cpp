@@ -20,7 +20,7 @@
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
 #include "rt/base/standard_error.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "rt/loop/replay.h"
 #include "rt/report/run_observer.h"
 #include "rt/run/process_config.h"

@@ -4,7 +4,7 @@
 #include <new>
 #include <utility>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "rt/telemetry/recording/recording_writer.h"
 
 namespace sandrunner {

@@ -123,6 +123,24 @@ int sem_wait(sem_t* semaphore) {
 // has counted.
 long watched_raw_system_call(long number, long a, long b, long c, long d, long e, long f);
 extern const char watched_raw_system_call_return[];
+#ifdef __aarch64__
+asm(R"(
+.text
+.globl watched_raw_system_call
+watched_raw_system_call:
+  mov x8, x0
+  mov x0, x1
+  mov x1, x2
+  mov x2, x3
+  mov x3, x4
+  mov x4, x5
+  mov x5, x6
+  svc #0
+.globl watched_raw_system_call_return
+watched_raw_system_call_return:
+  ret
+)");
+#else
 asm(R"(
 .text
 .globl watched_raw_system_call
@@ -139,6 +157,7 @@ watched_raw_system_call:
 watched_raw_system_call_return:
   ret
 )");
+#endif
 }
 
 namespace sandrunner {
@@ -149,9 +168,17 @@ void on_system_call(int, siginfo_t* info, void* context) {
     ++system_calls;
     last_system_call = info->si_syscall;
   }
+#ifdef __aarch64__
+  auto* const r = static_cast<ucontext_t*>(context)->uc_mcontext.regs;
+  const auto argument = [&](int i) { return static_cast<long>(r[i]); };
+  r[0] = static_cast<std::uint64_t>(watched_raw_system_call(info->si_syscall, argument(0),
+                                                            argument(1), argument(2), argument(3),
+                                                            argument(4), argument(5)));
+#else
   greg_t* const r = static_cast<ucontext_t*>(context)->uc_mcontext.gregs;
   r[REG_RAX] = watched_raw_system_call(info->si_syscall, r[REG_RDI], r[REG_RSI], r[REG_RDX],
                                        r[REG_R10], r[REG_R8], r[REG_R9]);
+#endif
 }
 
 bool install_filter() {

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "rt/core/state_hash.h"
 #include "sim/robot/dynamics.h"
 #include "sim/step/actuator.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "support.h"
 #include "tests/rt/support.h"
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <variant>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "rt/run/process_config.h"
 #include "rt/run/run.h"
 #include "rt/run/run_script.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/train/kernels/kernels.h"
 
-#include "sim/lanes/processor.h"
+#include "rt/core/processor.h"
 #include "tools/train/kernels/lstm_kernel.h"
 
 namespace sandrunner::learner {
@@ -13,7 +13,7 @@ const Kernels<double>& kernels_double() noexcept {
 
 template <>
 const Kernels<float>& best_kernels() noexcept {
-  return sim::has_avx512() ? kernels_x16() : kernels_x8();
+  return has_avx512() ? kernels_x16() : kernels_x8();
 }
 template <>
 const Kernels<double>& best_kernels() noexcept {

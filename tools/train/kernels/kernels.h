@@ -70,7 +70,7 @@ struct Kernels {
 
 /// float in packs of 8 (AVX2).
 const Kernels<float>& kernels_x8() noexcept;
-/// float in packs of 16: only where sim::has_avx512().
+/// float in packs of 16: only where has_avx512().
 const Kernels<float>& kernels_x16() noexcept;
 /// double, one by one, with the C library's exponential: to check against finite differences.
 const Kernels<double>& kernels_double() noexcept;

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "rt/base/build.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "rt/loop/lockstep.h"
 #include "rt/realtime/realtime_run.h"
 #include "rt/telemetry/recording/recorder.h"

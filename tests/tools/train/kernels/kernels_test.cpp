@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "sim/lanes/processor.h"
+#include "rt/core/processor.h"
 
 namespace sandrunner::learner {
 namespace {
@@ -160,7 +160,7 @@ void expect_promised_bits(const Kernels<float>& kernels) {
 TEST(KernelsTest, Avx2SumsInOrderAsAPlainLoopDoes) { expect_promised_bits(kernels_x8()); }
 
 TEST(KernelsTest, Avx512SumsInOrderAsAPlainLoopDoes) {
-  if (!sim::has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
+  if (!has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
   expect_promised_bits(kernels_x16());
 }
 
@@ -184,7 +184,7 @@ TEST(KernelsTest, FloatAndDoubleAreNearAPlainLoopInDouble) {
 }
 
 TEST(KernelsTest, LstmCellsHaveTheSameBitsAtBothWidths) {
-  if (!sim::has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
+  if (!has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
   for (const int units : {1, 5, 8, 12, 16, 23, 64}) {
     const Cells a = cells(kernels_x8(), 7, units), b = cells(kernels_x16(), 7, units);
     EXPECT_EQ(a.gates, b.gates) << units;

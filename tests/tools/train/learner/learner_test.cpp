@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "rt/base/errors.h"
+#include "rt/core/processor.h"
 #include "rt/core/state_hash.h"
-#include "sim/lanes/processor.h"
 #include "toy_task.h"
 
 namespace sandrunner::learner {
@@ -64,7 +64,7 @@ TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfThreads) {
 }
 
 TEST(LearnerTest, SameSeedGivesTheSameWeightsWithAvx2AndAvx512) {
-  if (!sim::has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
+  if (!has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
   Training x8(1, 4, small_config(), kernels_x8());
   Training x16(2, 4, small_config(), kernels_x16());
   for (Training* training : {&x8, &x16}) training->run(6);

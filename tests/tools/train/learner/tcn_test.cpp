@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "random_rollout.h"
-#include "sim/lanes/processor.h"
+#include "rt/core/processor.h"
 
 namespace sandrunner::learner {
 namespace {
@@ -83,7 +83,7 @@ TEST_F(TcnTest, StepsOneByOneAreWindowsBitForBitWithResets) {
   EXPECT_EQ(steps, encodings(64));
   EXPECT_EQ(steps, encodings(32, kernels_x8()));
   EXPECT_EQ(steps, encodings(1, kernels_x8()));
-  if (!sim::has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
+  if (!has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
   EXPECT_EQ(steps, encodings(32, kernels_x16()));
   EXPECT_EQ(steps, encodings(1, kernels_x16()));
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/task/task.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/task/task.h"
 

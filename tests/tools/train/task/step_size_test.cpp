@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "sim/batch/batch.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/robot/robot_model.h"

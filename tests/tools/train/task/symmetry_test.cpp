@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "estimator/observation.h"
-#include "rt/core/floating_point.h"
+#include "rt/core/processor.h"
 #include "sim/batch/batch.h"
 #include "sim/ground/terrain_description.h"
 #include "tools/train/task/leg_modes.h"

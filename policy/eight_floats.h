@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Eight floats in registers: one of AVX, two of NEON. Memory is aligned to 32 bytes.
+#pragma once
+
+#ifdef __aarch64__
+#include <arm_neon.h>
+#else
+#include <immintrin.h>
+#endif
+
+namespace sandrunner {
+
+#ifdef __aarch64__
+struct EightFloats {
+  float32x4_t low, high;
+};
+inline EightFloats load_eight(const float* from) noexcept {
+  return {vld1q_f32(from), vld1q_f32(from + 4)};
+}
+inline EightFloats eight_times(float x) noexcept { return {vdupq_n_f32(x), vdupq_n_f32(x)}; }
+inline EightFloats add(EightFloats a, EightFloats b) noexcept {
+  return {vaddq_f32(a.low, b.low), vaddq_f32(a.high, b.high)};
+}
+/// a b + c, fused.
+inline EightFloats multiply_add(EightFloats a, EightFloats b, EightFloats c) noexcept {
+  return {vfmaq_f32(c.low, a.low, b.low), vfmaq_f32(c.high, a.high, b.high)};
+}
+inline void store_eight(float* to, EightFloats a) noexcept {
+  vst1q_f32(to, a.low);
+  vst1q_f32(to + 4, a.high);
+}
+#else
+using EightFloats = __m256;
+inline EightFloats load_eight(const float* from) noexcept { return _mm256_load_ps(from); }
+inline EightFloats eight_times(float x) noexcept { return _mm256_set1_ps(x); }
+inline EightFloats add(EightFloats a, EightFloats b) noexcept { return _mm256_add_ps(a, b); }
+/// a b + c, fused.
+inline EightFloats multiply_add(EightFloats a, EightFloats b, EightFloats c) noexcept {
+  return _mm256_fmadd_ps(a, b, c);
+}
+inline void store_eight(float* to, EightFloats a) noexcept { _mm256_store_ps(to, a); }
+#endif
+
+}  // namespace sandrunner
