@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/deploy/man_page.sh PROGRAM SUMMARY FILE [EMULATOR]: writes the man page of PROGRAM to FILE.1,
-# and what bash completes behind its name to FILE.bash, both from its --help and that of its
+# tools/deploy/man_page.sh PROGRAM SUMMARY FILE [EMULATOR]: writes the man page of PROGRAM to
+# FILE.1, and what bash completes behind its name to FILE.bash, both from its --help and that of its
 # subcommands. SUMMARY is the page's one-line description; EMULATOR runs a PROGRAM for another
 # processor. Needs help2man.
 set -euo pipefail
