@@ -37,7 +37,7 @@ arm64=(
 )
 [[ ${1:-all} != arm64 ]] || packages=(g++-aarch64-linux-gnu qemu-user-static "${arm64[@]/%/:arm64}")
 # Named otherwise in Debian 13.
-[[ $(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release) == bookworm ]] ||
+[[ $(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release) != trixie ]] ||
   packages=("${packages[@]/#libfastrtps-dev/libfastdds-dev}")
 
 fail() {
