@@ -36,7 +36,10 @@ namespace dds = eprosima::fastdds::dds;
 dds::DomainParticipantQos participant_qos(const std::string& discovery) {
   if (discovery == "profile") {
     dds::DomainParticipantFactory::get_instance()->load_profiles();
-    return dds::DomainParticipantFactory::get_instance()->get_default_participant_qos();
+    dds::DomainParticipantQos qos =
+        dds::DomainParticipantFactory::get_instance()->get_default_participant_qos();
+    sandrunner::send_no_type_information(qos);
+    return qos;
   }
   return sandrunner::fastdds_loopback_qos();
 }
