@@ -48,9 +48,10 @@ def main() -> None:
     python = f"cp{sysconfig.get_config_var('py_version_nodot')}"
     tag = f"{python}-{python}-manylinux_{oldest_libc([module, *needed.values()])}_{platform.machine()}"
     info = f"sandrunner-{version}.dist-info"
+    numpy_major = int(importlib.metadata.version("numpy").split(".")[0])
     contents[f"{info}/METADATA"] = (
         f"Metadata-Version: 2.1\nName: sandrunner\nVersion: {version}\nSummary: Legged robots on sand as numpy arrays\n"
-        "License: BSD-3-Clause\nRequires-Python: >=3.11\nRequires-Dist: numpy<{int(importlib.metadata.version('numpy').split('.')[0]) + 1}\n"
+        f"License: BSD-3-Clause\nRequires-Python: >=3.11\nRequires-Dist: numpy<{numpy_major + 1}\n"
     ).encode()
     contents[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: sandrunner\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     record = ""
