@@ -30,9 +30,10 @@ bash "$root/tools/install_packages.sh" "$what"
 cached() { grep -qsxF "$1" "$build/CMakeCache.txt"; }
 configure=(cmake --preset "$preset")
 [[ $what != sandrunner ]] || configure+=(-D SANDRUNNER_ALL=OFF)
+complete() { cached SANDRUNNER_ALL:BOOL=ON && { [[ $preset == arm64 ]] || cached SANDRUNNER_PYTHON:BOOL=ON; }; }
 if [[ ! -f $build/build.ninja ]] || ! cached "CMAKE_HOME_DIRECTORY:INTERNAL=$root"; then
   (cd "$root" && "${configure[@]}" --fresh) >&2
-elif [[ $what != sandrunner ]] && ! cached SANDRUNNER_ALL:BOOL=ON; then
+elif [[ $what != sandrunner ]] && ! complete; then
   (cd "$root" && "${configure[@]}") >&2
 fi
 # What ninja says when nothing is to be done. Asked with -n, it does not know: it would look for new

@@ -66,7 +66,12 @@ if ((EUID != 0)); then
 fi
 echo "installing Debian packages: ${missing[*]}" >&2
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
-[[ ${1:-all} != arm64 ]] || "${as_root[@]}" dpkg --add-architecture arm64
-"${apt[@]}" update >&2 || fail "apt-get update failed, see above"
+undo=true
+if [[ ${1:-all} == arm64 ]] && ! dpkg --print-foreign-architectures | grep -qx arm64; then
+  "${as_root[@]}" dpkg --add-architecture arm64
+  # A mirror without it would fail every update.
+  undo="${as_root[*]} dpkg --remove-architecture arm64"
+fi
+"${apt[@]}" update >&2 || { $undo && fail "apt-get update failed, see above"; }
 "${apt[@]}" install --yes --no-install-recommends "${missing[@]}" >&2 ||
-  fail "apt-get could not install: ${missing[*]}"
+  { $undo && fail "apt-get could not install: ${missing[*]}"; }

@@ -67,7 +67,7 @@ struct BatchRobot {
   BatchReport<S> report;
 };
 
-/// Robots in a pack: 1, 8 (AVX2) or 16 (AVX-512).
+/// Robots in a pack: 1, 8 (AVX2, NEON) or 16 (AVX-512).
 enum class BatchWidth : int { kOne = 1, kEight = 8, kSixteen = 16 };
 /// The widest that this processor can run.
 BatchWidth best_batch_width() noexcept;

@@ -22,7 +22,7 @@ template <int kLanes>
 struct PackMask;
 
 template <int kLanes>
-struct MaskOf<Pack<kLanes> > {
+struct MaskOf<Pack<kLanes>> {
   using type = PackMask<kLanes>;
 };
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// pack.h for 64-bit ARM: a pack is an array of registers of four floats. The same bits as on x86.
+// pack.h for 64-bit ARM: a pack is an array of registers of four floats. The same bits as on x86,
+// but for two results that no healthy step has: the NaN of an invalid operation has another sign,
+// and a result that rounds up to the smallest normal number is flushed to zero.
 #pragma once
 
 #include <arm_neon.h>

@@ -14,7 +14,8 @@
 //
 // Written for speed, as the model it is compared with: no angle is computed (the sines and cosines
 // of the tilt and of the direction of motion are components of unit vectors), four elements at a
-// time (AVX2, double), and fours of which none leads below the surface cost only the test.
+// time (one register of AVX, in double), and fours of which none leads below the surface cost only
+// the test.
 #pragma once
 
 #include <span>

@@ -177,8 +177,9 @@ Report run_learner_bench(int rounds) {
       {"processor", processor_name()},
       {"products",
        "of all layers of the training that ships, 256 samples, the encoder's 64; GFLOP/s"},
-      {"ours", "AVX-512 (x16) and AVX2 (x8), weights packed beforehand as once a minibatch"},
-      {"eigen", "AVX2, as the rest of the program"},
+      {"ours",
+       "AVX-512 (x16) and AVX2 or NEON (x8), weights packed beforehand as once a minibatch"},
+      {"eigen", "as the rest of the program is compiled"},
       {"peak", "fused multiply-adds on registers, nothing else"},
       {"clock", "processor time of the thread"}};
   for (const auto& [name, values] : rates) report.rates.emplace_back(name, quartiles(values));

@@ -203,7 +203,7 @@ Report run_policy_bench(int rounds) {
                              ours.back().weight_bytes(), realtime.description())},
       {"mlp", fmt::format("a perceptron 45-512-256-128-12, ELU, {} bytes of weights as packed",
                           theirs.back().weight_bytes())},
-      {"read_floor", "as many bytes, AVX2 loads into eight registers and nothing else"},
+      {"read_floor", "as many bytes, loaded and added in eight registers"},
       {"l2_cold", fmt::format("after a walk through {} MiB on the same core", kWalkBytes >> 20)},
       {"cold", fmt::format("after a walk through {} MiB on the same core", kLongWalkBytes >> 20)}};
   for (const auto& [name, values] : times_s) {

@@ -49,6 +49,7 @@ skip() {
 for tool in qemu-system-x86_64 busybox cpio xz apt-get dpkg-deb; do
   command -v "$tool" >/dev/null || skip "found no $tool (bash tools/install_packages.sh checks)"
 done
+[[ $(uname -m) == x86_64 ]] || skip "the emulated machine is x86-64, this one $(uname -m)"
 file -L "$(command -v busybox)" | grep -q 'static' || skip "busybox is not the static one (Debian package busybox-static)"
 
 # --- the kernel ---

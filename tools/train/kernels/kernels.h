@@ -68,7 +68,7 @@ struct Kernels {
                         const Scalar* tanh_c, const Scalar* dh, Scalar* dc);
 };
 
-/// float in packs of 8 (AVX2).
+/// float in packs of 8 (AVX2, NEON).
 const Kernels<float>& kernels_x8() noexcept;
 /// float in packs of 16: only where has_avx512().
 const Kernels<float>& kernels_x16() noexcept;
