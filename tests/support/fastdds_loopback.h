@@ -18,11 +18,11 @@
 namespace sandrunner {
 
 #ifdef SANDRUNNER_FASTDDS_3
-using eprosima::fastdds::dds::RETCODE_OK;
+constexpr auto kReturnedOk = eprosima::fastdds::dds::RETCODE_OK;
 using eprosima::fastdds::rtps::IPLocator;
 using eprosima::fastdds::rtps::Locator_t;
 #else
-constexpr auto RETCODE_OK = eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+constexpr auto kReturnedOk = eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
 using eprosima::fastrtps::rtps::IPLocator;
 using eprosima::fastrtps::rtps::Locator_t;
 #endif

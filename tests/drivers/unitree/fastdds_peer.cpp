@@ -178,7 +178,7 @@ template <typename Message, typename Use>
 void take(dds::DataReader* reader, const Use& use) {
   dds::SampleInfo info;
   Message message;
-  while (reader->take_next_sample(&message, &info) == sandrunner::RETCODE_OK) {
+  while (reader->take_next_sample(&message, &info) == sandrunner::kReturnedOk) {
     if (info.valid_data) use(message);
   }
 }

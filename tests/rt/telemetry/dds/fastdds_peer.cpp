@@ -66,7 +66,7 @@ struct Received {
   void take() {
     dds::SampleInfo info;
     typename PubSubType::type sample;
-    while (reader->take_next_sample(&sample, &info) == sandrunner::RETCODE_OK) {
+    while (reader->take_next_sample(&sample, &info) == sandrunner::kReturnedOk) {
       if (!info.valid_data) continue;
       last = sample;
       ++count;
