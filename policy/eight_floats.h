@@ -25,6 +25,13 @@ inline EightFloats add(EightFloats a, EightFloats b) noexcept {
 inline EightFloats multiply_add(EightFloats a, EightFloats b, EightFloats c) noexcept {
   return {vfmaq_f32(c.low, a.low, b.low), vfmaq_f32(c.high, a.high, b.high)};
 }
+/// Their bits.
+inline EightFloats either(EightFloats a, EightFloats b) noexcept {
+  const auto either_four = [](float32x4_t x, float32x4_t y) {
+    return vreinterpretq_f32_u32(vorrq_u32(vreinterpretq_u32_f32(x), vreinterpretq_u32_f32(y)));
+  };
+  return {either_four(a.low, b.low), either_four(a.high, b.high)};
+}
 inline void store_eight(float* to, EightFloats a) noexcept {
   vst1q_f32(to, a.low);
   vst1q_f32(to + 4, a.high);
@@ -38,6 +45,8 @@ inline EightFloats add(EightFloats a, EightFloats b) noexcept { return _mm256_ad
 inline EightFloats multiply_add(EightFloats a, EightFloats b, EightFloats c) noexcept {
   return _mm256_fmadd_ps(a, b, c);
 }
+/// Their bits.
+inline EightFloats either(EightFloats a, EightFloats b) noexcept { return _mm256_or_ps(a, b); }
 inline void store_eight(float* to, EightFloats a) noexcept { _mm256_store_ps(to, a); }
 #endif
 

@@ -113,9 +113,13 @@ class Bytes {
     for (EightFloats& part : sum) part = eight_times(0.0f);
     const float* at = lines_.front().value;
     for (std::size_t i = 0; i < lines_.size(); ++i, at += 64) {
-      for (int k = 0; k < 8; ++k) sum[k] = add(sum[k], load_eight(at + 8 * k));
+      for (int k = 0; k < 8; ++k) sum[k] = either(sum[k], load_eight(at + 8 * k));
     }
-    for (const EightFloats& part : sum) asm volatile("" : : "m"(part));
+    for (const EightFloats& part : sum) {
+      alignas(32) float read[8];  // the sums themselves stay in registers
+      store_eight(read, part);
+      asm volatile("" : : "m"(read));
+    }
   }
 
  private:
@@ -203,7 +207,7 @@ Report run_policy_bench(int rounds) {
                              ours.back().weight_bytes(), realtime.description())},
       {"mlp", fmt::format("a perceptron 45-512-256-128-12, ELU, {} bytes of weights as packed",
                           theirs.back().weight_bytes())},
-      {"read_floor", "as many bytes, loaded and added in eight registers"},
+      {"read_floor", "as many bytes, loaded into eight registers and nothing else"},
       {"l2_cold", fmt::format("after a walk through {} MiB on the same core", kWalkBytes >> 20)},
       {"cold", fmt::format("after a walk through {} MiB on the same core", kLongWalkBytes >> 20)}};
   for (const auto& [name, values] : times_s) {
