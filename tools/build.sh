@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tools/build.sh [--arm64] [sandrunner|deb]: installs missing packages (sudo apt-get) and builds in
-# release, into build/release.
-#   (without)   everything
-#   sandrunner  the program sandrunner only: half the packages and a fifth of the time
-#   deb         the Debian package for a robot's computer (tools/deploy)
-#   --arm64     for 64-bit ARM, on an x86-64 machine, into build/arm64
+# tools/build.sh [--arm64] [sandrunner|deb|python_module]: installs missing packages (sudo apt-get)
+# and builds in release, into build/release.
+#   (without)      everything
+#   sandrunner     the program sandrunner only: half the packages and a fifth of the time
+#   deb            the Debian package for a robot's computer (tools/deploy)
+#   python_module  the Python module and what its tests need (tools/python)
+#   --arm64        for 64-bit ARM, on an x86-64 machine, into build/arm64
 # Reports on stderr; prints nothing if nothing is to be done.
 set -euo pipefail
 for word; do
@@ -17,8 +18,8 @@ preset=release what=all
 for word; do
   case $word in
     --arm64) preset=arm64 ;;
-    sandrunner | deb) what=$word ;;
-    *) echo "build.sh: found '$word', expected --arm64, sandrunner or deb" >&2 && exit 2 ;;
+    sandrunner | deb | python_module) what=$word ;;
+    *) echo "build.sh: found '$word', expected --arm64, sandrunner, deb or python_module" >&2 && exit 2 ;;
   esac
 done
 build=$root/build/$preset

@@ -3,7 +3,7 @@
 # tools/install_packages.sh [all|sandrunner|deb|test|checks|arm64]: installs the missing Debian
 # packages with apt-get, as root or with sudo. If none is missing it only queries dpkg: no network
 # and no permissions are needed.
-#   all, deb    everything, the Debian package included
+#   all, deb    everything, the Debian package and the Python module included
 #   sandrunner  the program sandrunner only
 #   test        everything, and what only tests run
 #   checks      everything, and the checks of .ci/run
@@ -66,12 +66,15 @@ if ((EUID != 0)); then
 fi
 echo "installing Debian packages: ${missing[*]}" >&2
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
-undo=true
+added=false
 if [[ ${1:-all} == arm64 ]] && ! dpkg --print-foreign-architectures | grep -qx arm64; then
   "${as_root[@]}" dpkg --add-architecture arm64
-  # A mirror without it would fail every update.
-  undo="${as_root[*]} dpkg --remove-architecture arm64"
+  added=true
 fi
-"${apt[@]}" update >&2 || { $undo && fail "apt-get update failed, see above"; }
+give_up() { # with an architecture that the mirror lacks, every later update would fail too
+  ! $added || "${as_root[@]}" dpkg --remove-architecture arm64 >&2 || true
+  fail "$1"
+}
+"${apt[@]}" update >&2 || give_up "apt-get update failed, see above"
 "${apt[@]}" install --yes --no-install-recommends "${missing[@]}" >&2 ||
-  { $undo && fail "apt-get could not install: ${missing[*]}"; }
+  give_up "apt-get could not install: ${missing[*]}"

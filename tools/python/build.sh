@@ -9,7 +9,4 @@ for word; do
 done
 
 root=$(cd -P -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
-bash "$root/tools/install_packages.sh" all
-cd "$root"
-cmake --preset release >&2
-cmake --build build/release --target sandrunner_python rollout_reference >&2
+bash "$root/tools/build.sh" python_module
