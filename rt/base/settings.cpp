@@ -30,6 +30,8 @@ constexpr std::pair<std::string_view, const char*> kUnits[] = {
     {"npm", "N/m"},
     {"nspm", "N s/m"},
     {"npm3", "N/m^3"},
+    {"pa", "Pa"},
+    {"papm", "Pa/m"},
     {"kgpm3", "kg/m^3"},
     {"kgm2", "kg m^2"},
     {"w", "W"},

@@ -25,7 +25,9 @@ constexpr std::pair<const char*, double Ground::*> kOffered[] = {
     {"stiffness_npm", &Ground::stiffness_npm},
     {"friction", &Ground::friction},
     {"drag", &Ground::drag},
-    {"packing", &Ground::packing}};
+    {"packing", &Ground::packing},
+    {"strength_pa", &Ground::strength_pa},
+    {"suction", &Ground::suction}};
 
 GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& wanted) {
   const sim::GroundParameters& ground = terrain.patches.front().ground;

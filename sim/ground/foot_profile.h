@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 
 #include "sim/lanes/lanes.h"
 
@@ -42,6 +43,13 @@ struct FootProfile {
     const S a = sqrt(zr * (S(2.0) * radius - zr));
     if (shape == FootShape::kSphere) return S(0.5) * (hydraulic_factor * a);
     return (hydraulic_factor * (a * tyre_width)) / fma(S(2.0), a, tyre_width);
+  }
+  /// Cross-section with the undisturbed surface at depth z >= 0, m^2.
+  S area(S z) const noexcept {
+    const S zr = shape == FootShape::kDisc ? radius : min(z, radius);
+    const S square = zr * (S(2.0) * radius - zr);
+    return shape == FootShape::kTyre ? S(2.0) * (sqrt(square) * tyre_width)
+                                     : S(std::numbers::pi) * square;
   }
   /// P0 and P1 at depth z >= 0.
   void integrals(S z, S& big_p0, S& big_p1) const noexcept {

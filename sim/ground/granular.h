@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law of granular ground: Aguilar & Goldman's developing cone as the paper generalises it
 // (section S11), its plastic memory, the moving average of the normal force (eq. S16), and the
-// horizontal stroke resistance (paper, eqs. 1 and 2). Where the paper's text and its authors' code
-// differ, the code is followed, since the published network was trained with it: the filter's
-// constants, ungated friction, depth term z - r_f, stroke resistance that begins beyond the
-// crater's radius and counts horizontal travel as fresh ground (the paper's text: any overlap with
-// the wall, and its greatest value so far).
+// horizontal stroke resistance (paper, eqs. 1 and 2). Beyond the paper: firmer ground below
+// (layer_growth()). Where the paper's text and its authors' code differ, the code is followed,
+// since the published network was trained with it: the filter's constants, ungated friction, depth
+// term z - r_f, stroke resistance that begins beyond the crater's radius and counts horizontal
+// travel as fresh ground (the paper's text: any overlap with the wall, and its greatest value so
+// far).
 #pragma once
 
 #include <numbers>
@@ -29,13 +30,18 @@ struct GranularParameters {
   double packing = 0.57;                       ///< phi: volume fraction
   double grain_density_kgpm3 = 1000.0;         ///< rho
   double drag = 17.2;                          ///< c_d: inertial drag scaling
-  double plastic_tolerance_m = 1e-4;           ///< eps_f
+  /// eps_f. Where the force at the remembered depth exceeds 2 m eps_f/dt^2, m the foot's mass, one
+  /// step throws the foot out of this band: it bounces, and creeps down.
+  double plastic_tolerance_m = 1e-4;
   // Horizontal stroke resistance.
   double stroke_stiffness_npm = 160.0;           ///< k_h
   double stroke_damping_nspm = 1.0;              ///< b_h
   double stroke_depth_scaling = 0.5;             ///< beta_d
   double crater_radius_m = 0.05;                 ///< r_c
   double crater_angle_rad = 0.7853981633974483;  ///< gamma_c
+  // Firmer ground below.
+  double layer_depth_m = 0.0;    ///< H; 0: there is none
+  double layer_strength = 10.0;  ///< its stress gradients over those above
 
   // Effects, each of which can be switched off for an ablation.
   bool inertial_drag = true;  ///< c_d m_a' z_dot
@@ -76,6 +82,10 @@ struct GranularParameters {
        "Granular: radius of the crater of a foot."},
       {"crater_angle_deg", degrees(&P::crater_angle_rad), 5.0, 85.0,
        "Granular: slope of the crater's wall."},
+      {"layer_depth_m", &P::layer_depth_m, 0.0, 10.0,
+       "Granular: where firmer ground begins; 0: nowhere."},
+      {"layer_strength", &P::layer_strength, 1.0, 25.0,
+       "Granular: stress gradients of the firmer ground over those above it."},
       {"effects.inertial_drag", &P::inertial_drag, "Granular: drag of moving grains."},
       {"effects.added_mass", &P::added_mass, "Granular: inertia of moving grains."},
       {"effects.plastic_memory", &P::plastic_memory,
@@ -111,6 +121,9 @@ struct GranularLaw {
   S stroke_stiffness{}, stroke_damping{}, stroke_depth_scaling{};  ///< k_h, b_h, beta_d
   S stroke_offset{};  ///< r_f/sin(gamma_c) - r_c - r_f/tan(gamma_c), m
   S inverse_tan_crater{};
+  S layer_depth{};         ///< H, m; 0: no layer
+  S layer_log_strength{};  ///< ln of the layer's strength
+  S layer_log_slope{};     ///< what it loses per height over the layer, 1/m
 
   FootForce<S> step(const FootProfile<S>& foot, S friction, const FootMotion<S>& motion, S rate_hz,
                     FootContact<S>& contact) const noexcept;
@@ -139,17 +152,31 @@ inline S flat_area(const GranularLaw<S>& g, S z, S hydraulic_radius) noexcept {
   const S r = max(fma(-g.k, z, hydraulic_radius), S(0.0));
   return S(std::numbers::pi) * (r * r);
 }
-/// Quasistatic force F_p = sigma_flat I_flat + sigma_cone I_cone, N.
+/// Quasistatic force F_p = sigma_flat I_flat + sigma_cone I_cone of ground without a layer, N.
 template <typename S>
 inline S quasistatic_force(const GranularLaw<S>& g, const Cone<S>& c) noexcept {
   return fma(g.sigma_flat, c.flat_integral, g.sigma_cone * c.cone_integral);
 }
-/// The same at depth z >= 0 of a foot.
+/// By how much firmer ground below makes the ground stiffer at depth z, m. What a foot of width B
+/// breaks reaches H_cr = B e^((pi/4 + phi/2) tan phi) / (2 cos(pi/4 + phi/2)) below it, phi the
+/// angle of friction (as of a strip footing: Fundamentals of Foundation Engineering, eq. 5.35).
+/// From there on the strength rises exponentially to that of the layer (as the force on what is
+/// pushed towards a bottom: Lopez-Rodriguez & Pacheco-Vazquez, PRE 96 030901), which it has from H
+/// on.
+template <typename S>
+inline S layer_growth(const GranularLaw<S>& g, S z) noexcept {
+  const S zero = S(0.0);
+  const S above = max(g.layer_depth - z, zero);
+  const S growth = exponential(max(fma(-g.layer_log_slope, above, g.layer_log_strength), zero));
+  return select(g.layer_depth > zero, growth, S(1.0));
+}
+
+/// Quasistatic force at depth z >= 0 of a foot, N.
 template <typename S>
 inline S quasistatic_force(const GranularLaw<S>& g, const FootProfile<S>& foot, S z) noexcept {
   S p0, p1;
   foot.integrals(z, p0, p1);
-  return quasistatic_force(g, cone_integrals(g, z, p0, p1));
+  return quasistatic_force(g, cone_integrals(g, z, p0, p1)) * layer_growth(g, z);
 }
 
 template <typename S>
@@ -179,7 +206,8 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   S p0, p1;
   foot.integrals(depth, p0, p1);
   const Cone<S> cone = cone_integrals(g, depth, p0, p1);
-  const S quasistatic = quasistatic_force(g, cone);
+  S quasistatic = quasistatic_force(g, cone);
+  if (any(g.layer_depth > zero)) quasistatic = quasistatic * layer_growth(g, depth);
   const S area = flat_area(g, depth, foot.hydraulic_radius(depth));
 
   // Plastic memory: force only on the way down, and only from the remembered depth on.

@@ -7,6 +7,7 @@
 
 #include "sim/ground/granular.h"
 #include "sim/ground/linear.h"
+#include "sim/ground/mud.h"
 #include "sim/ground/rigid.h"
 
 namespace sandrunner::sim {
@@ -30,8 +31,8 @@ struct LawList {
 };
 
 /// All laws, in the order of GroundKind.
-using Laws = LawList<GranularLaw, RigidLaw, LinearLaw>;
-enum class GroundKind : std::uint32_t { kGranular, kRigid, kLinear };
+using Laws = LawList<GranularLaw, RigidLaw, LinearLaw, MudLaw>;
+enum class GroundKind : std::uint32_t { kGranular, kRigid, kLinear, kMud };
 
 /// Its word in `terrain.kind`.
 constexpr const char* kind_name(GroundKind kind) noexcept {
@@ -67,13 +68,19 @@ template <typename S>
 inline FootForce<S> foot_force(const Ground<S>& ground, const FootProfile<S>& foot,
                                const FootMotion<S>& motion, S rate_hz,
                                FootContact<S>& contact) noexcept {
+  // The first law steps on every ground and in the air: it tells where contacts begin and end. What
+  // it remembers gives way to what another law does where that is the ground.
+  const FootContact<S> before = contact;
   FootForce<S> force;
   Laws::for_each([&]<template <typename> typename Law>(int index) {
     if constexpr (!Law<S>::kHard) {
       const Law<S>& law = ground;
       const Mask<S> here = ground.kind == S(double(index));
-      if (!Law<S>::kRemembers && !any(here)) return;
-      force = select(here, law.step(foot, ground.friction, motion, rate_hz, contact), force);
+      if (index > 0 && !any(here)) return;
+      FootContact<S> after = before;
+      FootContact<S>& own = index > 0 && Law<S>::kRemembers ? after : contact;
+      force = select(here, law.step(foot, ground.friction, motion, rate_hz, own), force);
+      if (index > 0 && Law<S>::kRemembers) contact = select(here, after, contact);
     }
   });
   return force;

@@ -6,11 +6,14 @@
 //   members        constants that derive_law() makes from them, once for a foot; all of them S,
 //   step()         the force on one foot at one step,
 //   kHard          impenetrable: the contact problem finds the normal force. It has no step(),
-//   kRemembers     changes the FootContact. It then steps on every ground and in the air, so that
-//                  its memory is current when the foot comes to ground of its kind,
+//   kRemembers     keeps in the FootContact how deep it was pressed, memory_depth,
 //   kDrawnAsSand   pages draw sand, else something solid.
 // To add a law: its file, and its name in GroundKind and Laws (ground.h).
 #pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
 
 #include "sim/ground/foot_profile.h"
 #include "sim/lanes/lanes.h"
@@ -42,10 +45,20 @@ struct FootContact {
   S stroke_travel{};                         ///< greatest distance from that centre since, m
 };
 
+template <typename S>
+inline FootContact<S> select(const Mask<S>& m, const FootContact<S>& a,
+                             const FootContact<S>& b) noexcept {
+  using Fields = std::array<S, sizeof(FootContact<S>) / sizeof(S)>;
+  Fields fields = std::bit_cast<Fields>(b);
+  const Fields other = std::bit_cast<Fields>(a);
+  for (std::size_t i = 0; i < fields.size(); ++i) fields[i] = select(m, other[i], fields[i]);
+  return std::bit_cast<FootContact<S>>(fields);
+}
+
 /// Forces of the ground on a foot at one step.
 template <typename S>
 struct FootForce {
-  S normal{};          ///< >= 0, N
+  S normal{};          ///< N; < 0: holds the foot back
   S raw{};             ///< normal before the filter of the granular law, N
   S friction_bound{};  ///< of the tangential force, N
   S stroke{};          ///< resistance along the ground, N, acts along -(direction_x, direction_y)

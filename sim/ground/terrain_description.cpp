@@ -25,7 +25,7 @@ constexpr const char* kShapes[] = {"tyre", "sphere", "disc"};
 
 using G = GroundParameters;
 constexpr Setting<G> kGround[] = {
-    {"kind", words<&G::kind>(Laws::kNames), "What the ground is: grains, hard, or springs."},
+    {"kind", words<&G::kind>(Laws::kNames), "What the ground is: grains, hard, springs, or mud."},
     {"friction", &G::friction, 0.0, 5.0, "Coulomb coefficient between foot and ground."},
 };
 

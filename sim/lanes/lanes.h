@@ -56,15 +56,28 @@ inline S diff_of_products(S a, S b, S c, S d) noexcept {
   return fma(a, b, -(c * d));
 }
 
+template <typename S>
+inline constexpr bool kIsDouble = sizeof(S) == sizeof(double) && !requires { typename S::Element; };
+
+/// e^x for 0 <= x <= 7: the Taylor series of x/16, squared four times. Relative error below 2e-6 in
+/// float, 1e-14 in double. Own code because libm's bits depend on the machine.
+template <typename S>
+inline S exponential(S x) noexcept {
+  const S part = S(1.0 / 16.0) * x;
+  S e = S(1.0);
+  for (int n = kIsDouble<S> ? 15 : 7; n > 0; --n) e = fma(part * S(1.0 / n), e, S(1.0));
+  for (int i = 0; i < 4; ++i) e = e * e;
+  return e;
+}
+
 /// Sine and cosine for |x| < 1e4 (Cody-Waite reduction to +-pi/4, then the polynomials of Cephes:
 /// float; fdlibm: double). Error below 2.5 ulp in double, 1e-7 in float. Own code because libm's
 /// bits depend on the machine.
 template <typename S>
 inline void sincos(S x, S& sine, S& cosine) noexcept {
-  constexpr bool kIsDouble = sizeof(S) == sizeof(double) && !requires { typename S::Element; };
   const S k = floor(fma(x, S(0.63661977236758134308), S(0.5)));
   S r, s, c;
-  if constexpr (kIsDouble) {
+  if constexpr (kIsDouble<S>) {
     r = fma(k, S(-1.5707963267341256e+00), x);
     r = fma(k, S(-6.07710050630396597660e-11), r);
     r = fma(k, S(-2.0222662487959506e-21), r);

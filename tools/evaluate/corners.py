@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """tools/evaluate/corners.py POLICY: tests a policy's own envelope for falls. Each run steps from one corner of the
-envelope to another and back, through the whole controller (sandrunner). The grounds are every preset and sand of 1/0.15
+envelope to another and back, through the whole controller (sandrunner). The grounds are six presets and sand of 1/0.15
 MN/m^3; the robot starts in the nominal pose, disturbed, or by standing up. Prints runs and falls for each ground and
 corner, and for each fall how it happened and how to repeat it. Exit code 1: a run fell. The envelope is that of the
 policy file (sandrunner-policy envelope)."""

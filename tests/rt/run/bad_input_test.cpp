@@ -150,8 +150,8 @@ TEST_F(BadInputTest, TerrainsAreRefusedWithFileAndLine) {
   expect_refused("--terrain nan.toml", "nan.toml:2: terrain.sigma_flat_npm3: found nan");
   write("broken.toml", "[terrain]\nfriction = \n");
   expect_refused("--terrain broken.toml", "broken.toml:2: not valid TOML");
-  write("patch.toml", "[[terrain.patch]]\nfrom_x_m = 1\npreset = \"mud\"\n");
-  expect_refused("--terrain patch.toml", "preset 'mud'");
+  write("patch.toml", "[[terrain.patch]]\nfrom_x_m = 1\npreset = \"lava\"\n");
+  expect_refused("--terrain patch.toml", "preset 'lava'");
 }
 
 TEST_F(BadInputTest, SettingsAreRefusedWithTheirKey) {

@@ -28,7 +28,7 @@ namespace {
 constexpr int kRobots = 64;
 constexpr int kPeriods = 50;  // of 40 ticks: 2,000 ticks
 
-enum Kind { kSand, kFlatRock, kRoughRock, kSpring, kPatches, kUnevenPatches, kNumKinds };
+enum Kind { kSand, kFlatRock, kRoughRock, kSpring, kPatches, kUnevenPatches, kMud, kNumKinds };
 
 const Robot& raibo() {
   static const Robot robot = load_raibo();
@@ -45,12 +45,15 @@ GroundParameters random_ground(Draw& draw, Kind kind) {
   g.friction = draw(0.4, 1.1);
   g.kind = kind == kSand     ? GroundKind::kGranular
            : kind == kSpring ? GroundKind::kLinear
+           : kind == kMud    ? GroundKind::kMud
                              : GroundKind::kRigid;
   g.sigma_flat_npm3 = draw(1e6, 1e7);
   g.sigma_cone_npm3 = draw(0.15e6, 0.6e6);
   g.recruitment = draw(1.5, 2.5);
   g.stroke_stiffness_npm = draw(50.0, 2000.0);
   g.stiffness_npm = draw(5e3, 30e3);
+  if (draw(0.0, 1.0) < 0.3) g.layer_depth_m = draw(0.01, 0.2);
+  g.strength_pa = draw(2e3, 20e3);
   if (kind == kSpring) g.coupling_npm = draw(0.0, 1.0) < 0.7 ? draw(100.0, 5e3) : 0.0;
   return g;
 }
@@ -75,7 +78,7 @@ Terrain<float> random_terrain(Draw& draw, Kind kind) {
   if (patches) {
     // Borders under and just beside the robot, so that its feet stand on different patches.
     double from_x_m = -0.4;
-    for (const Kind next : {kFlatRock, kSand, kSpring, kFlatRock}) {
+    for (const Kind next : {kFlatRock, kSand, kSpring, kMud, kFlatRock}) {
       from_x_m += draw(0.1, 0.3);
       t.patches.push_back({from_x_m, random_ground(draw, next)});
     }

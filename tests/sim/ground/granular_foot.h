@@ -10,7 +10,7 @@
 
 namespace sandrunner::sim {
 
-inline constexpr double kFootRadius_m = 0.0295;
+inline constexpr double kFootRadius_m = 0.0295, kFootWidth_m = 2.0 * kFootRadius_m;
 inline constexpr double kDt_s = 0.25e-3;
 
 inline FootProfile<double> tyre() {

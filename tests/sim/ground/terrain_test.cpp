@@ -152,7 +152,7 @@ TEST(TerrainTest, RefusesBadValuesInOneLine) {
   expect_names("[terrain]\nsigma_cone_npm3 = nan", "sigma_cone_npm3");
   expect_names("[terrain]\nfriction = inf", "friction");
   expect_names("[terrain]\nfriction = \"high\"", "friction");
-  expect_names("[terrain]\nkind = \"mud\"", "kind");
+  expect_names("[terrain]\nkind = \"lava\"", "kind");
   expect_names("[terrain]\neffects.filter = 1", "filter");
   expect_names("[terrain]\nfoot.shape = \"ball\"", "shape");
   expect_names("[terrain]\nroughness_m = -0.01", "roughness_m");

@@ -71,6 +71,20 @@ TEST(SincosTest, ZeroIsExact) {
   EXPECT_EQ(c, 1.0);
 }
 
+TEST(ExponentialTest, IsWithinItsErrorFromZeroToSeven) {
+  double worst = 0.0, worst_float = 0.0;
+  for (double x = 0.0; x <= 7.0; x += 1e-4) {
+    const double exact = std::exp(x);
+    const double narrow_exact = std::exp(static_cast<double>(static_cast<float>(x)));
+    worst = std::fmax(worst, std::fabs(exponential(x) / exact - 1.0));
+    worst_float =
+        std::fmax(worst_float, std::fabs(exponential(static_cast<float>(x)) / narrow_exact - 1.0));
+  }
+  EXPECT_LT(worst, 1e-14);
+  EXPECT_LT(worst_float, 2e-6);
+  EXPECT_EQ(exponential(0.0), 1.0);
+}
+
 /// q (x) exp(w/2) in long double with the library's sine and cosine.
 std::array<long double, 4> exact_turn(const Quaternion<double>& q, const Vec3<double>& w) {
   const long double x = w.x, y = w.y, z = w.z;

@@ -16,8 +16,9 @@ namespace sandrunner::sim {
 namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
-constexpr GroundKind kAllKinds[] = {GroundKind::kGranular, GroundKind::kRigid, GroundKind::kLinear};
-constexpr GroundKind kYielding[] = {GroundKind::kGranular, GroundKind::kLinear};
+constexpr GroundKind kAllKinds[] = {GroundKind::kGranular, GroundKind::kRigid, GroundKind::kLinear,
+                                    GroundKind::kMud};
+constexpr GroundKind kYielding[] = {GroundKind::kGranular, GroundKind::kLinear, GroundKind::kMud};
 
 Quaternion<double> turn_about(const Vec3<double>& axis, double angle_rad) {
   const double s = std::sin(0.5 * angle_rad);
@@ -140,7 +141,9 @@ TEST(SlopeTest, GroundNeverGivesEnergy) {
     for (const double roughness : {0.0, 0.01}) {
       GroundParameters ground = ground_of_kind(kind);
       ground.damping_nspm = 0.0;
-      constexpr double kEuler_j = 0.03;  // energy swings by so much on springs, with steps of dt
+      // Energy swings by so much on springs, with steps of dt, and in mud, which is elastic for a
+      // millimetre.
+      const double swing_j = kind == GroundKind::kMud ? 0.1 : 0.03;
       ShapeParameters shape = slope(12.0 * kDegree_rad, 0.4);
       shape.roughness_m = roughness;
       Bench bench = frozen_on(ground, shape);
@@ -162,7 +165,7 @@ TEST(SlopeTest, GroundNeverGivesEnergy) {
         if (bench.report.base_contact > 0.0) break;
         if (i % 20 != 0) continue;
         const double now = energy();
-        EXPECT_LT(now, least + kEuler_j) << kind_name(kind) << " " << roughness << " step " << i;
+        EXPECT_LT(now, least + swing_j) << kind_name(kind) << " " << roughness << " step " << i;
         least = std::min(least, now);
       }
     }

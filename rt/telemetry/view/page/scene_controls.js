@@ -10,12 +10,14 @@ const kSliders = [
   { name: 'stiffness', log: true, keys: { granular: ['sigma_flat_npm3', 'sigma_cone_npm3'], linear: ['stiffness_npm'] },
     unit: { granular: 'N/m³', linear: 'N/m' }, from: { granular: 4, linear: 3 }, to: { granular: 8, linear: 6 } },
   { name: 'friction', keys: { granular: ['friction'], linear: ['friction'], rigid: ['friction'] }, to: 2, step: 0.01 },
+  { name: 'strength', log: true, keys: { mud: ['strength_pa'] }, unit: { mud: 'Pa' }, from: { mud: 2 }, to: { mud: 4.4 } },
+  { name: 'suction', keys: { mud: ['suction'] }, to: 1, step: 0.01 },
   { name: 'drag', keys: { granular: ['drag'] }, to: 100, step: 0.1 },
   { name: 'packing', keys: { granular: ['packing'] }, to: 1, step: 0.01 },
 ];
 
 export class SceneControls {
-  /** @param {Function} onKind receives 'granular', 'rigid' or 'linear' when the ground has become another one */
+  /** @param {Function} onKind receives the kind of ground ('granular', 'mud', ...) when the ground has become another one */
   constructor(live, frames, view, onKind) {
     Object.assign(this, { live, frames, view, onKind });
     this.sliders = kSliders.map((slider) => this.#makeSlider(slider));

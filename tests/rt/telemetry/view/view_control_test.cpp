@@ -225,10 +225,10 @@ TEST_F(ViewControlTest, WhatSetRefusesIsRefusedInTheSameWords) {
             "page: terrain.packing: found -1, expected a finite number from 0 to 1");
   EXPECT_EQ(say(R"({"say":"terrain","preset":"","set":{"roughness_m":0.1}})"),
             "terrain: 'roughness_m', expected one of sigma_flat_npm3, sigma_cone_npm3, "
-            "stiffness_npm, friction, drag, packing");
+            "stiffness_npm, friction, drag, packing, strength_pa, suction");
   EXPECT_EQ(say(R"({"say":"terrain","preset":"/etc/passwd","set":{}})"),
-            "terrain: '/etc/passwd', expected one of air-mattress, athletic-track, dry-sand, "
-            "grass, memory-foam, rigid, vinyl, wet-sand");
+            "terrain: '/etc/passwd', expected one of air-mattress, athletic-track, dry-on-wet, "
+            "dry-sand, grass, memory-foam, mud, rigid, sand-on-rock, swamp, turf, vinyl, wet-sand");
   EXPECT_EQ(control->ground().wanted.set.size(), 0u);
 }
 
