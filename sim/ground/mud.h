@@ -7,11 +7,15 @@
 // with the surface, D the foot's width and r = sqrt(A/pi):
 //   limit      N_c s_u A (1 + sqrt(|v|/v_2)),  N_c = 6 (1 + 0.2 z/D) <= 9: Skempton 1951; with
 //   speed
-//              as a Herschel-Bulkley fluid of exponent 1/2
+//              as a Herschel-Bulkley fluid of exponent 1/2. v_2 = 5 m/s gives 15 % from 0.03 to 0.3
+//              m/s; published are 5 to 15 % per tenfold rate of strain (Garnier et al. 2007)
+//   suction    a share of that limit: 1 under a sealed base (Mana et al. 2013), little where a gap
+//              lets water in; 0.5 is chosen
 //   stiffness  8 G r: a rigid disc on an incompressible elastic half space
 //   damping    6.8 r^2 sqrt(G rho): the same disc's radiation, Lysmer & Richart 1966, nu = 1/2
 //   sideways   s_u A under the foot, and 9 s_u a projected area against its side: Broms 1964
-// All forces are bounded by what the ground has taken up, so that it never gives energy.
+// How far a foot rises until it breaks off, and G/s_u of mud, are chosen: no public number was
+// found. All forces are bounded by what the ground has taken up, so that it never gives energy.
 #pragma once
 
 #include <cmath>
@@ -25,7 +29,7 @@ namespace sandrunner::sim {
 struct MudParameters {
   static constexpr const char* kName = "mud";
   double strength_pa = 2000.0;            ///< s_u at the surface
-  double strength_gradient_papm = 2.0e4;  ///< what s_u gains with depth
+  double strength_gradient_papm = 1.0e4;  ///< what s_u gains with depth
   double mud_density_kgpm3 = 1600.0;      ///< rho
   double rigidity = 100.0;                ///< G/s_u
   double doubling_speed_mps = 5.0;        ///< v_2

@@ -126,6 +126,59 @@ void add_drag(std::vector<Anchor>& all) {
                  3});
 }
 
+// Pushed at this speed to a depth, the force of mud on a disc over s_u A.
+double mud_factor(double depth_m, double speed_mps) {
+  sim::GroundParameters mud;
+  mud.kind = sim::GroundKind::kMud;
+  mud.strength_gradient_papm = 0.0;
+  const sim::FootProfile<double> disc =
+      sim::fit_foot_profile(sim::FootShape::kDisc, kFootRadius_m, 0.0, 2.0);
+  const sim::Ground<double> ground = sim::derive_ground(mud, disc, kFootRadius_m);
+  sim::FootContact<double> contact;
+  double force = 0.0;
+  for (double z = 0.0; z <= depth_m; z += speed_mps / kStepHz) {
+    force = sim::foot_force(ground, disc, {.z = z, .v = speed_mps}, kStepHz, contact).normal;
+  }
+  return force / (mud.strength_pa * disc.area(depth_m));
+}
+
+void add_mud(std::vector<Anchor>& all) {
+  constexpr double kWidth_m = 2.0 * kFootRadius_m, kSlow = 1e-4;
+  for (const double widths : {0.1, 0.5, 1.0, 2.0}) {
+    all.push_back({"disc pushed slowly into clay", "API RP 2GEO, their formula",
+                   fmt::format("force over strength and area, {} widths deep", widths),
+                   5.14 * (1.18 + 0.3 * std::atan(widths)), mud_factor(widths * kWidth_m, kSlow),
+                   2});
+  }
+  all.push_back({"what was left in mud is pulled out", "Liu 1969 (NCEL R-635), T^-0.07",
+                 "force in a tenth of the time; ours: 0.3 m/s over 0.03", std::pow(10.0, 0.07),
+                 mud_factor(kWidth_m, 0.3) / mud_factor(kWidth_m, 0.03), 3});
+}
+
+void add_layers(std::vector<Anchor>& all) {
+  struct Row {
+    double friction_deg, widths;
+  };
+  constexpr double kWidth_m = 2.0 * kFootRadius_m, kLayer_m = 0.4;
+  for (const Row& row : {Row{28, 1.68}, Row{30, 1.83}, Row{35, 2.32}, Row{40, 3.07}}) {
+    sim::GroundParameters deep = dry_sand();
+    deep.cone_angle_rad = (45.0 + 0.5 * row.friction_deg) * std::numbers::pi / 180.0;
+    sim::GroundParameters layered = deep;
+    layered.layer_depth_m = kLayer_m;
+    double widths = 5.0;
+    const auto felt = [&](double above_m) {
+      return disc_stress_per_depth(layered, kLayer_m - above_m) >
+             disc_stress_per_depth(deep, kLayer_m - above_m);
+    };
+    while (widths > 0.0 && !felt(widths * kWidth_m)) widths -= 1e-3;
+    all.push_back(
+        {"footing on sand over a firmer layer",
+         "Fundamentals of Foundation Engineering, eq. 5.35: the law's own source",
+         fmt::format("felt from so many widths above it, friction {} degrees", row.friction_deg),
+         row.widths, widths, 2});
+  }
+}
+
 }  // namespace
 
 std::vector<Anchor> ground_anchors() {
@@ -134,6 +187,8 @@ std::vector<Anchor> ground_anchors() {
   add_exponents(all);
   add_plates(all);
   add_drag(all);
+  add_layers(all);
+  add_mud(all);
   return all;
 }
 

@@ -113,7 +113,9 @@ depth, which is the depth-proportional part of the force that Katsuragi and Duri
 N/m per kg of their ball); inertia and the dependence on speed, size and density are prediction.
 Plates and drag use the preset <code>dry-sand</code> as it is. The values that the sources give as
 laws were computed from them; the area of the dragged plate, which only enters its last digit, is
-taken as 16 mm times the depth.</p>
+taken as 16 mm times the depth. Mud has the constants of Skempton's law, which is compared with the
+later one of API, and a dependence on speed that was chosen before the row on pulling out was
+found. Its strength and the distance at which a foot breaks off have no public number.</p>
 """
 
 GROUND_RESULT = """

@@ -36,6 +36,15 @@ TEST(AnchorsTest, NoValueOfOursDriftsByMoreThanOnePercent) {
       {"pressure over depth at 30 mm, MN/m\u00b3", 0.57032},
       {"pressure over depth at 60 mm, MN/m\u00b3", 0.48516},
       {"force at 0.64 m/s over that at 0.04 m/s", 1.0096},
+      {"felt from so many widths above it, friction 28 degrees", 1.684},
+      {"felt from so many widths above it, friction 30 degrees", 1.830},
+      {"felt from so many widths above it, friction 35 degrees", 2.315},
+      {"felt from so many widths above it, friction 40 degrees", 3.073},
+      {"force over strength and area, 0.1 widths deep", 6.147},
+      {"force over strength and area, 0.5 widths deep", 6.630},
+      {"force over strength and area, 1 widths deep", 7.232},
+      {"force over strength and area, 2 widths deep", 8.438},
+      {"force in a tenth of the time; ours: 0.3 m/s over 0.03", 1.155},
   };
   const std::vector<Anchor> found = ground_anchors();
   ASSERT_EQ(found.size(), std::size(kRecorded));
