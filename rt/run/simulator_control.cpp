@@ -35,6 +35,7 @@ GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& w
   now.wanted = wanted;
   now.name = terrain.name;
   now.kind = sim::kind_name(ground.kind);
+  now.granular = sim::Laws::kDrawnAsSand[static_cast<int>(ground.kind)];
   now.presets = sim::terrain_preset_names();
   for (const auto& [key, member] : kOffered) now.values.emplace_back(key, ground.*member);
   return now;

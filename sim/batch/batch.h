@@ -100,6 +100,7 @@ class Batch {
   int packs() const noexcept { return (robots_ + width() - 1) / width(); }
 
   void set_model(int robot, const RobotModel<float>& model) noexcept;
+  /// Where the kind of ground changes under feet in contact, their FootContact is to be reset.
   void set_terrain(int robot, const Terrain<float>& terrain) noexcept;
   void set_state(int robot, const RobotState<float>& state) noexcept;
   void set_drive(int robot, const BatchDrive<float>& drive) noexcept;

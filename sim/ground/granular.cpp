@@ -56,7 +56,10 @@ GranularLaw<double> derive_law(const GranularParameters& p, const FootProfile<do
   g.added_mass = p.added_mass ? recruited : 0.0;
   g.drag = p.inertial_drag ? p.drag * recruited : 0.0;
   g.memory = p.plastic_memory ? 1.0 : 0.0;
-  g.tolerance = p.plastic_tolerance_m;
+  // Over firmer ground a light foot would bounce within less.
+  constexpr double kLayerTolerance_m = 3e-4;
+  g.tolerance = p.layer_depth_m > 0.0 ? std::max(p.plastic_tolerance_m, kLayerTolerance_m)
+                                      : p.plastic_tolerance_m;
   sincos(p.crater_angle_rad, sine, cosine);
   g.healing_slope = p.healing ? sine / cosine : 0.0;
   g.crater_radius = p.crater_radius_m;

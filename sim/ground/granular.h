@@ -30,9 +30,7 @@ struct GranularParameters {
   double packing = 0.57;                       ///< phi: volume fraction
   double grain_density_kgpm3 = 1000.0;         ///< rho
   double drag = 17.2;                          ///< c_d: inertial drag scaling
-  /// eps_f. Where the force at the remembered depth exceeds 2 m eps_f/dt^2, m the foot's mass, one
-  /// step throws the foot out of this band: it bounces, and creeps down.
-  double plastic_tolerance_m = 1e-4;
+  double plastic_tolerance_m = 1e-4;           ///< eps_f
   // Horizontal stroke resistance.
   double stroke_stiffness_npm = 160.0;           ///< k_h
   double stroke_damping_nspm = 1.0;              ///< b_h
@@ -71,7 +69,9 @@ struct GranularParameters {
        "Granular: density of the grains' material."},
       {"drag", &P::drag, 0.0, 1e3, "Granular: scale of the inertial drag."},
       {"plastic_tolerance_m", &P::plastic_tolerance_m, 0.0, 0.01,
-       "Granular: the force begins this much above the remembered depth."},
+       "Granular: the force begins this much above the remembered depth; over firmer ground at "
+       "least "
+       "0.3 mm."},
       {"stroke_stiffness_npm", &P::stroke_stiffness_npm, 0.0, 1e5,
        "Granular: stiffness against a foot that moves sideways."},
       {"stroke_damping_nspm", &P::stroke_damping_nspm, 0.0, 1e3,
@@ -213,6 +213,7 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   // Plastic memory: force only on the way down, and only from the remembered depth on.
   const Mask<S> beyond = z >= (c.memory_depth - g.tolerance) * g.memory;
   const Mask<S> pushing = both(touching, both(v > zero, beyond));
+  const S memory_before = c.memory_depth;
   const Mask<S> deeper = both(touching, z > c.memory_depth);
   c.memory_depth = select(deeper, z, c.memory_depth);
   c.memory_x = select(deeper, x, c.memory_x);
@@ -243,7 +244,14 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   // F = F_p + c_d (dm_a/dz) v^2 + m_a dv/dt  (S15, z down), gated, filtered (S16), never pulling.
   const S acceleration = (v - v_before) * rate_hz;
   const S mass = g.added_mass * max(cone.flat_integral - c.restart_flat, zero);
-  const S raw = fma(g.drag * area, v * v, fma(mass, acceleration, quasistatic));
+  S raw = fma(g.drag * area, v * v, fma(mass, acceleration, quasistatic));
+  // Over firmer ground the whole force at once, within the tolerance above the remembered depth,
+  // would throw a light foot up: there it rises over the tolerance.
+  if (any(g.layer_depth > zero)) {
+    const S within = (z - memory_before) + g.tolerance;
+    const Mask<S> again = both(both(g.layer_depth > zero, g.memory > zero), within < g.tolerance);
+    raw = select(again, raw * (within / max(g.tolerance, S(1e-9))), raw);
+  }
   FootForce<S> f;
   f.raw = select(pushing, raw, zero);
   c.filter = select(v * v_before < zero, min(c.filter + g.filter_step, one), c.filter);

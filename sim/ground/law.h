@@ -28,7 +28,8 @@ struct FootMotion {
   S x{}, y{}, z{}, v{}, vx{}, vy{};
 };
 
-/// What a foot's contact remembers. All but the first three is reset when the foot touches down.
+/// What a foot's contact remembers, in the words of the granular law; mud.h says what it keeps in
+/// which. What a law reads is reset when the foot touches down, but for the first three.
 template <typename S>
 struct FootContact {
   S active{};                ///< 1 from touchdown to lift-off

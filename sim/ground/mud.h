@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law of mud, beyond the paper: soft clay that has no time to drain. A foot breaks in against
-// the bearing capacity of a circular footing and, until it breaks off, is held back by as much when
-// it rises. Below either limit the mud is elastic and takes waves away with it.
+// the bearing capacity of a circular footing and, until it breaks off, is held back by a share of
+// that when it rises. Below either limit the mud is elastic and damps by the waves that it
+// radiates.
 //
-// With s_u the undrained shear strength at the foot's deepest point, A the foot's cross-section
-// with the surface, D the foot's width and r = sqrt(A/pi):
-//   limit      N_c s_u A (1 + sqrt(|v|/v_2)),  N_c = 6 (1 + 0.2 z/D) <= 9: Skempton 1951; with
-//   speed
-//              as a Herschel-Bulkley fluid of exponent 1/2. v_2 = 5 m/s gives 15 % from 0.03 to 0.3
-//              m/s; published are 5 to 15 % per tenfold rate of strain (Garnier et al. 2007)
-//   suction    a share of that limit: 1 under a sealed base (Mana et al. 2013), little where a gap
+// With s_u the undrained shear strength at the foot's deepest point, z its depth, D = 2 foot radii
+// (of a tyre too), A the foot's cross-section with the surface, and r = sqrt(A/pi):
+//
+//   limit      N_c s_u A (1 + sqrt(|v|/v_2)), N_c = 6 (1 + 0.2 z/D) <= 9: Skempton 1951. Speed acts
+//              as on a Herschel-Bulkley fluid of exponent 1/2: v_2 = 5 m/s gives 15 % from 0.03 to
+//              0.3 m/s; published are 5 to 15 % per tenfold strain rate (Garnier et al. 2007)
+//   suction    a share of the limit: 1 under a sealed base (Mana et al. 2013), little where a gap
 //              lets water in; 0.5 is chosen
 //   stiffness  8 G r: a rigid disc on an incompressible elastic half space
 //   damping    6.8 r^2 sqrt(G rho): the same disc's radiation, Lysmer & Richart 1966, nu = 1/2
-//   sideways   s_u A under the foot, and 9 s_u a projected area against its side: Broms 1964
+//   sideways   s_u A under the foot, and (3 + z/2D) s_u a projected area at its side, as at a pile
+//              near the surface: Matlock 1970
+//
 // How far a foot rises until it breaks off, and G/s_u of mud, are chosen: no public number was
-// found. All forces are bounded by what the ground has taken up, so that it never gives energy.
+// found. Only feet feel the mud; shanks pass through it, and knees and base meet it as hard ground.
+//
+// It never gives energy: its spring pulls towards a place that moves only towards the foot, and the
+// limits only weaken its damper. With steps of dt that needs 4 m > 2 c dt + k dt^2, m the foot's
+// mass, which the ranges of the settings keep.
 #pragma once
 
 #include <cmath>
@@ -39,10 +46,10 @@ struct MudParameters {
   using P = MudParameters;
   static constexpr Setting<P> kSettings[] = {
       {"strength_pa", &P::strength_pa, 1.0, 3e4, "Mud: undrained shear strength at the surface."},
-      {"strength_gradient_papm", &P::strength_gradient_papm, 0.0, 1e5,
+      {"strength_gradient_papm", &P::strength_gradient_papm, 0.0, 3e4,
        "Mud: what the strength gains with depth."},
       {"mud_density_kgpm3", &P::mud_density_kgpm3, 0.0, 5e3, "Mud: density."},
-      {"rigidity", &P::rigidity, 1.0, 200.0, "Mud: shear modulus over shear strength."},
+      {"rigidity", &P::rigidity, 1.0, 100.0, "Mud: shear modulus over shear strength."},
       {"doubling_speed_mps", &P::doubling_speed_mps, 1e-3, 1e3,
        "Mud: speed at which it resists twice as much."},
       {"suction", &P::suction, 0.0, 1.0,
@@ -52,16 +59,16 @@ struct MudParameters {
   };
 };
 
-/// What it remembers in a FootContact: memory_depth, the deepest since the mud has stuck to the
-/// foot; stroke_depth, where the foot would be without force; stroke_latched, 1: the foot has
-/// broken off.
+/// What it remembers in a FootContact: memory_depth, the deepest since touchdown; memory_travel,
+/// the deepest since the mud has stuck to the foot, m; stroke_depth, where the foot would be
+/// without force; stroke_latched, 1: the foot has broken off.
 template <typename S>
 struct MudLaw {
   using Parameters = MudParameters;
   static constexpr bool kHard = false, kRemembers = true, kDrawnAsSand = true;
   S strength{}, strength_gradient{};  ///< Pa, Pa/m
   S rigidity{};                       ///< G/s_u
-  S damping{};                        ///< 6.8 sqrt(G/s_u rho)
+  S radiation{};                      ///< 6.8 sqrt(G/s_u rho)
   S inverse_doubling_speed{};         ///< 1/v_2, s/m
   S suction{};
   S breakoff{};  ///< m
@@ -74,6 +81,7 @@ struct MudLaw {
     const Mask<S> touchdown = both(touching, c.active == zero);
     const auto reset = [&](S& field) { field = select(touchdown, zero, field); };
     reset(c.memory_depth);
+    reset(c.memory_travel);
     reset(c.stroke_depth);
     reset(c.stroke_latched);
     c.active = select(touching, one, zero);
@@ -88,26 +96,28 @@ struct MudLaw {
     const S stiffness = S(8.0) * rigidity * (s_u * radius);
     const S yield = bearing * faster * (pi * radius) / (S(8.0) * rigidity);  // limit/stiffness
 
-    // What bears the foot yields downwards at once, and upwards while it sticks to the foot.
+    // What bears the foot yields downwards at once and, while it sticks to the foot, upwards.
     S free = max(c.stroke_depth, z - yield);
     const Mask<S> sticks_again = both(c.stroke_latched == one, z > free);
-    c.memory_depth = max(select(sticks_again, z, c.memory_depth), z);
+    c.memory_depth = max(c.memory_depth, z);
+    c.memory_travel = max(select(sticks_again, z, c.memory_travel), z);
     const Mask<S> off =
-        both(no(sticks_again), either(c.stroke_latched == one, c.memory_depth - z > breakoff));
-    free = select(off, free, min(free, fma(suction, yield, z)));
+        both(no(sticks_again), either(c.stroke_latched == one, c.memory_travel - z > breakoff));
+    free = select(either(off, suction == zero), free, min(free, fma(suction, yield, z)));
     c.stroke_depth = select(touching, free, c.stroke_depth);
     c.stroke_latched = select(off, one, zero);
 
     const S elastic = stiffness * (z - free);
-    const S trial = fma(damping * (area * S(1.0 / std::numbers::pi)), sqrt(s_u) * v, elastic);
+    const S trial = fma(radiation * (area * S(1.0 / std::numbers::pi)), sqrt(s_u) * v, elastic);
     const S least = select(off, zero, -(suction * limit));
+    const Mask<S> apart = both(either(off, suction == zero), elastic < zero);
     FootForce<S> f;
-    f.normal =
-        select(both(touching, no(both(off, elastic < zero))), max(min(trial, limit), least), zero);
+    f.normal = select(both(touching, no(apart)), max(min(trial, limit), least), zero);
     f.raw = f.normal;
     // A ball's side, projected: pi/4 of width times depth.
-    const S side = S(9.0 * 0.25) * pi * (width * min(depth, width));
-    f.friction_bound = select(touching, s_u * (side + select(off, zero, area)), zero);
+    const S beside = fma(S(0.25) * foot.inverse_radius, depth, S(3.0));
+    const S side = beside * S(0.25) * pi * (width * min(depth, width));
+    f.friction_bound = select(touching, s_u * (side + select(apart, zero, area)), zero);
     return f;
   }
 };
@@ -117,7 +127,7 @@ inline MudLaw<double> derive_law(const MudParameters& p, const FootProfile<doubl
   return {.strength = p.strength_pa,
           .strength_gradient = p.strength_gradient_papm,
           .rigidity = p.rigidity,
-          .damping = 6.8 * std::sqrt(p.rigidity * p.mud_density_kgpm3),
+          .radiation = 6.8 * std::sqrt(p.rigidity * p.mud_density_kgpm3),
           .inverse_doubling_speed = 1.0 / p.doubling_speed_mps,
           .suction = p.suction,
           .breakoff = p.breakoff_widths * 2.0 * foot.radius};

@@ -26,7 +26,8 @@ constexpr const char* kShapes[] = {"tyre", "sphere", "disc"};
 using G = GroundParameters;
 constexpr Setting<G> kGround[] = {
     {"kind", words<&G::kind>(Laws::kNames), "What the ground is: grains, hard, springs, or mud."},
-    {"friction", &G::friction, 0.0, 5.0, "Coulomb coefficient between foot and ground."},
+    {"friction", &G::friction, 0.0, 5.0,
+     "Coulomb coefficient between foot and ground; mud holds feet by its strength alone."},
 };
 
 using T = TerrainDescription;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contact problem of the paper ("Contact solver", algorithm S1): impulses of all contacts,
-// coupled through the robot's inertia. Soft contacts (granular, spring) have a fixed normal impulse
-// and a friction disc of fixed radius; hard contacts have lambda_n >= 0, v_n >= 0, lambda_n v_n = 0
-// and a disc of radius mu lambda_n; in both the tangential velocity opposes the impulse where the
-// disc is reached. Joint stops are one-sided rows of the same problem.
+// coupled through the robot's inertia. Soft contacts (all grounds but hard ones) have a fixed
+// normal impulse, which in mud may pull, and a friction disc of fixed radius; hard contacts have
+// lambda_n >= 0, v_n >= 0, lambda_n v_n = 0 and a disc of radius mu lambda_n; in both the
+// tangential velocity opposes the impulse where the disc is reached. Joint stops are one-sided rows
+// of the same problem.
 //
 // The paper projects lambda_t - c_t v_t onto the disc, contact by contact, until an iteration
 // changes less than 1e-5 N s. The fixed point is the same here, but each visit solves its contact

@@ -60,7 +60,8 @@ TEST(HashTest, StepGivesTheSameBitsFromEveryCompiler) {
   } cases[] = {{"granular", GroundKind::kGranular, {}, 0x2ce81579ee5addf3u, 0xab9736ec7c9d6208u},
                {"rigid", GroundKind::kRigid, {}, 0x815d2f53af6042a9u, 0x7aac69b0b483fb46u},
                {"rough", GroundKind::kRigid, waves(0.01), 0x5a9333669cf1d985u, 0x15d99ea763e34a9eu},
-               {"linear", GroundKind::kLinear, {}, 0xc4784dd71e32ea54u, 0x97b580609ffdd6f5u}};
+               {"linear", GroundKind::kLinear, {}, 0xc4784dd71e32ea54u, 0x97b580609ffdd6f5u},
+               {"mud", GroundKind::kMud, {}, 0x4021c4f6676249cfu, 0xe24cd4517d0a321eu}};
   for (const auto& c : cases) {
     EXPECT_EQ(hex(run_hash<double>(ground_of_kind(c.kind), c.shape)), hex(c.in_double)) << c.name;
     EXPECT_EQ(hex(run_hash<float>(ground_of_kind(c.kind), c.shape)), hex(c.in_float)) << c.name;

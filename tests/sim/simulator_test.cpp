@@ -134,7 +134,7 @@ TEST(SimulatorTest, LiesOnItsBellyAndStaysThere) {
 
 TEST(SimulatorTest, RestoredSnapshotContinuesToTheSameHash) {
   const Robot robot = load_raibo();
-  for (const char* preset : {"dry-sand", "rigid", "athletic-track"}) {
+  for (const char* preset : {"dry-sand", "rigid", "athletic-track", "mud"}) {
     for (const int delay : {0, 5}) {
       SimulatorConfig config = config_of(preset);
       config.seed = 3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's straight run ("Beach sand"): 1 m, then a track of 5 m, on every ground that ships.
+// The paper's straight run ("Beach sand"): 1 m, then a track of 5 m, on six grounds.
 #include "tools/evaluate/study.h"
 
 namespace sandrunner::evaluate {

@@ -11,7 +11,7 @@ namespace sandrunner::python {
 
 /// Force of the ground on a foot's deepest point; the ground lies flat at z = 0.
 struct FootForce {
-  double normal = 0.0;                    ///< along +z, >= 0, N
+  double normal = 0.0;                    ///< along +z, N; < 0: mud holds the foot back
   double raw = 0.0;                       ///< before the filter of the granular law, N
   double friction_bound = 0.0;            ///< largest tangential force, N
   double stroke_x = 0.0, stroke_y = 0.0;  ///< of the crater's wall, N

@@ -22,7 +22,8 @@ struct WantedGround {
 struct GroundNow {
   WantedGround wanted;  ///< as it was asked for
   std::string name;
-  std::string kind;                  ///< "granular", "rigid", "linear"
+  std::string kind;                  ///< its word in terrain.kind
+  bool granular = false;             ///< drawn as sand
   std::vector<std::string> presets;  ///< that there are
   GroundSettings values;             ///< of all that can be set
 };

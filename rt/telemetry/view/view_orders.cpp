@@ -24,6 +24,7 @@ nlohmann::ordered_json ground_of(const GroundNow& ground) {
           {"set", object(ground.wanted.set)},
           {"name", ground.name},
           {"kind", ground.kind},
+          {"granular", ground.granular},
           {"presets", ground.presets},
           {"values", object(ground.values)}};
 }

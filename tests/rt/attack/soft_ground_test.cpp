@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stand for two minutes on every ground that ships, without a push. It does not topple.
+// Stand for two minutes on grounds without layers or mud, without a push. It does not topple.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -73,7 +73,7 @@ void expect_same_future(const ProcessConfig& config, Mode start, std::uint64_t s
 }
 
 TEST(SnapshotTest, ContinuesInWalkOnEveryKindOfGround) {
-  for (const char* terrain : {"dry-sand", "rigid", "athletic-track"}) {
+  for (const char* terrain : {"dry-sand", "rigid", "athletic-track", "mud"}) {
     SCOPED_TRACE(terrain);
     // Right before, in, and right after the tick that releases the policy, and between two.
     for (const std::uint64_t tick : {479u, 480u, 481u, 500u}) {

@@ -173,7 +173,7 @@ TEST_P(ContactSolverTest, AgreesWithThePapersIteration) {
     paper_sweeps += solve_by_projection(points, p.num_points, 1e-5, 150);
     ++compared;
   }
-  EXPECT_GT(compared, 2500);
+  EXPECT_GT(compared, 1500);
   EXPECT_LT(worst_ns, 1e-5);
   EXPECT_LT(sweeps / static_cast<double>(problems.size()), 4.0);
   RecordProperty("figures",
@@ -194,7 +194,7 @@ TEST_P(ContactSolverTest, ImpulsesMeetTheContactConditions) {
     worst.disc = std::fmax(worst.disc, v.disc);
     ++checked;
   }
-  EXPECT_GT(checked, 10000);
+  EXPECT_GT(checked, 9000);
   // 1e-8 N s and 5 /kg, the largest inverse apparent mass of a foot.
   EXPECT_LT(worst.opening, 1e-6);
   EXPECT_LT(worst.sticking, 1e-6);
@@ -228,11 +228,8 @@ TEST_P(ContactSolverTest, ImpulsesMeetTheConditionsWithKneesAndBaseOnTheGround) 
 
 INSTANTIATE_TEST_SUITE_P(Grounds, ContactSolverTest,
                          testing::Values(GroundKind::kGranular, GroundKind::kRigid,
-                                         GroundKind::kLinear),
-                         [](const auto& kind) {
-                           return std::string(std::array{"granular", "rigid",
-                                                         "linear"}[static_cast<int>(kind.param)]);
-                         });
+                                         GroundKind::kLinear, GroundKind::kMud),
+                         [](const auto& kind) { return std::string(kind_name(kind.param)); });
 
 TEST(HardContactTest, OneFootStopsAtAnyVelocity) {
   // One hard foot of a trotting robot, hit from anywhere: sticking, sliding and jamming (friction

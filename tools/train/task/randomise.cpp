@@ -93,8 +93,8 @@ TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor,
     case sim::GroundKind::kRigid:
       return {1.0f, 2.0f, 2.0f, friction, f(2.0 * (factor - 0.65)), f(100.0 * roughness_m)};
     case sim::GroundKind::kMud:
-      return {0.0f, f(std::log10(p.strength_pa / 5e3)), f(p.strength_gradient_papm / 20e3 - 1.0),
-              friction, f(p.suction)};
+      return {0.0f, f(std::log10(p.strength_pa / 5e3)), f(p.strength_gradient_papm / 10e3 - 1.0),
+              0.0f, f(p.suction)};
     case sim::GroundKind::kGranular:
       break;
   }

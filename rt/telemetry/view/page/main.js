@@ -65,8 +65,8 @@ function savePicture(view, t) {
 // What only a page with a server has.
 function makeLive({ live, frames, hello }, player, view, changed) {
   const showTime = makeRobotTime(live), drive = new Drive(live, hello), lost = element('lost');
-  const controls = new SceneControls(live, frames, view, (kind) => {
-    hello.granular = kind === 'granular';
+  const controls = new SceneControls(live, frames, view, (granular) => {
+    hello.granular = granular;
     view.groundIsSoft?.(hello.granular);
     changed();
   });

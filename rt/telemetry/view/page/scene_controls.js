@@ -17,7 +17,7 @@ const kSliders = [
 ];
 
 export class SceneControls {
-  /** @param {Function} onKind receives the kind of ground ('granular', 'mud', ...) when the ground has become another one */
+  /** @param {Function} onKind receives whether the ground is drawn as sand, when it has become of another kind */
   constructor(live, frames, view, onKind) {
     Object.assign(this, { live, frames, view, onKind });
     this.sliders = kSliders.map((slider) => this.#makeSlider(slider));
@@ -34,7 +34,10 @@ export class SceneControls {
     const { ground } = this.live.state;
     element('touch').hidden = element('ground').hidden = !this.allowed;
     if (!ground) return;
-    if (this.kind !== ground.kind) this.onKind(this.kind = ground.kind);
+    if (this.kind !== ground.kind) {
+      this.kind = ground.kind;
+      this.onKind(ground.granular);
+    }
     element('ground-name').textContent = ground.name;
     const presets = ['', ...ground.presets];
     if (element('preset').options.length !== presets.length) {
