@@ -162,7 +162,7 @@ TEST(ProcessConfigTest, InvalidValueIsRefused) {
       {"terrain.friction=\"a\"", "found \"a\", expected a finite number"},
       {"terrain.friction=[1]", "found an array of 1"},
       {"terrain.effects.filter=1", "found 1, expected true or false"},
-      {"terrain.kind=mud", "found \"mud\", expected one of"},
+      {"terrain.kind=lava", "found \"lava\", expected one of"},
       {"terrain.foot.shape=square", "found \"square\""},
       {"sim.sensor_delay_ticks=64", "found 64"},
       {"sim.sensor_delay_ticks=1.5", "found 1.5, expected a whole number"},
