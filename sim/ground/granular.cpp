@@ -7,8 +7,6 @@
 namespace sandrunner::sim {
 namespace {
 
-using std::numbers::pi;
-
 // ln x for 1 <= x <= 25, in the arithmetic of exponential(): Halley's iteration, which comes from
 // below.
 double logarithm(double x) {
@@ -24,7 +22,7 @@ double logarithm(double x) {
 double rupture_depth(double friction_rad, double width_m) {
   double sine, cosine, sine_half, cosine_half;
   sincos(friction_rad, sine, cosine);
-  const double half = 0.25 * pi + 0.5 * friction_rad;
+  const double half = 0.25 * std::numbers::pi + 0.5 * friction_rad;
   sincos(half, sine_half, cosine_half);
   return width_m * exponential(half * sine / cosine) / (2.0 * cosine_half);
 }
@@ -51,7 +49,7 @@ GranularLaw<double> derive_law(const GranularParameters& p, const FootProfile<do
   double p0, p1;
   foot.integrals(g.full_depth, p0, p1);
   const double z3 = g.full_depth * g.full_depth * g.full_depth;
-  g.full_flat = pi * (p0 - 2.0 * g.k * p1 + g.k2_third * z3);
+  g.full_flat = std::numbers::pi * (p0 - 2.0 * g.k * p1 + g.k2_third * z3);
   const double recruited = p.mass_scaling * p.packing * p.grain_density_kgpm3 * p.recruitment;
   g.added_mass = p.added_mass ? recruited : 0.0;
   g.drag = p.inertial_drag ? p.drag * recruited : 0.0;
@@ -73,7 +71,8 @@ GranularLaw<double> derive_law(const GranularParameters& p, const FootProfile<do
   g.stroke_offset = foot_radius_m / sine - p.crater_radius_m - foot_radius_m * cosine / sine;
   g.inverse_tan_crater = cosine / sine;
   // The cone's side stands at pi/4 + phi/2.
-  const double friction = std::clamp(2.0 * p.cone_angle_rad - 0.5 * pi, 0.0, 0.25 * pi);
+  const double friction =
+      std::clamp(2.0 * p.cone_angle_rad - 0.5 * std::numbers::pi, 0.0, 0.25 * std::numbers::pi);
   g.layer_depth = p.layer_depth_m;
   g.layer_log_strength = logarithm(p.layer_strength);
   g.layer_log_slope = g.layer_log_strength / rupture_depth(friction, 2.0 * foot_radius_m);
