@@ -250,7 +250,7 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   if (any(g.layer_depth > zero)) {
     const S within = (z - memory_before) + g.tolerance;
     const Mask<S> again = both(both(g.layer_depth > zero, g.memory > zero), within < g.tolerance);
-    raw = select(again, raw * (within / max(g.tolerance, S(1e-9))), raw);
+    raw = select(again, raw * (within / g.tolerance), raw);
   }
   FootForce<S> f;
   f.raw = select(pushing, raw, zero);

@@ -77,10 +77,11 @@ inline FootForce<S> foot_force(const Ground<S>& ground, const FootProfile<S>& fo
       const Law<S>& law = ground;
       const Mask<S> here = ground.kind == S(double(index));
       if (index > 0 && !any(here)) return;
-      FootContact<S> after = before;
-      FootContact<S>& own = index > 0 && Law<S>::kRemembers ? after : contact;
-      force = select(here, law.step(foot, ground.friction, motion, rate_hz, own), force);
-      if (index > 0 && Law<S>::kRemembers) contact = select(here, after, contact);
+      const bool keeps_own = index > 0 && Law<S>::kRemembers;
+      FootContact<S> own = before;
+      force = select(
+          here, law.step(foot, ground.friction, motion, rate_hz, keeps_own ? own : contact), force);
+      if (keeps_own) contact = select(here, own, contact);
     }
   });
   return force;

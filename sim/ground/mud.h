@@ -103,14 +103,15 @@ struct MudLaw {
     c.memory_travel = max(select(sticks_again, z, c.memory_travel), z);
     const Mask<S> off =
         both(no(sticks_again), either(c.stroke_latched == one, c.memory_travel - z > breakoff));
-    free = select(either(off, suction == zero), free, min(free, fma(suction, yield, z)));
+    const Mask<S> loose = either(off, suction == zero);
+    free = select(loose, free, min(free, fma(suction, yield, z)));
     c.stroke_depth = select(touching, free, c.stroke_depth);
     c.stroke_latched = select(off, one, zero);
 
     const S elastic = stiffness * (z - free);
     const S trial = fma(radiation * (area * S(1.0 / std::numbers::pi)), sqrt(s_u) * v, elastic);
-    const S least = select(off, zero, -(suction * limit));
-    const Mask<S> apart = both(either(off, suction == zero), elastic < zero);
+    const S least = select(loose, zero, -(suction * limit));
+    const Mask<S> apart = both(loose, elastic < zero);
     FootForce<S> f;
     f.normal = select(both(touching, no(apart)), max(min(trial, limit), least), zero);
     f.raw = f.normal;

@@ -42,9 +42,9 @@ class Ground:
 
     def step(self, contacts: np.ndarray, position: np.ndarray, velocity: np.ndarray, step_s: float) -> np.ndarray:
         """One time step. `position`, `velocity`: (feet, 3), float64, of the deepest point of each foot, m and
-        m/s. Changes `contacts`. Returns a structured array: `normal` (N, upwards; below 0 mud holds the foot back), `friction_bound` (N, the
-        largest tangential force that your contact solver may find), `stroke` (feet, 2) (N, of the crater's
-        wall, to be added as it is), `raw` (N, `normal` before its filter)."""
+        m/s. Changes `contacts`. Returns a structured array: `normal` (N, upwards; below 0 mud holds the foot
+        back), `friction_bound` (N, the largest tangential force that your contact solver may find), `stroke`
+        (feet, 2) (N, of the crater's wall, to be added as it is), `raw` (N, `normal` before its filter)."""
         if not isinstance(contacts, np.ndarray):
             raise ValueError(f"contacts: found {_check.shown(contacts)}, expected those of Ground.contacts()")
         return self._native.step(contacts, position, velocity, _check.number("step_s", step_s))

@@ -16,6 +16,7 @@ namespace sandrunner::study {
 namespace {
 
 constexpr double kFootRadius_m = 0.0295, kFootWidth_m = 0.025;
+constexpr double kDiscWidth_m = 2.0 * kFootRadius_m;
 constexpr double kStepHz = kControlHz;  // as the robot's step
 
 constexpr double kBeadsStiffness = 1040.0;  // k/m, 1/s^2
@@ -143,23 +144,23 @@ double mud_factor(double depth_m, double speed_mps) {
 }
 
 void add_mud(std::vector<Anchor>& all) {
-  constexpr double kWidth_m = 2.0 * kFootRadius_m, kSlow = 1e-4;
+  constexpr double kSlow = 1e-4;
   for (const double widths : {0.1, 0.5, 1.0, 2.0}) {
     all.push_back({"disc pushed slowly into clay", "API RP 2GEO, their formula",
                    fmt::format("force over strength and area, {} widths deep", widths),
-                   5.14 * (1.18 + 0.3 * std::atan(widths)), mud_factor(widths * kWidth_m, kSlow),
-                   2});
+                   5.14 * (1.18 + 0.3 * std::atan(widths)),
+                   mud_factor(widths * kDiscWidth_m, kSlow), 2});
   }
   all.push_back({"what was left in mud is pulled out", "Liu 1969 (NCEL R-635), T^-0.07",
                  "force in a tenth of the time; ours: 0.3 m/s over 0.03", std::pow(10.0, 0.07),
-                 mud_factor(kWidth_m, 0.3) / mud_factor(kWidth_m, 0.03), 3});
+                 mud_factor(kDiscWidth_m, 0.3) / mud_factor(kDiscWidth_m, 0.03), 3});
 }
 
 void add_layers(std::vector<Anchor>& all) {
   struct Row {
     double friction_deg, widths;
   };
-  constexpr double kWidth_m = 2.0 * kFootRadius_m, kLayer_m = 0.4;
+  constexpr double kLayer_m = 0.4;
   for (const Row& row : {Row{28, 1.68}, Row{30, 1.83}, Row{35, 2.32}, Row{40, 3.07}}) {
     sim::GroundParameters deep = dry_sand();
     deep.cone_angle_rad = (45.0 + 0.5 * row.friction_deg) * std::numbers::pi / 180.0;
@@ -170,7 +171,7 @@ void add_layers(std::vector<Anchor>& all) {
       return disc_stress_per_depth(layered, kLayer_m - above_m) >
              disc_stress_per_depth(deep, kLayer_m - above_m);
     };
-    while (widths > 0.0 && !felt(widths * kWidth_m)) widths -= 1e-3;
+    while (widths > 0.0 && !felt(widths * kDiscWidth_m)) widths -= 1e-3;
     all.push_back(
         {"footing on sand over a firmer layer",
          "Fundamentals of Foundation Engineering, eq. 5.35: the law's own source",
