@@ -20,8 +20,8 @@ inline bool stalled(const std::string& printed) {
 }
 
 /// Does `attempt`, which is to set `said` to what its run said at the end, even if an assertion
-/// ends it; anew where this computer stalled, whose failures then do not count. Ten in a row are
-/// no chance.
+/// ends it; anew where it failed and this computer stalled, whose failures then do not count. Ten
+/// in a row are no chance.
 inline void unless_stalled(const std::function<void(std::string& said)>& attempt) {
   for (int left = 9;; --left) {
     std::string said;
@@ -31,13 +31,15 @@ inline void unless_stalled(const std::function<void(std::string& said)>& attempt
           testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &results);
       attempt(said);
     }
-    if (left > 0 && stalled(said)) continue;
+    bool failed = false;
     for (int i = 0; i < results.size(); ++i) {
       const testing::TestPartResult& result = results.GetTestPartResult(i);
       if (!result.failed()) continue;
+      failed = true;
+      if (left > 0 && stalled(said)) break;
       ADD_FAILURE_AT(result.file_name(), result.line_number()) << result.message();
     }
-    return;
+    if (!failed || left == 0 || !stalled(said)) return;
   }
 }
 
