@@ -73,10 +73,17 @@ void Simulator::disturb(double height_above_m) {
     x.angular_velocity = {draw(), draw(), draw()};
   }
   // An undisturbed robot on level ground stands at its nominal height.
-  if (config_.seed > 0 || height_above_m == 0.0 || terrain_.shape.uneven > 0.0) {
-    const double lowest = lowest_clearance(
-        robot_.model, x.q, [this](double x_m, double y_m) { return surface_height(x_m, y_m); });
-    x.position.z = height_above_m - lowest;
+  const Shape<double>& shape = terrain_.shape;
+  if (config_.seed > 0 || height_above_m == 0.0 || shape.uneven > 0.0) {
+    x.orientation = square_on(shape);
+    const Mat3<double> r = rotation_matrix(x.orientation);
+    // Heights along the normal of the plane.
+    const double lowest = lowest_clearance(robot_.model, x.q, [&](double ahead_m, double left_m) {
+      Vec3<double> p = r * Vec3<double>{ahead_m, left_m, 0.0};
+      p.z = surface_height(p.x, p.y);
+      return shape.over_plane(p) / shape.stretch;
+    });
+    x.position.z = (height_above_m - lowest) * shape.stretch;
   }
 }
 

@@ -57,7 +57,8 @@ class Simulator final : public RobotIo {
   Simulator(const Robot& robot, const SimulatorConfig& config);
 
   /// On its feet in the nominal pose, at rest, base at the robot's nominal height (`--start walk`);
-  /// on uneven ground so high that its lowest part is 2 mm above it. A seed above 0 disturbs this:
+  /// on a slope square on its plane, on uneven ground so high that its lowest part is 2 mm above
+  /// it. A seed above 0 disturbs this:
   /// joints +-0.1 rad, base velocity +-0.1 m/s and +-0.1 rad/s, the lowest part 2 mm above the
   /// ground; uniform draws from the seed.
   void reset_standing();

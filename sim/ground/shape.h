@@ -72,6 +72,15 @@ struct Shape {
   }
 };
 
+/// A body that stands square on the plane of a shape, towards world x. S: float or double.
+template <typename S>
+Quaternion<S> square_on(const Shape<S>& shape) noexcept {
+  if (!(shape.stretch > S(1.0))) return {};
+  const Vec3<S> n = shape.plane_axes().n;
+  const S w = sqrt(S(0.5) * (S(1.0) + n.z)), half = S(0.5) / w;
+  return {w, -n.y * half, n.x * half, S(0.0)};
+}
+
 Shape<double> derive_shape(const ShapeParameters& parameters);
 
 /// Height (m) of the waves over the plane at (x, y) (world, m) and its gradient. Six plane waves

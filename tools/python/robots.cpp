@@ -191,17 +191,10 @@ void Robots::stand(const std::vector<int>& robots) {
       const auto nominal = static_cast<float>(robot_.nominal_rad[j]);
       state.rigid.q[j] = drive.target[j] = drive.target_before[j] = nominal;
     }
-    const sim::Terrain<float> terrain = batch_.robot(r).terrain;
-    // So high that no foot is in a slope.
-    const auto clearance = [&](double slope_x, double slope_y) {
-      return sim::lowest_clearance(robot_.model, robot_.nominal_rad, [&](double x_m, double y_m) {
-        return slope_x * x_m + slope_y * y_m;
-      });
-    };
-    const sim::Shape<float>& shape = terrain.shape;
-    state.rigid.position.z =
-        static_cast<float>(robot_.nominal_height_m) + sim::surface_at(shape, 0.0f, 0.0f).height +
-        static_cast<float>(clearance(0.0, 0.0) - clearance(shape.slope_x, shape.slope_y));
+    const sim::Shape<float> shape = batch_.robot(r).terrain.shape;
+    state.rigid.orientation = sim::square_on(shape);
+    state.rigid.position.z = static_cast<float>(robot_.nominal_height_m) * shape.stretch +
+                             sim::surface_at(shape, 0.0f, 0.0f).height;
     drive.kp = static_cast<float>(robot_.stand_kp_nmprad);
     drive.kd = static_cast<float>(robot_.stand_kd_nmsprad);
     if (robot_.obeys_torque_speed_line) {
