@@ -33,16 +33,19 @@ Study::Study(const StudySettings& settings, const sim::Robot& robot)
     : settings_(settings),
       robot_(robot),
       foot_(sim::make_foot_profile(sim::terrain_preset("dry-sand"), robot_.model)) {
-  // All grounds are level, so a start serves for all of them. The simulator makes it, so that there
-  // is one definition.
+  // A start serves for all grounds that are level.
+  const sim::TerrainDescription level = sim::terrain_preset("rigid");
+  for (int run = 0; run < std::max(settings.runs, settings.grid_runs); ++run) start_on(level, run);
+}
+
+const sim::RobotState<float>& Study::start_on(const sim::TerrainDescription& terrain, int run) {
+  // The simulator makes it, so that there is one definition.
   sim::SimulatorConfig config;
-  config.terrain = sim::terrain_preset("rigid");
-  for (int run = 0; run < std::max(settings.runs, settings.grid_runs); ++run) {
-    config.seed = run == 0 ? 0 : run_seed(run);
-    sim::RobotState<float> start;
-    start.rigid = in_float(sim::Simulator(robot_, config).state().robot.rigid);
-    starts_.push_back(start);
-  }
+  config.terrain = terrain;
+  config.seed = run == 0 ? 0 : run_seed(run);
+  sim::RobotState<float> start;
+  start.rigid = in_float(sim::Simulator(robot_, config).state().robot.rigid);
+  return starts_.emplace_back(start);
 }
 
 std::uint64_t Study::run_seed(int run) const noexcept {

@@ -27,7 +27,7 @@ struct Group {
   std::vector<Trial> trials;
 };
 
-/// "straight", "grid", "turn", "robust" or "commands".
+/// "straight", "grid", "turn", "robust", "beyond" or "commands".
 struct Part {
   std::string name;
   std::vector<Group> groups;
@@ -57,6 +57,8 @@ class Study {
   /// The state in which run i starts: run 0 in the nominal pose, the others disturbed, as
   /// `sandrunner --start walk --seed` does with the seeds 0, 1, 2, ... for the default seed 1.
   const sim::RobotState<float>& start(int run) const { return starts_.at(run); }
+  /// The same on ground that is not level: square on its plane, as the simulator starts there.
+  const sim::RobotState<float>& start_on(const sim::TerrainDescription& terrain, int run);
   /// Number of run i for its noise, pushes and random command.
   std::uint64_t run_seed(int run) const noexcept;
   /// A group of StudySettings::runs trials like this one.
@@ -66,6 +68,7 @@ class Study {
   Part grid();
   Part turn();
   Part robust();
+  Part beyond();
   Part commands();
 
  private:
@@ -73,7 +76,7 @@ class Study {
   sim::Robot robot_;
   sim::FootProfile<double> foot_;
   std::deque<sim::Terrain<float>> terrains_;
-  std::vector<sim::RobotState<float>> starts_;
+  std::deque<sim::RobotState<float>> starts_;  // the level ones first
 };
 
 struct PartRow {
@@ -81,10 +84,8 @@ struct PartRow {
   Part (Study::*make)();
 };
 /// All parts, in the order in which they run.
-inline constexpr PartRow kParts[] = {{"straight", &Study::straight},
-                                     {"grid", &Study::grid},
-                                     {"turn", &Study::turn},
-                                     {"robust", &Study::robust},
-                                     {"commands", &Study::commands}};
+inline constexpr PartRow kParts[] = {
+    {"straight", &Study::straight}, {"grid", &Study::grid},     {"turn", &Study::turn},
+    {"robust", &Study::robust},     {"beyond", &Study::beyond}, {"commands", &Study::commands}};
 
 }  // namespace sandrunner::evaluate

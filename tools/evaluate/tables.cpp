@@ -236,6 +236,13 @@ std::string tables(const PartResults& results, const std::vector<std::string>& p
                        true);
   }
   if (results.part.name == "commands") return command_table(results, policies);
+  if (results.part.name == "beyond") {
+    return "Slopes, layers, mud\n" +
+           group_table(results, policies,
+                       {"survival", "vx_mps", "velocity_error_mps", "cot", "body_height_m",
+                        "drift_vy_mps", "drift_yaw_radps", "stride_hz"},
+                       true);
+  }
   return "Robustness\n" +
          group_table(results, policies,
                      {"survival", "disturbance_met", "vx_mps", "velocity_error_mps", "cot",

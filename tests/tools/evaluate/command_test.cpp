@@ -29,16 +29,17 @@ TEST_F(EvaluateCommandTest, WritesAllFilesTheSameForAnyThreads) {
   write_policy_file(folder_.path("q"), random_policy_file(2));
   const std::string common = "--policy p --against q --runs 1 --grid-runs 1 ";
   ASSERT_EQ(run(common + "--threads 1 --out one"), 0) << error();
-  EXPECT_TRUE(std::regex_match(error(), std::regex("(\\S+ \\S+/[pq]: [0-9]+ runs\n){10}")))
+  EXPECT_TRUE(std::regex_match(error(), std::regex("(\\S+ \\S+/[pq]: [0-9]+ runs\n){12}")))
       << error();
   ASSERT_EQ(run(common + "--threads 3 --out three"), 0) << error();
   for (const char* name :
-       {"evaluation.json", "straight.csv", "grid.csv", "turn.csv", "robust.csv", "commands.csv"}) {
+       {"evaluation.json", "straight.csv", "grid.csv", "turn.csv", "robust.csv", "beyond.csv",
+        "commands.csv"}) {
     const std::string file = read(std::string("one/") + name);
     EXPECT_GT(file.size(), 100u) << name;
     EXPECT_EQ(file, read(std::string("three/") + name)) << name;
   }
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path("one")), {}), 6);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path("one")), {}), 7);
 
   const auto json = nlohmann::json::parse(read("one/evaluation.json"));
   EXPECT_EQ(json["settings"]["robot"], "raibo");
