@@ -87,6 +87,9 @@ TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor,
                                  double roughness_m) {
   const auto f = [](double value) { return static_cast<float>(value); };
   const float friction = f(3.0 * (p.friction - 0.75));
+  const double layer = p.layer_depth_m > 0.0
+                           ? std::log10(p.layer_strength) * std::exp(-10.0 * p.layer_depth_m)
+                           : 0.0;
   switch (p.kind) {
     case sim::GroundKind::kLinear:
       return {0.0f, f(std::log10(p.stiffness_npm / 10e3)), f(4.0 * (factor - 0.55)), friction};
@@ -103,11 +106,21 @@ TerrainFeatures terrain_features(const sim::GroundParameters& p, double factor,
           f(2.0 * std::log10(p.sigma_cone_npm3 / 0.3e6)),
           friction,
           f(2.0 * (factor - 0.65)),
-          f(100.0 * roughness_m),
+          f(100.0 * roughness_m + layer),
           f((p.recruitment - 2.0) / 0.3),
           f((p.cone_angle_rad / kDegree_rad - 60.0) / 4.0),
           f((p.stroke_stiffness_npm - 225.0) / 175.0),
           f((p.stroke_damping_nspm - 2.0) / 2.0)};
+}
+
+// The steepest slope's share opens with the softness of the ground.
+sim::ShapeParameters Task::draw_shape(int env, Env& e) const {
+  const GroundSettings& g = config_.ground;
+  sim::ShapeParameters shape;
+  if (g.slope_share == 0.0 || uniform(env, e) >= g.slope_share) return shape;
+  shape.slope_rad = curriculum_.ground * uniform(env, e, 0.0, g.slope_deg) * kDegree_rad;
+  shape.slope_heading_rad = uniform(env, e, -kHalfTurn_rad, kHalfTurn_rad);
+  return shape;
 }
 
 sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid, sim::ShapeParameters& shape,
@@ -115,6 +128,9 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid, sim::ShapePar
   const GroundSettings& g = config_.ground;
   sim::GroundParameters p;
   p.friction = uniform(env, e, g.friction_low, g.friction_high);
+  if (shape.slope_rad > 0.0) {  // with less it cannot be climbed
+    p.friction = std::max(p.friction, std::tan(shape.slope_rad) + 0.3);
+  }
   double inertial = 1.0;
   if (rigid) {
     p.kind = sim::GroundKind::kRigid;
@@ -125,6 +141,12 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid, sim::ShapePar
     shape.roughness_wavelength_m = g.roughness_wavelength_m;
     shape.roughness_seed =
         sim::random_bits(seed_, static_cast<std::uint64_t>(env) + (2ull << 32), e.draws) >> 24;
+  } else if (g.mud_share > 0.0 && uniform(env, e) < g.mud_share) {
+    const double low =
+        log_between(g.mud_strength_high_pa, g.mud_strength_low_pa, curriculum_.ground, 1.0);
+    p.kind = sim::GroundKind::kMud;
+    p.strength_pa = log_between(low, g.mud_strength_high_pa, uniform(env, e), 1.0);
+    p.suction = uniform(env, e, 0.0, g.mud_suction_high);
   } else if (g.yielding == sim::GroundKind::kLinear) {
     const double low = log_between(g.spring_low_start, g.spring_low, curriculum_.ground, 1.0);
     p.kind = sim::GroundKind::kLinear;
@@ -155,16 +177,21 @@ sim::Ground<double> Task::draw_ground(int env, Env& e, bool rigid, sim::ShapePar
     p.grain_density_kgpm3 *= inertial;
     p.stroke_stiffness_npm = uniform(env, e, g.stroke_stiffness_low, g.stroke_stiffness_high);
     p.stroke_damping_nspm = uniform(env, e, g.stroke_damping_low, g.stroke_damping_high);
+    if (g.layer_share > 0.0 && uniform(env, e) < g.layer_share) {
+      p.layer_depth_m =
+          log_between(g.layer_depth_low_m, g.layer_depth_high_m, uniform(env, e), 1.0);
+      p.layer_strength = log_between(1.0, g.layer_strength_high, uniform(env, e), 1.0);
+    }
   }
   features = terrain_features(p, inertial, shape.roughness_m);
   return sim::derive_ground(p, foot_, robot_.model.foot_radius_m);
 }
 
-// Ground around a robot at x: all of a kind, or patches along x as far as a robot gets.
-void Task::new_ground(int env, Env& e, float x_m) {
+// Ground of this shape around a robot at x: all of a kind, or patches along x as far as a robot
+// gets.
+void Task::new_ground(int env, Env& e, float x_m, sim::ShapeParameters shape) {
   const GroundSettings& g = config_.ground;
   sim::Terrain<double> terrain;
-  sim::ShapeParameters shape;
   const int count = is_patchy(env) ? sim::kMaxRegions : 1;
   terrain.count = count;
   for (int i = 0; i < count; ++i) {
@@ -281,13 +308,13 @@ void Task::hard_reset(int env, Env& e, double nominal_share) {
     return static_cast<float>(uniform(env, e, -width, width));
   };
   x.position = {draw(5.0), draw(5.0), 0.0f};
-  new_ground(env, e, x.position.x);
+  new_ground(env, e, x.position.x, draw_shape(env, e));
   const sim::Shape<float>& shape = e.terrain.shape;
   const float height = sim::surface_at(shape, x.position.x, x.position.y).height;
-  x.position.z =
-      static_cast<float>(robot_.nominal_height_m) + 0.02f + height + 1.5f * shape.roughness;
+  x.position.z = (static_cast<float>(robot_.nominal_height_m) + 0.02f) * shape.stretch + height +
+                 1.5f * shape.roughness;
   const sim::Vec3<float> tilt{draw(off * s.reset_tilt_rad), draw(off * s.reset_tilt_rad), 0.0f};
-  x.orientation = sim::integrate(sim::Quaternion<float>{}, tilt);
+  x.orientation = sim::integrate(sim::square_on(shape), tilt);
   // Any heading: in small steps, which keep the series of `integrate` accurate.
   const float yaw = draw(kHalfTurn_rad);
   for (int i = 0; i < 8; ++i) {
@@ -324,7 +351,7 @@ void Task::soft_reset(int env, Env& e, float x_m) {
   e.step = 0;
   new_command(env, e);
   if (e.terrain.shape.uneven == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground) {
-    new_ground(env, e, x_m);
+    new_ground(env, e, x_m, {});
   }
 }
 

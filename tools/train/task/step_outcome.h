@@ -10,14 +10,14 @@
 namespace sandrunner::train {
 
 /// What a policy step (10 ms) is judged by. Velocities are those of the base origin in the heading
-/// frame.
+/// frame; on a slope vz is away from it.
 struct StepOutcome {
   std::array<float, 3> command{};       ///< vx, vy (m/s), yaw rate (rad/s)
   float vx = 0, vy = 0, vz = 0;         ///< m/s
   float yaw_rate = 0;                   ///< about world z, rad/s
   std::array<float, 3> drift{};         ///< vx, vy, yaw rate over the last stride or so
   float roll_rate = 0, pitch_rate = 0;  ///< body frame, rad/s
-  float up_z = 1;                       ///< cosine of the tilt
+  float up_z = 1;                       ///< cosine of the tilt to the ground's plane
   float body_height = 0;                ///< above the deformed ground, m
   JointArray<float> q{}, nominal{};     ///< rad
   /// Now, one and two steps ago; network units.

@@ -114,6 +114,12 @@ StepOutcome Task::follow(Env& e, const sim::RobotState<float>& state,
   s.roll_rate = x.angular_velocity.x;
   s.pitch_rate = x.angular_velocity.y;
   s.up_z = r.r2.z;
+  const sim::Shape<float>& shape = e.terrain.shape;
+  if (shape.stretch > 1.0f) {
+    const sim::Vec3<float> n = shape.plane_axes().n;
+    s.vz = dot(n, x.velocity);
+    s.up_z = dot(n, {r.r0.z, r.r1.z, r.r2.z});
+  }
   s.body_height = truth(e, state)[0];
   s.q = x.q;
   for (int j = 0; j < kNumJoints; ++j) s.nominal[j] = static_cast<float>(robot_.nominal_rad[j]);

@@ -41,7 +41,8 @@ using TerrainFeatures = std::array<float, kTerrainSize>;
 /// Those of a ground, scaled to about +-1; the critic sees the first six. `factor`: added mass and
 /// drag of a soil over the usual ones, or the damping ratio of a spring. Hard ground: 1, 2, 2,
 /// friction, factor, roughness and zeros. Soil: 0, both stress gradients (logarithms), friction,
-/// factor, 0, recruitment, cone angle, stiffness and damping of a stroke. Spring: 0, stiffness
+/// factor, how much a firmer layer is felt, recruitment, cone angle, stiffness and damping of a
+/// stroke. Spring: 0, stiffness
 /// (logarithm), factor, friction and zeros.
 TerrainFeatures terrain_features(const sim::GroundParameters& ground, double factor,
                                  double roughness_m = 0.0);
@@ -173,9 +174,10 @@ class Task {
   }
   void new_command(int env, Env& e) const;
   void approach_target(Env& e) const;
+  sim::ShapeParameters draw_shape(int env, Env& e) const;
   sim::Ground<double> draw_ground(int env, Env& e, bool rigid, sim::ShapeParameters& shape,
                                   TerrainFeatures& features) const;
-  void new_ground(int env, Env& e, float x_m);
+  void new_ground(int env, Env& e, float x_m, sim::ShapeParameters shape);
   void new_robot(int env, Env& e);
   void new_joints(int env, Env& e, sim::RobotModel<double>& model) const;
   static void set_latency(Env& e, double latency_s);

@@ -97,6 +97,16 @@ constexpr Setting<G> kGround[] = {
     {"spring_high", &G::spring_high, 1.0, 1e6},
     {"spring_damping_ratio_low", &G::spring_damping_ratio_low, 0.0, 10.0},
     {"spring_damping_ratio_high", &G::spring_damping_ratio_high, 0.0, 10.0},
+    {"slope_share", &G::slope_share, 0.0, 1.0},
+    {"slope_deg", &G::slope_deg, 0.0, 30.0},
+    {"layer_share", &G::layer_share, 0.0, 1.0},
+    {"layer_depth_low_m", &G::layer_depth_low_m, 0.001, 10.0},
+    {"layer_depth_high_m", &G::layer_depth_high_m, 0.001, 10.0},
+    {"layer_strength_high", &G::layer_strength_high, 1.0, 25.0},
+    {"mud_share", &G::mud_share, 0.0, 1.0},
+    {"mud_strength_low_pa", &G::mud_strength_low_pa, 1.0, 3e4},
+    {"mud_strength_high_pa", &G::mud_strength_high_pa, 1.0, 3e4},
+    {"mud_suction_high", &G::mud_suction_high, 0.0, 1.0},
 };
 
 using R = RobotSettings;
@@ -159,6 +169,10 @@ GroundSettings read_ground_settings(ConfigTree& config) {
   require_order("ground.spring_low_start", g.spring_low_start, "ground.spring_high", g.spring_high);
   require_order("ground.spring_damping_ratio_low", g.spring_damping_ratio_low,
                 "ground.spring_damping_ratio_high", g.spring_damping_ratio_high);
+  require_order("ground.layer_depth_low_m", g.layer_depth_low_m, "ground.layer_depth_high_m",
+                g.layer_depth_high_m);
+  require_order("ground.mud_strength_low_pa", g.mud_strength_low_pa, "ground.mud_strength_high_pa",
+                g.mud_strength_high_pa);
   return g;
 }
 

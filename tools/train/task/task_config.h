@@ -109,6 +109,16 @@ struct GroundSettings {
   double spring_high = 0;                ///< stiffest, N/m
   double spring_damping_ratio_low = 0;   ///< least, of a spring under a quarter of the robot's mass
   double spring_damping_ratio_high = 0;  ///< largest
+  double slope_share = 0;        ///< of the episodes that begin anew: on a slope, either way
+  double slope_deg = 0;          ///< steepest slope, fully opened
+  double layer_share = 0;        ///< of the patches of soil: firmer ground below
+  double layer_depth_low_m = 0;  ///< least thickness of the soil over it
+  double layer_depth_high_m = 0;
+  double layer_strength_high = 0;  ///< largest factor of the stress gradients
+  double mud_share = 0;            ///< of the patches that yield
+  double mud_strength_low_pa = 0;  ///< softest at the surface, fully opened
+  double mud_strength_high_pa = 0;
+  double mud_suction_high = 0;  ///< largest share of the bearing capacity
 };
 
 /// Damping of a spring under a foot, N s/m; the ratio is that of a quarter of the robot's mass on
