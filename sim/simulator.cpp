@@ -223,7 +223,7 @@ void Simulator::write(const SafeCommand& command) noexcept {
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
   stepper_.step(robot_.model, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,
-                report_);
+                report_, relief());
   // Specific force at the base origin, body frame.
   const Vec3<double> felt = mul_add(before.r2, kGravity_mps2, report_.base_acceleration);
   state_.linear_acceleration_mps2 = {felt.x, felt.y, felt.z};
@@ -249,12 +249,13 @@ bool Simulator::truth(RobotTruth& truth) const noexcept {
   truth.joint_position_rad = x.q;
   truth.joint_velocity_radps = x.qd;
   truth.joint_torque_nm = state_.torque_nm;
-  truth.state = ground_truth(robot_.model, state_.robot, terrain_);
+  truth.state = ground_truth(robot_.model, state_.robot, terrain_, relief());
   for (int l = 0; l < kNumLegs; ++l) {
     const Vec3<double>& centre = report_.foot_centre[l];
     truth.foot_centre_m[l] = array(centre);
     truth.foot_penetration_m[l] = report_.penetration[l];
-    const SurfaceAxes<double> axes = surface_axes(surface_at(terrain_.shape, centre.x, centre.y));
+    const SurfaceAxes<double> axes =
+        surface_axes(surface_at(terrain_.shape, relief(), centre.x, centre.y));
     const auto& force = report_.foot_force[l];
     truth.foot_force_n[l] = array(force[0] * axes.t1 + force[1] * axes.t2 + force[2] * axes.n);
   }
@@ -275,7 +276,7 @@ void Simulator::add_to(StateHash& hash) const noexcept {
 }
 
 double Simulator::surface_height(double x_m, double y_m) const noexcept {
-  return surface_at(terrain_.shape, x_m, y_m).height;
+  return surface_at(terrain_.shape, relief(), x_m, y_m).height;
 }
 
 SimulatorConfig read_simulator_config(ConfigTree& config, const Robot& robot) {

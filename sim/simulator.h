@@ -91,6 +91,7 @@ class Simulator final : public RobotIo {
   const StepReport<double>& report() const noexcept { return report_; }  ///< of the last step
   const RobotModel<double>& model() const noexcept { return robot_.model; }
   const Terrain<double>& terrain() const noexcept { return terrain_; }
+  Relief<double> relief() const noexcept { return {{config_.terrain.shape.heights.get()}}; }
   /// Height of the undisturbed surface, m.
   double surface_height(double x_m, double y_m) const noexcept;
 

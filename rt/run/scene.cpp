@@ -10,7 +10,8 @@ RunScene scene_of(const ProcessConfig& config, const std::string& policy) {
   const sim::TerrainDescription& terrain = config.simulator.terrain;
   const sim::RobotModel<double>& model = config.robot.model;
   RunScene scene = robot_scene(
-      config.robot, sim::make_terrain(terrain, sim::make_foot_profile(terrain, model), model));
+      config.robot, sim::make_terrain(terrain, sim::make_foot_profile(terrain, model), model),
+      terrain.shape.heights);
   scene.terrain = terrain.name;
   scene.policy = policy;
   if (config.controller.gate.hanging) scene.note = "The robot hangs: it may not walk.";

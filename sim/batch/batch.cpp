@@ -85,6 +85,11 @@ void Batch::set_model(int robot, const RobotModel<float>& v) noexcept {
 void Batch::set_terrain(int robot, const Terrain<float>& v) noexcept {
   copy_in(robot, offset_of(&BatchRobot<float>::terrain), &v, sizeof(v));
 }
+void Batch::set_heights(int robot, const HeightGrid* heights) {
+  if (heights_.empty() && heights == nullptr) return;
+  heights_.resize(static_cast<std::size_t>(packs() * width()));
+  heights_[static_cast<std::size_t>(robot)] = heights;
+}
 void Batch::set_state(int robot, const RobotState<float>& v) noexcept {
   copy_in(robot, offset_of(&BatchRobot<float>::state), &v, sizeof(v));
 }
@@ -117,7 +122,7 @@ BatchReport<float> Batch::report(int robot) const noexcept {
 
 void Batch::advance(int pack, int ticks) noexcept {
   kernel_.advance(memory_.get() + static_cast<std::size_t>(pack) * kernel_.pack_bytes, foot_,
-                  settings_, ticks);
+                  settings_, heights_.empty() ? nullptr : heights_.data() + pack * width(), ticks);
 }
 
 }  // namespace sandrunner::sim

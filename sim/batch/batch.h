@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "sim/step/actuator.h"
 #include "sim/step/robot_step.h"
@@ -78,8 +79,9 @@ struct BatchKernel {
   int width;
   std::size_t pack_bytes, pack_alignment;
   void (*construct)(void* pack);
+  /// `heights`: of each lane's ground, or null.
   void (*advance)(void* pack, const FootProfile<double>& foot, const StepSettings& settings,
-                  int ticks);
+                  const HeightGrid* const* heights, int ticks);
 };
 const BatchKernel& batch_kernel_x1() noexcept;
 const BatchKernel& batch_kernel_x8() noexcept;
@@ -102,6 +104,8 @@ class Batch {
   void set_model(int robot, const RobotModel<float>& model) noexcept;
   /// Where the kind of ground changes under feet in contact, their FootContact is to be reset.
   void set_terrain(int robot, const Terrain<float>& terrain) noexcept;
+  /// Heights from a file, to a terrain whose shape has them; they must outlive their use.
+  void set_heights(int robot, const HeightGrid* heights);
   void set_state(int robot, const RobotState<float>& state) noexcept;
   void set_drive(int robot, const BatchDrive<float>& drive) noexcept;
   RobotState<float> state(int robot) const noexcept;
@@ -127,6 +131,7 @@ class Batch {
   StepSettings settings_;
   const detail::BatchKernel& kernel_;
   std::unique_ptr<std::byte[], Free> memory_;
+  std::vector<const HeightGrid*> heights_;  // of each lane; empty: none
 };
 
 }  // namespace sandrunner::sim

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "rt/core/split_mix.h"
+#include "sim/ground/height_grid.h"
 
 namespace sandrunner::sim {
 
@@ -18,10 +19,14 @@ Shape<double> derive_shape(const ShapeParameters& p) {
     shape.slope_y = sine / cosine * heading_sine;
     shape.stretch = 1.0 / cosine;
   }
-  shape.uneven = p.slope_rad > 0.0 || p.roughness_m > 0.0 ? 1.0 : 0.0;
+  const bool plane = p.roughness_m == 0.0 && p.dune_height_m == 0.0 && !p.heights;
+  shape.uneven = p.slope_rad > 0.0 || !plane ? 1.0 : 0.0;
   shape.roughness = p.roughness_m;
   // Six waves of amplitude roughness/sqrt(3) can add up to no more than this.
-  shape.crest = p.roughness_m * 3.4641016151377544;
+  shape.crest = p.roughness_m * 3.4641016151377544 + p.dune_height_m;
+  if (p.heights) shape.crest += p.heights->crest_m();
+  shape.dune = 0.5 * p.dune_height_m;
+  shape.dune_number = 2.0 * std::numbers::pi / p.dune_length_m;
   shape.wave_number = 2.0 * std::numbers::pi / p.roughness_wavelength_m;
   // Spreads the seeds over [0, 2 pi).
   shape.phase = 2.0 * std::numbers::pi *

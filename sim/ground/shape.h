@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The shape of the undisturbed ground: a plane, level or sloped, and waves on it. It is the same
-// for every law of force.
+// The shape of the undisturbed ground: a plane, level or sloped, and on it waves, dunes and heights
+// from a file. It is the same for every law of force.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 
 #include "rt/base/settings.h"
 #include "sim/lanes/vec.h"
 
 namespace sandrunner::sim {
+
+class HeightGrid;
 
 struct ShapeParameters {
   double slope_rad = 0.0;          ///< of the plane, whose height is 0 at the origin
@@ -16,6 +20,10 @@ struct ShapeParameters {
   double roughness_m = 0.0;        ///< standard deviation of the waves; 0: none
   double roughness_wavelength_m = 0.5;
   std::uint64_t roughness_seed = 1;
+  double dune_height_m = 0.0;  ///< from trough to crest; 0: none
+  double dune_length_m = 10.0;
+  std::string heights_file;                   ///< of an ESRI ASCII grid; empty: none
+  std::shared_ptr<const HeightGrid> heights;  ///< what is in it
 
   using P = ShapeParameters;
   static constexpr Setting<P> kSettings[] = {
@@ -27,6 +35,11 @@ struct ShapeParameters {
       {"roughness_wavelength_m", &P::roughness_wavelength_m, 0.05, 100.0,
        "Shortest wavelength of the waves."},
       {"roughness_seed", &P::roughness_seed, 0, 0x1p40, "Seed of the waves."},
+      {"dune_height_m", &P::dune_height_m, 0.0, 10.0,
+       "Height of dunes across x, from trough to crest; the origin is in a trough; 0: none."},
+      {"dune_length_m", &P::dune_length_m, 1.0, 1000.0, "From one crest of the dunes to the next."},
+      {"heights_file", &P::heights_file,
+       "ESRI ASCII grid of heights in metres, whose middle lies at the origin; empty: none."},
   };
 };
 
@@ -59,8 +72,9 @@ struct Shape {
   S uneven{};                             ///< 0: the level plane at height 0; 1: any other shape
   S slope_x{}, slope_y{};                 ///< gradient of the plane
   S stretch = S(1.0);                     ///< of a length on the plane over its projection, uphill
-  S crest{};                              ///< the waves stay below this height over the plane, m
+  S crest{};                              ///< all stays below this height over the plane, m
   S roughness{}, wave_number{}, phase{};  ///< of the waves: m, rad/m, rad
+  S dune{}, dune_number{};                ///< half the height of the dunes, m; rad/m
 
   /// Height over the plane, m.
   S over_plane(const Vec3<S>& p) const noexcept {
@@ -122,6 +136,12 @@ Surface<S> surface_at(const Shape<S>& shape, S x, S y) noexcept {
     rough_surface(shape, x, y, s.height, s.slope_x, s.slope_y);
     s = {select(rough, s.height, zero), select(rough, s.slope_x, zero),
          select(rough, s.slope_y, zero)};
+  }
+  if (any(shape.dune > zero)) {
+    S sine, cosine;
+    sincos(shape.dune_number * x, sine, cosine);
+    s.height = s.height + shape.dune * (S(1.0) - cosine);
+    s.slope_x = fma(shape.dune * shape.dune_number, sine, s.slope_x);
   }
   return {fma(shape.slope_x, x, fma(shape.slope_y, y, s.height)), s.slope_x + shape.slope_x,
           s.slope_y + shape.slope_y};

@@ -10,6 +10,7 @@
 #include "rt/base/errors.h"
 #include "rt/base/likely_meant.h"
 #include "sim/ground/embedded.h"
+#include "sim/ground/height_grid.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -106,7 +107,11 @@ std::vector<SettingLine> terrain_settings() {
 TerrainDescription read_terrain(ConfigTree& config) {
   TerrainDescription terrain;
   read_settings(config, "terrain", kTerrain, terrain);
-  read_settings(config, "terrain", ShapeParameters::kSettings, terrain.shape);
+  ShapeParameters& shape = terrain.shape;
+  read_settings(config, "terrain", ShapeParameters::kSettings, shape);
+  if (!shape.heights_file.empty()) {
+    shape.heights = std::make_shared<HeightGrid>(read_height_grid(shape.heights_file));
+  }
   TerrainPatch first;
   read_ground(config, "terrain", first.ground);
   terrain.patches.push_back(first);

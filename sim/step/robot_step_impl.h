@@ -100,7 +100,7 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     // A contact keeps the patch on which it began.
     contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
     const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
-    const Surface<S> surface = surface_at(terrain.shape, centre.x, centre.y);
+    const Surface<S> surface = surface_at(terrain.shape, relief_, centre.x, centre.y);
     const Frame frame = contact_frame(terrain.shape, surface);
     // Deepest point: a foot radius from the centre against the normal; depth measured along the
     // normal.
@@ -180,7 +180,7 @@ void RobotStepper<S>::add_hard_point(const RobotModel<S>& model, const Terrain<S
       both(near, fma(-radius, shape.stretch, shape.over_plane(place)) < shape.crest);
   if (!any(close)) return forget();
   const Ground<S>& ground = terrain.pick(terrain.region_at(place.x), mixed_ground_);
-  const Surface<S> surface = surface_at(shape, place.x, place.y);
+  const Surface<S> surface = surface_at(shape, relief_, place.x, place.y);
   const Frame frame = contact_frame(shape, surface);
   const S penetration = radius - (place.z - surface.height) * dot(frame.n, rotation_.r2);
   Mask<S> active = both(close, penetration >= zero);
@@ -312,8 +312,9 @@ template <typename S>
 void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foot,
                            const Terrain<S>& terrain, const StepSettings& settings,
                            const std::array<S, kNumJoints>& torque_nm, RobotState<S>& x,
-                           StepReport<S>& report) noexcept {
+                           StepReport<S>& report, const Relief<S>& relief) noexcept {
   const S dt = S(settings.dt_s), zero = S(0.0);
+  relief_ = relief;
   rotation_ = rotation_matrix(x.rigid.orientation);
   dynamics_.update(model, x.rigid);
   const Motion<S> acceleration =
@@ -356,7 +357,8 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
     const FootForce<S>& f = foot_force_[l];
     if (!any(f.stroke > zero)) continue;
     const Vec3<S>& centre = report.foot_centre[l];
-    const Frame frame = contact_frame(terrain.shape, surface_at(terrain.shape, centre.x, centre.y));
+    const Frame frame =
+        contact_frame(terrain.shape, surface_at(terrain.shape, relief_, centre.x, centre.y));
     const LegPose<S>& pose = dynamics_.leg(l);
     const Vec3<S> outward =
         mul_add(frame.t1, f.direction_x, mul_add(frame.t2, f.direction_y, zero * frame.n));

@@ -113,27 +113,15 @@ Robots::Robots(const std::string& robot, int count, const std::string& ground,
       states_(static_cast<std::size_t>(count)),
       drives_(states_.size()),
       reports_(states_.size()),
-      sums_(states_.size()) {
-  const sim::Terrain<float> terrain = make_ground(ground, settings);
+      sums_(states_.size()),
+      heights_(states_.size()) {
   std::vector<int> all;
   for (int r = 0; r < count; ++r) {
     batch_.set_model(r, sim::convert_model<float>(robot_.model));
-    batch_.set_terrain(r, terrain);
     all.push_back(r);
   }
+  set_ground(ground, settings, all);
   stand(all);
-}
-
-sim::Terrain<float> Robots::make_ground(const std::string& ground,
-                                        const std::vector<std::string>& settings) {
-  const sim::TerrainDescription description = read_ground(ground, settings);
-  const sim::TerrainDescription usual;
-  if (description.foot_shape != usual.foot_shape ||
-      description.hydraulic_factor != usual.hydraulic_factor) {
-    throw InputError(
-        "terrain: found another foot, expected that of the robot's file: a batch has one kind");
-  }
-  return sim::convert_terrain<float>(sim::make_terrain(description, foot_, robot_.model));
 }
 
 void Robots::require_robot(int robot) const {
@@ -144,10 +132,21 @@ void Robots::require_robot(int robot) const {
 
 void Robots::set_ground(const std::string& ground, const std::vector<std::string>& settings,
                         const std::vector<int>& robots) {
-  const sim::Terrain<float> terrain = make_ground(ground, settings);
+  const sim::TerrainDescription description = read_ground(ground, settings);
+  const sim::TerrainDescription usual;
+  if (description.foot_shape != usual.foot_shape ||
+      description.hydraulic_factor != usual.hydraulic_factor) {
+    throw InputError(
+        "terrain: found another foot, expected that of the robot's file: a batch has one kind");
+  }
+  const auto terrain =
+      sim::convert_terrain<float>(sim::make_terrain(description, foot_, robot_.model));
   for (const int r : robots) require_robot(r);
   for (const int r : robots) {
     batch_.set_terrain(r, terrain);
+    auto& heights = heights_[static_cast<std::size_t>(r)];
+    heights = description.shape.heights;
+    batch_.set_heights(r, heights.get());
     auto& state = states_[static_cast<std::size_t>(r)];
     state.feet = {};
     batch_.set_state(r, state);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,6 @@ class Robots {
   std::atomic<bool>& busy() { return busy_; }
 
  private:
-  sim::Terrain<float> make_ground(const std::string& ground,
-                                  const std::vector<std::string>& settings);
   void require_robot(int robot) const;
 
   sim::Robot robot_;
@@ -56,6 +55,7 @@ class Robots {
   std::vector<sim::BatchDrive<float>> drives_;
   std::vector<sim::BatchReport<float>> reports_;
   std::vector<sim::BatchSums<float>> sums_;
+  std::vector<std::shared_ptr<const sim::HeightGrid>> heights_;  // of each robot's ground
   std::atomic<bool> busy_ = false;
 };
 

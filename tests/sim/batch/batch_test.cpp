@@ -67,6 +67,8 @@ ShapeParameters random_shape(Draw& draw, Kind kind) {
   if (kind == kUnevenPatches) {
     s.slope_rad = std::fmax(draw(-0.2, 0.2), 0.0);  // half of them have none
     s.slope_heading_rad = draw(-3.0, 3.0);
+    s.dune_height_m = std::fmax(draw(-0.1, 0.1), 0.0);
+    s.dune_length_m = draw(1.0, 4.0);
   }
   return s;
 }
