@@ -46,6 +46,7 @@ uniform sampler2D heights;
 uniform sampler2D grains;
 uniform vec2 middle;
 uniform float soft;
+uniform float uneven;
 uniform vec2 plane;
 varying vec2 vWorld;
 float heightAt(vec2 p) { return texture2D(heights, p / ${kWindow_m.toFixed(4)}).r; }
@@ -88,9 +89,10 @@ export class Ground {
     this.middle = new THREE.Vector2();
     const material = new THREE.MeshPhongMaterial({ shininess: 0, specular: 0 });
     this.grains = noise();
-    const uniforms = { heights: { value: this.texture }, grains: { value: this.grains }, middle: { value: this.middle }, soft: { value: 1 }, plane: { value: new THREE.Vector2(...heights.surface.slope) } };
-    // A flat sheet that only looks uneven beyond the fine part; rough hard ground is displaced as far as it is known.
-    const displaced = '(soft > 0.5 ? within(1.2, 1.6) : within(4.2, 4.9))';
+    this.uneven = { value: 0 };
+    const uniforms = { uneven: this.uneven, heights: { value: this.texture }, grains: { value: this.grains }, middle: { value: this.middle }, soft: { value: 1 }, plane: { value: new THREE.Vector2(...heights.surface.slope) } };
+    // A flat sheet that only looks uneven beyond the fine part; ground with waves is displaced as far as it is known.
+    const displaced = '(soft > 0.5 && uneven < 0.5 ? within(1.2, 1.6) : within(4.2, 4.9))';
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, uniforms);
       shader.vertexShader = kDeclare + shader.vertexShader.replace('#include <begin_vertex>', `#include <begin_vertex>
@@ -123,6 +125,7 @@ export class Ground {
   follow(renderer, x, y) {
     this.mesh.position.set(Math.round(x / kStep_m) * kStep_m, Math.round(y / kStep_m) * kStep_m, 0);
     this.middle.set(x, y);
+    this.uneven.value = this.heights.surface.flat ? 0 : 1;
     const changed = this.heights.changed.splice(0);
     const handle = renderer.properties.get(this.texture).__webglTexture;
     if (!handle) return;  // not there yet: it comes whole
