@@ -15,7 +15,7 @@
 namespace sandrunner::study {
 namespace {
 
-constexpr double kFootRadius_m = 0.0295, kFootWidth_m = 0.025;
+constexpr double kFootWidth_m = 0.025;
 constexpr double kDiscWidth_m = 2.0 * kFootRadius_m;
 constexpr double kStepHz = kControlHz;  // as the robot's step
 
@@ -103,13 +103,21 @@ void add_plates(std::vector<Anchor>& all) {
   all.push_back({kSlow, kRft, fmt::format("{}, close poppy seeds", kQuantity), 0.464, ours, 3});
   // p = (k_c/b + k_phi) z^n
   constexpr double kExponent = 1.1, kCohesive = 0.99e3, kFrictional = 1528e3;
-  for (const double depth : {0.010, 0.030, 0.060}) {
+  const auto add_disc = [&](const char* name, double radius_m, double depth_m) {
     const double published =
-        (kCohesive / kFootRadius_m + kFrictional) * std::pow(depth, kExponent - 1.0);
-    all.push_back({"disc of 29.5 mm radius pushed down slowly; ours: preset dry-sand",
+        (kCohesive / radius_m + kFrictional) * std::pow(depth_m, kExponent - 1.0);
+    all.push_back({fmt::format("{} pushed down slowly; ours: preset dry-sand", name),
                    "Bekker's law with Wong's values for dry sand",
-                   fmt::format("pressure over depth at {:.0f} mm, MN/m\u00b3", 1e3 * depth),
-                   1e-6 * published, 1e-6 * disc_stress_per_depth(dry_sand(), depth), 2});
+                   fmt::format("pressure over depth at {:.0f} mm, MN/m\u00b3", 1e3 * depth_m),
+                   1e-6 * published, 1e-6 * disc_stress_per_depth(dry_sand(), depth_m, radius_m),
+                   2});
+  };
+  for (const double depth : {0.010, 0.030, 0.060}) {
+    add_disc("disc of 29.5 mm radius", kFootRadius_m, depth);
+  }
+  for (const double depth : {0.010, 0.030}) {
+    add_disc("disc of 110 cm\u00b2, SpaceBok's flat foot", std::sqrt(0.0110 / std::numbers::pi),
+             depth);
   }
 }
 
@@ -127,20 +135,28 @@ void add_drag(std::vector<Anchor>& all) {
                  3});
 }
 
+/// A disc of this radius and the ground as it acts on it.
+struct Disc {
+  Disc(const sim::GroundParameters& parameters, double radius_m)
+      : profile(sim::fit_foot_profile(sim::FootShape::kDisc, radius_m, 0.0, 2.0)),
+        ground(sim::derive_ground(parameters, profile, radius_m)) {}
+  sim::FootProfile<double> profile;
+  sim::Ground<double> ground;
+};
+
 // Pushed at this speed to a depth, the force of mud on a disc over s_u A.
 double mud_factor(double depth_m, double speed_mps) {
   sim::GroundParameters mud;
   mud.kind = sim::GroundKind::kMud;
   mud.strength_gradient_papm = 0.0;
-  const sim::FootProfile<double> disc =
-      sim::fit_foot_profile(sim::FootShape::kDisc, kFootRadius_m, 0.0, 2.0);
-  const sim::Ground<double> ground = sim::derive_ground(mud, disc, kFootRadius_m);
+  const Disc disc(mud, kFootRadius_m);
   sim::FootContact<double> contact;
   double force = 0.0;
   for (double z = 0.0; z <= depth_m; z += speed_mps / kStepHz) {
-    force = sim::foot_force(ground, disc, {.z = z, .v = speed_mps}, kStepHz, contact).normal;
+    force = sim::foot_force(disc.ground, disc.profile, {.z = z, .v = speed_mps}, kStepHz, contact)
+                .normal;
   }
-  return force / (mud.strength_pa * disc.area(depth_m));
+  return force / (mud.strength_pa * disc.profile.area(depth_m));
 }
 
 void add_mud(std::vector<Anchor>& all) {
@@ -232,12 +248,11 @@ Stop katsuragi_durian(double impact_mps) {
   return stop;
 }
 
-double disc_stress_per_depth(const sim::GroundParameters& parameters, double depth_m) {
-  const sim::FootProfile<double> disc =
-      sim::fit_foot_profile(sim::FootShape::kDisc, kFootRadius_m, 0.0, 2.0);
-  const sim::Ground<double> ground = sim::derive_ground(parameters, disc, kFootRadius_m);
-  const double force = sim::quasistatic_force(ground, disc, depth_m);
-  return force / (std::numbers::pi * kFootRadius_m * kFootRadius_m * depth_m);
+double disc_stress_per_depth(const sim::GroundParameters& parameters, double depth_m,
+                             double radius_m) {
+  const Disc disc(parameters, radius_m);
+  const double force = sim::quasistatic_force(disc.ground, disc.profile, depth_m);
+  return force / (std::numbers::pi * radius_m * radius_m * depth_m);
 }
 
 double disc_stress_gradient(const sim::GroundParameters& parameters, double depth_m) {

@@ -27,6 +27,8 @@ struct Stop {
   double depth_m = 0.0, time_s = 0.0;
 };
 
+inline constexpr double kFootRadius_m = 0.0295;  // of the paper's robot
+
 struct Ball {
   double diameter_m = 0.0254, mass_kg = 0.0692;
 };
@@ -40,9 +42,9 @@ Stop drop_ball(const Ball& ball, const sim::GroundParameters& ground, double imp
 /// Their law for their ball, m a = -m g + k z + m v^2/d1 with d1 = 87 mm, integrated.
 Stop katsuragi_durian(double impact_mps);
 
-/// Mean vertical stress on a disc of the foot's radius (29.5 mm) over depth, pushed down slowly,
-/// N/m^3.
-double disc_stress_per_depth(const sim::GroundParameters& ground, double depth_m);
+/// Mean vertical stress on a disc, of the foot's radius, over depth, pushed down slowly, N/m^3.
+double disc_stress_per_depth(const sim::GroundParameters& ground, double depth_m,
+                             double radius_m = kFootRadius_m);
 /// The same, of the last bit of depth.
 double disc_stress_gradient(const sim::GroundParameters& ground, double depth_m);
 

@@ -35,6 +35,8 @@ TEST(AnchorsTest, NoValueOfOursDriftsByMoreThanOnePercent) {
       {"pressure over depth at 10 mm, MN/m\u00b3", 0.79579},
       {"pressure over depth at 30 mm, MN/m\u00b3", 0.57032},
       {"pressure over depth at 60 mm, MN/m\u00b3", 0.48516},
+      {"pressure over depth at 10 mm, MN/m\u00b3", 0.89053},
+      {"pressure over depth at 30 mm, MN/m\u00b3", 0.71729},
       {"force at 0.64 m/s over that at 0.04 m/s", 1.0096},
       {"felt from so many widths above it, friction 28 degrees", 1.684},
       {"felt from so many widths above it, friction 30 degrees", 1.830},
