@@ -57,6 +57,7 @@ Simulator::Simulator(const Robot& robot, const SimulatorConfig& config)
       config_(config),
       foot_(make_foot_profile(config.terrain, robot.model)),
       terrain_(make_terrain(config.terrain, foot_, robot.model)),
+      remembers_(keeps_footprints(terrain_)),
       line_(drive_line<double>(config.torque_speed_line)) {
   reset_standing();
 }
@@ -153,6 +154,7 @@ void Simulator::set_terrain(const TerrainDescription& terrain) {
   }
   config_.terrain = terrain;
   terrain_ = make_terrain(terrain, foot_, robot_.model);
+  remembers_ = keeps_footprints(terrain_);
 }
 
 SensorFrame Simulator::sample() const noexcept {
@@ -223,7 +225,7 @@ void Simulator::write(const SafeCommand& command) noexcept {
   }
   const Mat3<double> before = rotation_matrix(x.orientation);
   stepper_.step(robot_.model, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,
-                report_, relief());
+                report_, relief(), {{remembers_ ? &state_.footprints : nullptr}});
   // Specific force at the base origin, body frame.
   const Vec3<double> felt = mul_add(before.r2, kGravity_mps2, report_.base_acceleration);
   state_.linear_acceleration_mps2 = {felt.x, felt.y, felt.z};
@@ -273,6 +275,7 @@ void Simulator::add_to(StateHash& hash) const noexcept {
   hash.add(state_.linear_acceleration_mps2);
   if (config_.sensor_delay_ticks > 0) hash.add(state_.sensors);
   if (config_.actuator_delay_ticks > 0) hash.add(state_.commands);
+  if (remembers_) hash.add(state_.footprints);
 }
 
 double Simulator::surface_height(double x_m, double y_m) const noexcept {

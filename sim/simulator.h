@@ -49,6 +49,7 @@ struct SimulatorState {
                                    kGravity_mps2};    ///< what the IMU's accelerometer feels
   std::array<SensorFrame, kMaxDelayTicks> sensors{};  ///< ring by tick; used with a delay
   std::array<SafeCommand, kMaxDelayTicks> commands{};
+  Footprints footprints;  ///< used where the terrain keeps them
 };
 static_assert(std::is_trivially_copyable_v<SimulatorState>);
 
@@ -103,6 +104,7 @@ class Simulator final : public RobotIo {
   SimulatorConfig config_;
   FootProfile<double> foot_;
   Terrain<double> terrain_;
+  bool remembers_;  // the terrain keeps footprints
   DriveLine<double> line_;
   RobotStepper<double> stepper_;
   SimulatorState state_;

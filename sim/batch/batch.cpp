@@ -85,10 +85,13 @@ void Batch::set_model(int robot, const RobotModel<float>& v) noexcept {
 void Batch::set_terrain(int robot, const Terrain<float>& v) noexcept {
   copy_in(robot, offset_of(&BatchRobot<float>::terrain), &v, sizeof(v));
 }
-void Batch::set_heights(int robot, const HeightGrid* heights) {
-  if (heights_.empty() && heights == nullptr) return;
-  heights_.resize(static_cast<std::size_t>(packs() * width()));
-  heights_[static_cast<std::size_t>(robot)] = heights;
+void Batch::set_heights(int robot, const HeightGrid* heights) { put(heights, robot, heights_); }
+void Batch::set_footprints(int robot, Footprints* prints) { put(prints, robot, prints_); }
+template <typename Pointer>
+void Batch::put(Pointer pointer, int robot, std::vector<Pointer>& of_lanes) const {
+  if (of_lanes.empty() && pointer == nullptr) return;
+  of_lanes.resize(static_cast<std::size_t>(packs() * width()));
+  of_lanes[static_cast<std::size_t>(robot)] = pointer;
 }
 void Batch::set_state(int robot, const RobotState<float>& v) noexcept {
   copy_in(robot, offset_of(&BatchRobot<float>::state), &v, sizeof(v));
@@ -121,8 +124,12 @@ BatchReport<float> Batch::report(int robot) const noexcept {
 }
 
 void Batch::advance(int pack, int ticks) noexcept {
+  const auto of = [&](const auto& of_lanes) {
+    return of_lanes.empty() ? nullptr
+                            : of_lanes.data() + static_cast<std::ptrdiff_t>(pack) * width();
+  };
   kernel_.advance(memory_.get() + static_cast<std::size_t>(pack) * kernel_.pack_bytes, foot_,
-                  settings_, heights_.empty() ? nullptr : heights_.data() + pack * width(), ticks);
+                  settings_, of(heights_), of(prints_), ticks);
 }
 
 }  // namespace sandrunner::sim

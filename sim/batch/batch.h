@@ -79,9 +79,9 @@ struct BatchKernel {
   int width;
   std::size_t pack_bytes, pack_alignment;
   void (*construct)(void* pack);
-  /// `heights`: of each lane's ground, or null.
+  /// `heights`, `prints`: of each lane's ground, or null.
   void (*advance)(void* pack, const FootProfile<double>& foot, const StepSettings& settings,
-                  const HeightGrid* const* heights, int ticks);
+                  const HeightGrid* const* heights, Footprints* const* prints, int ticks);
 };
 const BatchKernel& batch_kernel_x1() noexcept;
 const BatchKernel& batch_kernel_x8() noexcept;
@@ -106,6 +106,9 @@ class Batch {
   void set_terrain(int robot, const Terrain<float>& terrain) noexcept;
   /// Heights from a file, to a terrain whose shape has them; they must outlive their use.
   void set_heights(int robot, const HeightGrid* heights);
+  /// Where a terrain that keeps footprints keeps them; must outlive its use. Without, it keeps
+  /// none.
+  void set_footprints(int robot, Footprints* prints);
   void set_state(int robot, const RobotState<float>& state) noexcept;
   void set_drive(int robot, const BatchDrive<float>& drive) noexcept;
   RobotState<float> state(int robot) const noexcept;
@@ -123,6 +126,8 @@ class Batch {
   struct Free {
     void operator()(std::byte* memory) const noexcept;
   };
+  template <typename Pointer>
+  void put(Pointer pointer, int robot, std::vector<Pointer>& of_lanes) const;
   void copy_in(int robot, std::size_t offset, const void* values, std::size_t bytes) noexcept;
   void copy_out(int robot, std::size_t offset, void* values, std::size_t bytes) const noexcept;
 
@@ -132,6 +137,7 @@ class Batch {
   const detail::BatchKernel& kernel_;
   std::unique_ptr<std::byte[], Free> memory_;
   std::vector<const HeightGrid*> heights_;  // of each lane; empty: none
+  std::vector<Footprints*> prints_;         // likewise
 };
 
 }  // namespace sandrunner::sim

@@ -12,13 +12,16 @@ namespace sandrunner::sim::detail {
 
 template <typename S>
 void advance_pack(void* memory, const FootProfile<double>& foot_profile,
-                  const StepSettings& settings, const HeightGrid* const* heights, int ticks) {
+                  const StepSettings& settings, const HeightGrid* const* heights,
+                  Footprints* const* footprints, int ticks) {
   auto& r = *static_cast<BatchRobot<S>*>(memory);
   const FootProfile<S> foot = convert_profile<S>(foot_profile);
   RobotStepper<S> stepper;
   StepReport<S> report;
   Relief<S> relief;
+  Prints<S> prints;
   if (heights != nullptr) std::copy_n(heights, relief.grids.size(), relief.grids.begin());
+  if (footprints != nullptr) std::copy_n(footprints, prints.of.size(), prints.of.begin());
   const S zero = S(0.0), one = S(1.0);
   r.sums = {};
   BatchSums<S> sums{};
@@ -48,7 +51,7 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
     }
     sums.ticks_too_fast = sums.ticks_too_fast + select(too_fast > zero, one, zero);
     sums.ticks_past_stop = sums.ticks_past_stop + select(past_stop > zero, one, zero);
-    stepper.step(r.model, foot, r.terrain, settings, torque, r.state, report, relief);
+    stepper.step(r.model, foot, r.terrain, settings, torque, r.state, report, relief, prints);
     for (int l = 0; l < kNumLegs; ++l) {
       const Vec3<S>& v = report.foot_velocity[l];
       sums.foot_load[l] = sums.foot_load[l] + report.foot_force[l][2];

@@ -186,7 +186,7 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   const S zero = S(0.0), one = S(1.0);
   const GranularLaw<S>& g = *this;
   FootContact<S>& c = contact;
-  const auto& [x, y, z, v, vx, vy] = motion;
+  const auto& [x, y, z, v, vx, vy, pressed] = motion;
   const Mask<S> touching = z >= zero;
   const Mask<S> touchdown = both(touching, c.active == zero);
   const S v_before = c.velocity;
@@ -202,7 +202,7 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   reset(c.stroke_latched, zero);
   c.active = select(touching, one, zero);
 
-  const S depth = max(z, zero);
+  const S depth = max(z, zero) + pressed;
   S p0, p1;
   foot.integrals(depth, p0, p1);
   const Cone<S> cone = cone_integrals(g, depth, p0, p1);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/ground/ground.h"
 
+#include <cmath>
+
 namespace sandrunner::sim {
 
 bool GroundParameters::carries_like(const GroundParameters& other) const noexcept {
@@ -25,6 +27,11 @@ Ground<double> derive_ground(const GroundParameters& p, const FootProfile<double
   g.kind = static_cast<double>(p.kind);
   g.hard = p.is_hard() ? 1.0 : 0.0;
   g.friction = p.friction;
+  Laws::for_each([&]<template <typename> typename Law>(int index) {
+    const bool is_own = index == static_cast<int>(p.kind);
+    if (is_own && Law<double>::kRemembers && p.footprints) g.footprints = 1.0;
+  });
+  g.repose = std::tan(p.repose_rad);
   return g;
 }
 

@@ -42,7 +42,9 @@ constexpr const char* kind_name(GroundKind kind) noexcept {
 /// Parameters of a patch of ground. Those of other kinds than its own are kept, too.
 struct GroundParameters : Laws::Parameters {
   GroundKind kind = GroundKind::kGranular;
-  double friction = 0.8;  ///< Coulomb coefficient foot-ground
+  double friction = 0.8;    ///< Coulomb coefficient foot-ground
+  bool footprints = false;  ///< what a foot pressed stays pressed (footprints.h); of soil and mud
+  double repose_rad = 0.5934119456780721;  ///< steepest slope that footprints leave
 
   bool is_hard() const noexcept { return Laws::kHard[static_cast<int>(kind)]; }
   /// Whether a robot stands on it as deep as on `other`, or nearly so.
@@ -56,6 +58,8 @@ struct Ground : Laws::Constants<S> {
   S kind{};  ///< a GroundKind
   S hard{};  ///< 1: impenetrable
   S friction{};
+  S footprints{};  ///< 1: it keeps them
+  S repose{};      ///< tangent of their steepest slope
 };
 
 /// Derives the constants for a foot. `foot_radius_m` is the r_f of the HSR model.

@@ -21,11 +21,11 @@
 namespace sandrunner::sim {
 
 /// Place and motion of a foot's deepest point. x, y: along the ground (Shape), on level ground in
-/// the world, m; z: its depth below the undisturbed surface, along the normal, m; v = dz/dt and
-/// vx, vy in m/s.
+/// the world, m; z: its depth below the surface, along the normal, m; v = dz/dt and vx, vy in m/s;
+/// pressed: how deep that surface has been pressed below the undisturbed one before, m.
 template <typename S>
 struct FootMotion {
-  S x{}, y{}, z{}, v{}, vx{}, vy{};
+  S x{}, y{}, z{}, v{}, vx{}, vy{}, pressed{};
 };
 
 /// What a foot's contact remembers, in the words of the granular law; mud.h says what it keeps in

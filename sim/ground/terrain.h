@@ -57,6 +57,15 @@ struct Terrain {
   }
 };
 
+/// Whether some patch keeps footprints. S: float or double.
+template <typename S>
+bool keeps_footprints(const Terrain<S>& terrain) noexcept {
+  for (const Ground<S>& ground : terrain.ground) {
+    if (ground.footprints > S(0.0)) return true;
+  }
+  return false;
+}
+
 /// The same terrain in another scalar.
 template <typename To>
 Terrain<To> convert_terrain(const Terrain<double>& from) noexcept {

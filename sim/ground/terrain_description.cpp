@@ -29,6 +29,10 @@ constexpr Setting<G> kGround[] = {
     {"kind", words<&G::kind>(Laws::kNames), "What the ground is: grains, hard, springs, or mud."},
     {"friction", &G::friction, 0.0, 5.0,
      "Coulomb coefficient between foot and ground; mud holds feet by its strength alone."},
+    {"footprints", &G::footprints,
+     "What a foot pressed down stays down for the next one; of soil and mud."},
+    {"repose_deg", degrees(&G::repose_rad), 1.0, 80.0,
+     "Steepest slope that footprints leave: the rest slips."},
 };
 
 using T = TerrainDescription;

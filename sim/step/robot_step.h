@@ -8,6 +8,7 @@
 #include <array>
 #include <type_traits>
 
+#include "sim/ground/footprints.h"
 #include "sim/ground/height_grid.h"
 #include "sim/ground/terrain.h"
 #include "sim/robot/dynamics.h"
@@ -53,10 +54,11 @@ template <typename S>
 class RobotStepper {
  public:
   /// Advances `x` by one step under joint torques (N m). `relief`: heights from files, of lanes
-  /// whose shapes have them.
+  /// whose shapes have them; `prints`: of lanes whose ground keeps them, which writes them.
   void step(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
             const StepSettings& settings, const std::array<S, kNumJoints>& torque_nm,
-            RobotState<S>& x, StepReport<S>& report, const Relief<S>& relief = {}) noexcept;
+            RobotState<S>& x, StepReport<S>& report, const Relief<S>& relief = {},
+            const Prints<S>& prints = {}) noexcept;
 
   /// The contact problem of the last step as solved, for tests.
   const std::array<PointContact<S>, kNumPoints>& points() const noexcept { return points_; }
@@ -106,6 +108,7 @@ class RobotStepper {
   int num_stops_ = 0;
   std::array<FootForce<S>, kNumLegs> foot_force_;
   Relief<S> relief_;
+  Prints<S> prints_;
   Ground<S> mixed_ground_;  // of lanes that stand on different patches
 };
 

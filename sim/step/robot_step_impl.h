@@ -106,7 +106,13 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     // normal.
     const Vec3<S> r_base = mul_add(frame.n, -model.foot_radius_m, centre_base);
     const S normal_z = dot(frame.n, rotation_.r2);
-    const S penetration = model.foot_radius_m - (centre.z - surface.height) * normal_z;
+    S penetration = model.foot_radius_m - (centre.z - surface.height) * normal_z;
+    S heaped = zero;  // of the present surface over the undisturbed one
+    if (!prints_.are_none()) {
+      heaped = select(ground.footprints > zero,
+                      prints_.height_under(l, contact.active, centre.x, centre.y), zero);
+      penetration = penetration + heaped;
+    }
     report.foot_centre[l] = centre;
     report.penetration[l] = penetration;
     const Columns columns = dynamics_.leg_jacobian(
@@ -122,7 +128,12 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     if (any(along)) {
       lay_along(terrain.shape, along, x.rigid.position, r_base, v_base, frame, motion);
     }
+    motion.pressed = max(-heaped, zero);
     const FootForce<S>& force = foot_force_[l] = foot_force(ground, foot, motion, rate, contact);
+    if (!prints_.are_none()) {
+      prints_.follow(l, contact.active * ground.footprints, centre.x, centre.y,
+                     penetration - heaped, model.foot_radius_m, ground.repose);
+    }
     report.raw_force[l] = force.raw;
 
     PointContact<S>& c = points_[num_points_];
@@ -141,6 +152,7 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     ++num_points_;
   }
   couple_feet(terrain, dt, report);
+  if (!prints_.are_none()) prints_.keep_around(x.rigid.position.x, x.rigid.position.y);
 }
 
 // Adds what a foot bears of the pressure that all feet on coupled ground make. The points are those
@@ -312,9 +324,11 @@ template <typename S>
 void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foot,
                            const Terrain<S>& terrain, const StepSettings& settings,
                            const std::array<S, kNumJoints>& torque_nm, RobotState<S>& x,
-                           StepReport<S>& report, const Relief<S>& relief) noexcept {
+                           StepReport<S>& report, const Relief<S>& relief,
+                           const Prints<S>& prints) noexcept {
   const S dt = S(settings.dt_s), zero = S(0.0);
   relief_ = relief;
+  prints_ = prints;
   rotation_ = rotation_matrix(x.rigid.orientation);
   dynamics_.update(model, x.rigid);
   const Motion<S> acceleration =

@@ -43,6 +43,9 @@ Part Study::beyond() {
   for (const char* name : {"turf", "dry-on-wet", "sand-on-rock", "mud", "swamp"}) {
     walk(sim::terrain_preset(name), "");
   }
+  sim::TerrainDescription remembering = sim::terrain_preset("dry-sand");
+  remembering.patches[0].ground.footprints = true;
+  walk(remembering, "footprints");
   return part;
 }
 

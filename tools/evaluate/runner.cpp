@@ -40,6 +40,11 @@ class PackRun {
         first_(first),
         batch_(static_cast<int>(settings.width), foot, sim::StepSettings{}, settings.width),
         lanes_(static_cast<std::size_t>(count)) {
+    for (int i = 0; i < count; ++i) {
+      if (!sim::keeps_footprints(*trials_[i].terrain)) continue;
+      prints_.resize(static_cast<std::size_t>(count));
+      batch_.set_footprints(i, &prints_[static_cast<std::size_t>(i)]);
+    }
     sim::RobotModel<double> model = robot.model;
     model.torque_limit_nm = facts.torque_limit_nm;
     const PolicySpec& spec = policy.spec();
@@ -221,6 +226,7 @@ class PackRun {
   std::size_t first_;  // place of this pack's first trial among all
   sim::Batch batch_;
   std::vector<Lane> lanes_;
+  std::vector<sim::Footprints> prints_;  // of the lanes, where one keeps them
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ EmulatedRobot::EmulatedRobot(const sim::Robot& robot, const sim::SimulatorConfig
 void EmulatedRobot::step(const JointArray<double>& torque_nm) noexcept {
   const sim::Mat3<double> before = rotation_matrix(state_.rigid.orientation);
   stepper_.step(simulator_.model(), foot_, simulator_.terrain(), settings_, torque_nm, state_,
-                report_, simulator_.relief());
+                report_, simulator_.relief(), {{&footprints_}});
   const sim::Vec3<double> felt = mul_add(before.r2, kGravity_mps2, report_.base_acceleration);
   felt_mps2_ = {felt.x, felt.y, felt.z};
 }

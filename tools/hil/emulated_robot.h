@@ -28,6 +28,7 @@ class EmulatedRobot {
   sim::RobotStepper<double> stepper_;
   sim::RobotState<double> state_;
   sim::StepReport<double> report_;
+  sim::Footprints footprints_;  ///< of a terrain that keeps them
   Vector3 felt_mps2_{0.0, 0.0, kGravity_mps2};
 };
 

@@ -41,6 +41,12 @@ Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
           "ground: found '{}', which is hard: expected one that yields, with a law of force",
           description.name));
     }
+    if (patch.ground.footprints) {
+      throw InputError(fmt::format(
+          "ground: found '{}' with footprints, expected one without: it does not know where a foot "
+          "of another simulator steps next",
+          description.name));
+    }
     if (patch.ground.coupling_npm > 0.0) {
       throw InputError(fmt::format(
           "ground: found '{}', which couples the feet of a robot: expected one with a law for each",

@@ -114,7 +114,8 @@ Robots::Robots(const std::string& robot, int count, const std::string& ground,
       drives_(states_.size()),
       reports_(states_.size()),
       sums_(states_.size()),
-      heights_(states_.size()) {
+      heights_(states_.size()),
+      prints_(states_.size()) {
   std::vector<int> all;
   for (int r = 0; r < count; ++r) {
     batch_.set_model(r, sim::convert_model<float>(robot_.model));
@@ -147,6 +148,9 @@ void Robots::set_ground(const std::string& ground, const std::vector<std::string
     auto& heights = heights_[static_cast<std::size_t>(r)];
     heights = description.shape.heights;
     batch_.set_heights(r, heights.get());
+    auto& prints = prints_[static_cast<std::size_t>(r)];
+    prints.reset(sim::keeps_footprints(terrain) ? new sim::Footprints : nullptr);
+    batch_.set_footprints(r, prints.get());
     auto& state = states_[static_cast<std::size_t>(r)];
     state.feet = {};
     batch_.set_state(r, state);

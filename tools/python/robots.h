@@ -56,6 +56,7 @@ class Robots {
   std::vector<sim::BatchReport<float>> reports_;
   std::vector<sim::BatchSums<float>> sums_;
   std::vector<std::shared_ptr<const sim::HeightGrid>> heights_;  // of each robot's ground
+  std::vector<std::unique_ptr<sim::Footprints>> prints_;         // where it keeps them
   std::atomic<bool> busy_ = false;
 };
 

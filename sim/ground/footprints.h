@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A ground that remembers: what a foot has pressed down stays down for the next one. What it
+// displaced lies around as a rim, and slopes steeper than the angle of repose slip; no grain is
+// lost. The ground under a footprint is as strong as it was at that depth.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "rt/core/messages.h"
+#include "sim/lanes/lanes.h"
+
+namespace sandrunner::sim {
+
+/// Heights of the present surface over the undisturbed one, on a square of cells around the robot;
+/// what leaves the square is forgotten. Fixed in size, without pointers: a copy is a snapshot.
+class Footprints {
+ public:
+  static constexpr int kSide = 128;  ///< cells
+  static constexpr double kCell_m = 0.02;
+
+  /// A foot at the end of a step. `depth_m`: of its deepest point below the undisturbed surface.
+  struct Step {
+    bool in_contact = false;
+    double x_m = 0.0, y_m = 0.0, depth_m = 0.0;
+    double radius_m = 0.0;
+    double repose = 0.0;  ///< tangent of the ground's angle of repose
+  };
+
+  /// Height under a foot at x, y, m: while it is in contact, that on which it touched down.
+  double height_under(int leg, bool in_contact, double x_m, double y_m) noexcept;
+  /// To be told of every step of a foot: as it lifts off, it leaves its print where it was deepest.
+  void follow(int leg, const Step& step) noexcept;
+  /// Moves the square to where the robot is; seldom, since it may leave the middle by a quarter.
+  void keep_around(double x_m, double y_m) noexcept;
+
+  /// Height at x, y, m; 0 outside of the square.
+  double height_at(double x_m, double y_m) const noexcept;
+  /// Of all that lies above the undisturbed surface, less what is missing below it, m^3.
+  double volume_m3() const noexcept;
+
+ private:
+  struct Foot {
+    double touched_m = 0.0;                      // height on which it touched down
+    double x_m = 0.0, y_m = 0.0, depth_m = 0.0;  // where it was deepest since then
+    std::uint64_t presses = 0;                   // 1: it is in contact
+  };
+
+  bool holds(std::int64_t column, std::int64_t row) const noexcept;
+  float& cell(std::int64_t column, std::int64_t row) noexcept;
+  float cell_or_0(std::int64_t column, std::int64_t row) const noexcept;
+  void press(const Foot& foot, double radius_m, double repose) noexcept;
+  void slip(std::int64_t column, std::int64_t row, std::int64_t reach, double repose) noexcept;
+
+  std::int64_t first_column_ = -kSide / 2, first_row_ = -kSide / 2;
+  std::array<Foot, kNumLegs> feet_;
+  std::array<float, static_cast<std::size_t>(kSide) * kSide> height_m_{};
+};
+static_assert(std::is_trivially_copyable_v<Footprints>);
+
+/// Those of the robot in each lane; null: none.
+template <typename S>
+struct Prints {
+  using Real = std::conditional_t<std::is_floating_point_v<S>, S, float>;
+  static constexpr std::size_t kLanes = sizeof(S) / sizeof(Real);  // NOLINT
+  using Values = std::array<Real, kLanes>;
+  std::array<Footprints*, kLanes> of{};
+
+  bool are_none() const noexcept {
+    for (const Footprints* prints : of) {
+      if (prints != nullptr) return false;
+    }
+    return true;
+  }
+  /// As Footprints::height_under; 0 without prints.
+  S height_under(int leg, S in_contact, S x, S y) const noexcept {
+    const auto active = std::bit_cast<Values>(in_contact);
+    const auto xs = std::bit_cast<Values>(x), ys = std::bit_cast<Values>(y);
+    Values height{};
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      if (of[i] == nullptr) continue;
+      height[i] = static_cast<Real>(of[i]->height_under(
+          leg, active[i] > Real(0.0), static_cast<double>(xs[i]), static_cast<double>(ys[i])));
+    }
+    return std::bit_cast<S>(height);
+  }
+  /// As Footprints::follow; `in_contact`: 1 where the foot is.
+  void follow(int leg, S in_contact, S x, S y, S depth, S radius, S repose) const noexcept {
+    const auto active = std::bit_cast<Values>(in_contact), depths = std::bit_cast<Values>(depth),
+               xs = std::bit_cast<Values>(x), ys = std::bit_cast<Values>(y),
+               radii = std::bit_cast<Values>(radius), slopes = std::bit_cast<Values>(repose);
+    const auto number = [](Real value) { return static_cast<double>(value); };
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      if (of[i] == nullptr) continue;
+      of[i]->follow(leg, {.in_contact = active[i] > Real(0.0),
+                          .x_m = number(xs[i]),
+                          .y_m = number(ys[i]),
+                          .depth_m = number(depths[i]),
+                          .radius_m = number(radii[i]),
+                          .repose = number(slopes[i])});
+    }
+  }
+  void keep_around(S x, S y) const noexcept {
+    const auto xs = std::bit_cast<Values>(x), ys = std::bit_cast<Values>(y);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      if (of[i] == nullptr) continue;
+      of[i]->keep_around(static_cast<double>(xs[i]), static_cast<double>(ys[i]));
+    }
+  }
+};
+
+}  // namespace sandrunner::sim
