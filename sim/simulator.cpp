@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/ground/standing.h"
 #include "sim/lanes/random.h"
-#include "sim/robot/clearance.h"
 #include "sim/step/ground_truth.h"
 
 namespace sandrunner::sim {
@@ -77,14 +77,7 @@ void Simulator::disturb(double height_above_m) {
   const Shape<double>& shape = terrain_.shape;
   if (config_.seed > 0 || height_above_m == 0.0 || shape.uneven > 0.0) {
     x.orientation = square_on(shape);
-    const Mat3<double> r = rotation_matrix(x.orientation);
-    // Heights along the normal of the plane.
-    const double lowest = lowest_clearance(robot_.model, x.q, [&](double ahead_m, double left_m) {
-      Vec3<double> p = r * Vec3<double>{ahead_m, left_m, 0.0};
-      p.z = surface_height(p.x, p.y);
-      return shape.over_plane(p) / shape.stretch;
-    });
-    x.position.z = (height_above_m - lowest) * shape.stretch;
+    x.position.z = standing_height(robot_.model, x.q, shape, relief(), height_above_m);
   }
 }
 
@@ -147,7 +140,10 @@ void Simulator::set_terrain(const TerrainDescription& terrain) {
   };
   if (!std::ranges::equal(terrain.patches, config_.terrain.patches, alike)) {
     double deepest = 0.0;
-    for (const double depth : report_.penetration) deepest = std::max(deepest, depth);
+    for (int l = 0; l < kNumLegs; ++l) {
+      deepest = std::max(deepest, report_.penetration[l] - report_.heaped[l]);
+    }
+    state_.footprints = {};
     state_.robot.rigid.position.z += deepest;
     state_.robot.feet = {};
     state_.robot.impulse = {};

@@ -9,7 +9,8 @@ namespace {
 
 // A robot that has diverged is anywhere.
 std::int64_t cell_of(double at_m) noexcept {
-  return static_cast<std::int64_t>(std::floor(std::clamp(at_m, -1e6, 1e6) / Footprints::kCell_m));
+  if (!(std::fabs(at_m) < 1e6)) return 0;
+  return static_cast<std::int64_t>(std::floor(at_m / Footprints::kCell_m));
 }
 double middle_of(std::int64_t cell) noexcept {
   return (static_cast<double>(cell) + 0.5) * Footprints::kCell_m;
@@ -47,7 +48,8 @@ double Footprints::height_at(double x_m, double y_m) const noexcept {
 
 double Footprints::height_under(int leg, bool in_contact, double x_m, double y_m) noexcept {
   Foot& foot = feet_[static_cast<std::size_t>(leg)];
-  if (!in_contact) foot.touched_m = height_at(x_m, y_m);
+  if (!in_contact || foot.knows_touched == 0) foot.touched_m = height_at(x_m, y_m);
+  foot.knows_touched = 1;
   return foot.touched_m;
 }
 
@@ -82,6 +84,8 @@ void Footprints::keep_around(double x_m, double y_m) noexcept {
     }
   }
 }
+
+void Footprints::move_feet() noexcept { feet_ = {}; }
 
 // The ball of a foot digs; what it takes away lies in a ring around it, and slips.
 void Footprints::press(const Foot& foot, double radius_m, double repose) noexcept {

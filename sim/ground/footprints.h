@@ -34,6 +34,8 @@ class Footprints {
   double height_under(int leg, bool in_contact, double x_m, double y_m) noexcept;
   /// To be told of every step of a foot: as it lifts off, it leaves its print where it was deepest.
   void follow(int leg, const Step& step) noexcept;
+  /// The feet are elsewhere all at once, as their robot is put there: they leave no prints.
+  void move_feet() noexcept;
   /// Moves the square to where the robot is; seldom, since it may leave the middle by a quarter.
   void keep_around(double x_m, double y_m) noexcept;
 
@@ -46,7 +48,8 @@ class Footprints {
   struct Foot {
     double touched_m = 0.0;                      // height on which it touched down
     double x_m = 0.0, y_m = 0.0, depth_m = 0.0;  // where it was deepest since then
-    std::uint64_t presses = 0;                   // 1: it is in contact
+    std::uint32_t presses = 0;                   // 1: it is in contact
+    std::uint32_t knows_touched = 0;             // 1: touched_m is so
   };
 
   bool holds(std::int64_t column, std::int64_t row) const noexcept;

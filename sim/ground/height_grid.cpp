@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <utility>
 
 #include "rt/base/errors.h"
@@ -74,6 +75,7 @@ HeightGrid read_height_grid(const std::string& path) {
     throw InputError(fmt::format("{}: found {}, expected {}", path, found, expected));
   };
   double columns = 0.0, rows = 0.0, spacing_m = 0.0;
+  double missing = std::numeric_limits<double>::quiet_NaN();
   std::string word;
   double value = 0.0;
   // Names and values, until a line begins with a number.
@@ -84,6 +86,7 @@ HeightGrid read_height_grid(const std::string& path) {
     if (word == "ncols") columns = value;
     if (word == "nrows") rows = value;
     if (word == "cellsize") spacing_m = value;
+    if (word == "nodata_value") missing = value;
   }
   const auto is_count = [](double n) { return n >= 2.0 && n <= 1e6 && n == std::floor(n); };
   if (!is_count(columns)) fail(fmt::format("ncols {}", columns), "a whole number from 2 on");
@@ -98,6 +101,7 @@ HeightGrid read_height_grid(const std::string& path) {
   std::vector<double> heights_m;
   heights_m.reserve(count);
   while (file >> value) {
+    if (value == missing) fail("a cell without a height", "one in every cell");
     if (!(std::abs(value) <= 1e4)) {
       fail(fmt::format("the height {}", value), "one from -10000 to 10000 (m)");
     }

@@ -89,8 +89,9 @@ struct MudLaw {
 
     const S depth = max(z, zero), width = S(2.0) * foot.radius;
     const S area = foot.area(depth), radius = sqrt(area * S(1.0 / std::numbers::pi));
-    const S s_u = fma(strength_gradient, depth, strength);
-    const S bearing = min(fma(S(0.6) * foot.inverse_radius, depth, S(6.0)), S(9.0));
+    const S below = depth + motion.pressed;
+    const S s_u = fma(strength_gradient, below, strength);
+    const S bearing = min(fma(S(0.6) * foot.inverse_radius, below, S(6.0)), S(9.0));
     const S faster = one + sqrt(abs(v) * inverse_doubling_speed);
     const S limit = bearing * faster * (s_u * area);
     const S stiffness = S(8.0) * rigidity * (s_u * radius);

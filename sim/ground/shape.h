@@ -35,11 +35,12 @@ struct ShapeParameters {
       {"roughness_wavelength_m", &P::roughness_wavelength_m, 0.05, 100.0,
        "Shortest wavelength of the waves."},
       {"roughness_seed", &P::roughness_seed, 0, 0x1p40, "Seed of the waves."},
-      {"dune_height_m", &P::dune_height_m, 0.0, 10.0,
+      {"dune_height_m", &P::dune_height_m, 0.0, 3.0,
        "Height of dunes across x, from trough to crest; the origin is in a trough; 0: none."},
       {"dune_length_m", &P::dune_length_m, 1.0, 1000.0, "From one crest of the dunes to the next."},
       {"heights_file", &P::heights_file,
-       "ESRI ASCII grid of heights in metres, whose middle lies at the origin; empty: none."},
+       "ESRI ASCII grid of heights in metres, whose middle lies at the origin, as found from the "
+       "working directory; empty: none."},
   };
 };
 
@@ -137,11 +138,12 @@ Surface<S> surface_at(const Shape<S>& shape, S x, S y) noexcept {
     s = {select(rough, s.height, zero), select(rough, s.slope_x, zero),
          select(rough, s.slope_y, zero)};
   }
-  if (any(shape.dune > zero)) {
+  const Mask<S> dunes = shape.dune > zero;
+  if (any(dunes)) {
     S sine, cosine;
     sincos(shape.dune_number * x, sine, cosine);
-    s.height = s.height + shape.dune * (S(1.0) - cosine);
-    s.slope_x = fma(shape.dune * shape.dune_number, sine, s.slope_x);
+    s.height = select(dunes, s.height + shape.dune * (S(1.0) - cosine), s.height);
+    s.slope_x = select(dunes, fma(shape.dune * shape.dune_number, sine, s.slope_x), s.slope_x);
   }
   return {fma(shape.slope_x, x, fma(shape.slope_y, y, s.height)), s.slope_x + shape.slope_x,
           s.slope_y + shape.slope_y};

@@ -13,7 +13,8 @@ namespace sandrunner::sim {
 /// Velocity of the base origin in the body frame, m/s; heights along the vertical, m. The
 /// undisturbed ground is the plane through the surface under the base origin, as steep as the
 /// ground without its waves is there; the deformed ground lies below it by the deepest penetration
-/// of the feet in contact (yielded_depth()). `model`: of the nominal robot, whose legs give the
+/// of the feet in contact (yielded_depth()), from the bottom
+/// of a print that they step into. `model`: of the nominal robot, whose legs give the
 /// feet. S: float or double.
 template <typename S>
 StateEstimate ground_truth(const RobotModel<double>& model, const RobotState<S>& state,

@@ -32,8 +32,9 @@ struct RobotState {
 /// What sensors, statistics, rewards and pictures need to know of a step.
 template <typename S>
 struct StepReport {
-  std::array<Vec3<S>, kNumLegs> foot_centre;    ///< world, m, at the start of the step
-  std::array<S, kNumLegs> penetration{};        ///< of the deepest point below the surface, m
+  std::array<Vec3<S>, kNumLegs> foot_centre;  ///< world, m, at the start of the step
+  std::array<S, kNumLegs> penetration{};      ///< of the deepest point below the surface, m
+  std::array<S, kNumLegs> heaped{};  ///< of that surface over the undisturbed one (Footprints), m
   std::array<Vec3<S>, kNumLegs> foot_velocity;  ///< of the deepest point, world, m/s
   std::array<std::array<S, 3>, kNumLegs>
       foot_force{};                     ///< contact frame (world axes on level ground), N

@@ -115,6 +115,7 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     }
     report.foot_centre[l] = centre;
     report.penetration[l] = penetration;
+    report.heaped[l] = heaped;
     const Columns columns = dynamics_.leg_jacobian(
         model, l, pose.foot + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n));
     Vec3<S> v_base = cross_add(x.rigid.angular_velocity, r_base, velocity_);

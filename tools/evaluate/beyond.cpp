@@ -20,15 +20,17 @@ constexpr Way kWays[] = {{"up", 0.0}, {"down", 180.0}, {"across", 90.0}};
 Part Study::beyond() {
   Part part{"beyond", {}};
   const auto walk = [&](const sim::TerrainDescription& terrain, const std::string& scenario) {
+    std::vector<const sim::RobotState<float>*> starts;
+    for (int run = 0; terrain.shape.slope_rad > 0.0 && run < settings_.runs; ++run) {
+      starts.push_back(&start_on(terrain, run));
+    }
     for (const double speed : {0.5, 1.0, 2.0}) {
       Trial trial;
       trial.terrain = add(terrain);
       trial.command.target.vx_mps = speed;
       trial.duration_s = 10.0;
       Group g = group(terrain.name, scenario, trial);
-      for (std::size_t run = 0; run < g.trials.size(); ++run) {
-        g.trials[run].start = &start_on(terrain, static_cast<int>(run));
-      }
+      for (std::size_t run = 0; run < starts.size(); ++run) g.trials[run].start = starts[run];
       part.groups.push_back(g);
     }
   };

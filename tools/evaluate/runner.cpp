@@ -86,7 +86,8 @@ class PackRun {
         const sim::RigidState<float> x = batch_.state(static_cast<int>(i)).rigid;
         const double change_m = trials_[i].ground_changes_at_m;
         lane.met = lane.met || (change_m > 0.0 && x.position.x >= change_m);
-        const bool fell = sums.base_contact > 0.0f || sums.thigh_contact > 0.0f || sim::diverged(x);
+        const bool fell = sums.base_contact > 0.0f || sums.thigh_contact > 0.0f ||
+                          sim::diverged(x, trials_[i].terrain->shape);
         if (!fell && !finished(trials_[i], lane.recorder)) continue;
         figures[i] = lane.recorder.figures(trials_[i], fell, lane.met, facts_);
         lane.done = true;

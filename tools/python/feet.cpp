@@ -57,7 +57,7 @@ Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
   terrain_ = sim::make_terrain(description, foot_, model);
   if (terrain_.shape.uneven > 0.0) {
     throw InputError(fmt::format(
-        "ground: found '{}' with a slope or roughness, expected level ground: measure the depth "
+        "ground: found '{}', which is not level, expected level ground: measure the depth "
         "along the normal of a surface of your own",
         description.name));
   }

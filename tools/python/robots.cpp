@@ -8,13 +8,14 @@
 #include <cmath>
 
 #include "estimator/cost_of_transport.h"
-#include "sim/robot/clearance.h"
+#include "sim/ground/standing.h"
 #include "sim/robot/inertia.h"
 #include "sim/step/actuator.h"
 
 namespace sandrunner::python {
 namespace {
 
+constexpr double kStandAbove_m = 0.002;  // on ground that is not level
 constexpr int kMostTicks = 1'000'000;
 
 template <typename Record>
@@ -174,6 +175,7 @@ void Robots::set_state(int robot, const sim::RobotState<float>& state) {
     fail("state", fmt::format("an orientation of length {}", length), robot, "1");
   }
   states_[static_cast<std::size_t>(robot)] = state;
+  if (auto& prints = prints_[static_cast<std::size_t>(robot)]) prints->move_feet();
   batch_.set_state(robot, state);
 }
 
@@ -196,8 +198,12 @@ void Robots::stand(const std::vector<int>& robots) {
     }
     const sim::Shape<float> shape = batch_.robot(r).terrain.shape;
     state.rigid.orientation = sim::square_on(shape);
-    state.rigid.position.z = static_cast<float>(robot_.nominal_height_m) * shape.stretch +
-                             sim::surface_at(shape, 0.0f, 0.0f).height;
+    state.rigid.position.z = static_cast<float>(
+        shape.uneven > 0.0f
+            ? sim::standing_height(robot_.model, robot_.nominal_rad, shape,
+                                   sim::Relief<float>{{heights_[i].get()}}, kStandAbove_m)
+            : robot_.nominal_height_m);
+    if (prints_[i]) *prints_[i] = {};
     drive.kp = static_cast<float>(robot_.stand_kp_nmprad);
     drive.kd = static_cast<float>(robot_.stand_kd_nmsprad);
     if (robot_.obeys_torque_speed_line) {

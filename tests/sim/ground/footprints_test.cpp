@@ -86,6 +86,63 @@ TEST(FootprintsTest, TheGroundUnderAPrintIsAsStrongAsAtThatDepth) {
   EXPECT_NEAR(force.raw, quasistatic_force(ground, foot, 0.041), 1e-9);
 }
 
+TEST(FootprintsTest, MudUnderAPrintIsAsStrongAsAtThatDepth) {
+  GroundParameters mud = ground_of_kind(GroundKind::kMud);
+  mud.strength_pa = 1.0;
+  const Robot robot = load_raibo();
+  const FootProfile<double> foot = make_foot_profile({}, robot.model);
+  const Ground<double> ground = derive_ground(mud, foot, robot.model.foot_radius_m);
+  // Pushed in slowly; strength grows with depth from next to nothing.
+  const auto force_at = [&](double z, double pressed) {
+    FootContact<double> contact;
+    double force = 0.0;
+    for (double at = 0.0; at < z; at += 1e-6) {
+      force = foot_force(ground, foot, {.z = at, .v = 1e-3, .pressed = pressed}, 4000.0, contact)
+                  .normal;
+    }
+    return force;
+  };
+  EXPECT_GT(force_at(0.005, 0.1), 15.0 * force_at(0.005, 0.0));
+}
+
+TEST(FootprintsTest, HardGroundLiftsFeetOutOfTheirPrints) {
+  SimulatorConfig config;
+  config.terrain = terrain_preset("dry-sand");
+  config.terrain.patches[0].ground.footprints = true;
+  const Robot robot = load_raibo();
+  Simulator simulator(robot, config);
+  SimulatorState state = simulator.state();
+  for (int leg = 0; leg < kNumLegs; ++leg) {  // where the feet are going to stand
+    const auto p = leg_pose(robot.model.legs[leg], robot.nominal_rad[3 * leg],
+                            robot.nominal_rad[3 * leg + 1], robot.nominal_rad[3 * leg + 2]);
+    const Vec3<double> foot = hip_to_base(robot.model.legs[leg], p, p.foot);
+    state.footprints.follow(leg, {true, foot.x, foot.y, 0.08, 0.06, kRepose});
+    state.footprints.follow(leg, {false, foot.x, foot.y, 0.0, 0.06, kRepose});
+  }
+  simulator.restore(state);
+  simulator.skip(1200, {});  // without torques: it sinks into them
+  double lowest_m = 1.0;
+  for (const Vec3<double>& centre : simulator.report().foot_centre) {
+    lowest_m = std::min(lowest_m, centre.z - robot.model.foot_radius_m);
+  }
+  ASSERT_LT(lowest_m, -0.02);
+  const double before_m = simulator.state().robot.rigid.position.z;
+  simulator.set_terrain(terrain_preset("rigid"));
+  EXPECT_NEAR(simulator.state().robot.rigid.position.z, before_m - lowest_m, 1e-3);
+}
+
+TEST(FootprintsTest, AFootThatIsPutElsewhereLeavesNoPrintAndFindsWhatIsThere) {
+  auto prints = std::make_unique<Footprints>();
+  leave_print(*prints, 0.01, 0.01, 0.06);
+  const double there_m = prints->height_at(0.01, 0.01);
+  prints->height_under(1, false, 0.5, 0.5);
+  prints->follow(1, {true, 0.5, 0.5, 0.05, kRadius_m, kRepose});
+  prints->move_feet();
+  EXPECT_EQ(prints->height_under(1, true, 0.01, 0.01), there_m);
+  prints->follow(1, {false, 0.5, 0.5, -0.1, kRadius_m, kRepose});
+  EXPECT_EQ(prints->height_at(0.5, 0.5), 0.0);
+}
+
 /// A step of a robot whose drives hold its nominal pose.
 void step_on(Footprints& prints, Bench& bench) {
   std::array<double, kNumJoints> torque_nm;

@@ -60,7 +60,7 @@ TEST(HeightGridTest, HasTheHeightsOfItsFileAboveThatOfItsMiddle) {
   EXPECT_NEAR(grid.at(-2.0, 2.0).height, -11.0, 1e-12);
   EXPECT_NEAR(grid.at(0.0, 0.0).slope_x, 0.5, 1e-12);
   EXPECT_NEAR(grid.at(0.0, 0.0).slope_y, -5.0, 1e-12);
-  // Beyond its edge it is level.
+  // Beyond its edge the heights of the edge go on.
   EXPECT_NEAR(grid.at(50.0, 0.0).height, 1.0, 1e-12);
   EXPECT_EQ(grid.at(50.0, 0.0).slope_x, 0.0);
   EXPECT_TRUE(std::isfinite(grid.at(std::numeric_limits<double>::quiet_NaN(), 1e300).height));
@@ -150,6 +150,8 @@ TEST(HeightGridTest, AFileThatIsNoGridIsRefusedInOneLine) {
             "g.asc: found 2 heights, expected 2 x 2");
   EXPECT_EQ(grid_refusal("ncols 2\nnrows 2\ncellsize 1\n1 2 3 -99999\n"),
             "g.asc: found the height -99999, expected one from -10000 to 10000 (m)");
+  EXPECT_EQ(grid_refusal("ncols 2\nnrows 2\ncellsize 1\nNODATA_value -9999\n1 2 3 -9999\n"),
+            "g.asc: found a cell without a height, expected one in every cell");
   EXPECT_EQ(grid_refusal("ncols 1\nnrows 2\ncellsize 1\n1 2\n"),
             "g.asc: found ncols 1, expected a whole number from 2 on");
   EXPECT_EQ(grid_refusal("ncols 1e6\nnrows 1e6\ncellsize 1\n"),

@@ -32,9 +32,8 @@ TEST_F(EvaluateCommandTest, WritesAllFilesTheSameForAnyThreads) {
   EXPECT_TRUE(std::regex_match(error(), std::regex("(\\S+ \\S+/[pq]: [0-9]+ runs\n){12}")))
       << error();
   ASSERT_EQ(run(common + "--threads 3 --out three"), 0) << error();
-  for (const char* name :
-       {"evaluation.json", "straight.csv", "grid.csv", "turn.csv", "robust.csv", "beyond.csv",
-        "commands.csv"}) {
+  for (const char* name : {"evaluation.json", "straight.csv", "grid.csv", "turn.csv", "robust.csv",
+                           "beyond.csv", "commands.csv"}) {
     const std::string file = read(std::string("one/") + name);
     EXPECT_GT(file.size(), 100u) << name;
     EXPECT_EQ(file, read(std::string("three/") + name)) << name;

@@ -352,6 +352,11 @@ void Task::soft_reset(int env, Env& e, float x_m) {
   new_command(env, e);
   if (e.terrain.shape.uneven == 0.0f && uniform(env, e) < config_.episode.soft_reset_new_ground) {
     new_ground(env, e, x_m, {});
+    if (config_.ground.mud_share == 0.0) return;
+    // What feet remember of mud means nothing to sand.
+    sim::RobotState<float> state = batch_.state(env);
+    state.feet = {};
+    batch_.set_state(env, state);
   }
 }
 
@@ -376,6 +381,11 @@ bool Task::loosen(int env, Env& e, sim::RobotState<float>& state) const {
     const auto sigma = [&](int patch) {
       return e.ground_features[static_cast<std::size_t>(patch)][kSigmaFlat];
     };
+    const auto is_mud = [&](int patch) {
+      return e.terrain.ground[static_cast<std::size_t>(patch)].kind ==
+             static_cast<float>(sim::GroundKind::kMud);
+    };
+    if (is_mud(other) || is_mud(static_cast<int>(state.feet[l].region))) continue;
     if (sigma(other) >= sigma(static_cast<int>(state.feet[l].region))) continue;
     sim::put_on_patch(state, l, other);
     any = true;

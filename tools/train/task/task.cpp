@@ -158,7 +158,7 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
   const sim::BatchReport<float> report = batch_.report(env);
   const sim::BatchSums<float> sums = batch_.sums(env);
   StepOutcome s = follow(e, state, report, sums);
-  const bool absurd = sim::diverged(state.rigid);
+  const bool absurd = sim::diverged(state.rigid, e.terrain.shape);
   const bool fell =
       sums.base_contact > 0.0f || sums.thigh_contact > 0.0f || s.up_z < tilt_end_cos_ || absurd;
   s.fell = fell;

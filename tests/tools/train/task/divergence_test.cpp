@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A simulation that is lost must not reach the weights: one nan in a minibatch is one in all of
 // them.
+#include "sim/step/divergence.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,6 +71,15 @@ void expect_penalised_as_a_fall(const Outcome& lost) {
   for (const double mean : {lost.window.reward, lost.window.power_w, lost.window.torque_squared}) {
     EXPECT_LT(std::fabs(mean), 1e4);
   }
+}
+
+TEST(DivergenceTest, IsNoneOfARobotFarUpASlope) {
+  sim::Shape<float> slope;
+  slope.slope_x = 0.4f;
+  sim::RigidState<float> x;
+  x.position = {40.0f, 0.0f, 16.5f};
+  EXPECT_FALSE(sim::diverged(x, slope));
+  EXPECT_TRUE(sim::diverged(x, {}));
 }
 
 TEST(DivergenceTest, OfARobotThatIsNotANumberIsAFallThatNothingElseFeels) {
