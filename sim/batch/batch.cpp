@@ -90,7 +90,7 @@ void Batch::set_footprints(int robot, Footprints* prints) { put(prints, robot, p
 template <typename Pointer>
 void Batch::put(Pointer pointer, int robot, std::vector<Pointer>& of_lanes) const {
   if (of_lanes.empty() && pointer == nullptr) return;
-  of_lanes.resize(static_cast<std::size_t>(packs() * width()));
+  of_lanes.resize(static_cast<std::size_t>(packs()) * static_cast<std::size_t>(width()));
   of_lanes[static_cast<std::size_t>(robot)] = pointer;
 }
 void Batch::set_state(int robot, const RobotState<float>& v) noexcept {
