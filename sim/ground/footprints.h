@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <type_traits>
 
 #include "rt/core/messages.h"
@@ -67,10 +68,9 @@ static_assert(std::is_trivially_copyable_v<Footprints>);
 /// Those of the robot in each lane; null: none.
 template <typename S>
 struct Prints {
-  using Real = std::conditional_t<std::is_floating_point_v<S>, S, float>;
-  static constexpr std::size_t kLanes = sizeof(S) / sizeof(Real);  // NOLINT
-  using Values = std::array<Real, kLanes>;
-  std::array<Footprints*, kLanes> of{};
+  using Real = LaneScalar<S>;
+  using Values = LaneValues<S>;
+  std::array<Footprints*, std::tuple_size_v<Values>> of{};
 
   bool are_none() const noexcept {
     for (const Footprints* prints : of) {
@@ -83,7 +83,7 @@ struct Prints {
     const auto active = std::bit_cast<Values>(in_contact);
     const auto xs = std::bit_cast<Values>(x), ys = std::bit_cast<Values>(y);
     Values height{};
-    for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t i = 0; i < of.size(); ++i) {
       if (of[i] == nullptr) continue;
       height[i] = static_cast<Real>(of[i]->height_under(
           leg, active[i] > Real(0.0), static_cast<double>(xs[i]), static_cast<double>(ys[i])));
@@ -96,7 +96,7 @@ struct Prints {
                xs = std::bit_cast<Values>(x), ys = std::bit_cast<Values>(y),
                radii = std::bit_cast<Values>(radius), slopes = std::bit_cast<Values>(repose);
     const auto number = [](Real value) { return static_cast<double>(value); };
-    for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t i = 0; i < of.size(); ++i) {
       if (of[i] == nullptr) continue;
       of[i]->follow(leg, {.in_contact = active[i] > Real(0.0),
                           .x_m = number(xs[i]),
@@ -108,7 +108,7 @@ struct Prints {
   }
   void keep_around(S x, S y) const noexcept {
     const auto xs = std::bit_cast<Values>(x), ys = std::bit_cast<Values>(y);
-    for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t i = 0; i < of.size(); ++i) {
       if (of[i] == nullptr) continue;
       of[i]->keep_around(static_cast<double>(xs[i]), static_cast<double>(ys[i]));
     }

@@ -5,9 +5,8 @@
 #include <array>
 #include <bit>
 #include <cstddef>
-#include <memory>
 #include <string>
-#include <type_traits>
+#include <tuple>
 #include <vector>
 
 #include "sim/ground/shape.h"
@@ -41,9 +40,8 @@ HeightGrid read_height_grid(const std::string& path);
 /// The grid of each lane; null: none.
 template <typename S>
 struct Relief {
-  static constexpr std::size_t kLanes =
-      std::is_floating_point_v<S> ? 1 : sizeof(S) / sizeof(float);  // NOLINT
-  std::array<const HeightGrid*, kLanes> grids{};
+  using Values = LaneValues<S>;
+  std::array<const HeightGrid*, std::tuple_size_v<Values>> grids{};
 
   bool is_flat() const noexcept {
     for (const HeightGrid* grid : grids) {
@@ -52,11 +50,10 @@ struct Relief {
     return true;
   }
   Surface<S> at(S x, S y) const noexcept {
-    using Real = std::conditional_t<std::is_floating_point_v<S>, S, float>;
-    using Values = std::array<Real, kLanes>;
+    using Real = LaneScalar<S>;
     const auto xs = std::bit_cast<Values>(x), ys = std::bit_cast<Values>(y);
     std::array<Values, 3> found{};
-    for (std::size_t i = 0; i < kLanes; ++i) {
+    for (std::size_t i = 0; i < grids.size(); ++i) {
       if (grids[i] == nullptr) continue;
       const Surface<double> s =
           grids[i]->at(static_cast<double>(xs[i]), static_cast<double>(ys[i]));

@@ -6,6 +6,7 @@
 // the same bits.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -59,6 +60,13 @@ inline S diff_of_products(S a, S b, S c, S d) noexcept {
 
 template <typename S>
 inline constexpr bool kIsDouble = std::is_same_v<S, double>;
+
+/// A scalar of S, and those of all lanes, as std::bit_cast takes them out of it: for what has no
+/// code for packs.
+template <typename S>
+using LaneScalar = std::conditional_t<std::is_floating_point_v<S>, S, float>;
+template <typename S>
+using LaneValues = std::array<LaneScalar<S>, sizeof(S) / sizeof(LaneScalar<S>)>;  // NOLINT
 
 /// e^x for 0 <= x <= 7: the Taylor series of x/16, squared four times. Relative error below 2e-6 in
 /// float, 1e-14 in double. Own code because libm's bits depend on the machine.
