@@ -20,8 +20,9 @@ inline bool stalled(const std::string& printed) {
 }
 
 /// Does `attempt`, which is to set `said` to what its run said at the end, even if an assertion
-/// ends it; anew where it failed and this computer stalled, whose failures then do not count. Ten
-/// in a row are no chance.
+/// ends it; anew where an assertion in it failed and this computer stalled, whose failures then do
+/// not count. (An attempt whose run is judged afterwards expects that it did not stall.) Ten in a
+/// row are no chance.
 inline void unless_stalled(const std::function<void(std::string& said)>& attempt) {
   for (int left = 9;; --left) {
     std::string said;

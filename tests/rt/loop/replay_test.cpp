@@ -23,6 +23,7 @@ std::vector<TickRecord> recorded_run(const ProcessConfig& config, bool realtime)
                      .at_tick = [&](const TickRecord& tick) { ticks.push_back(tick); },
                      .realtime = realtime})
                .fall_reason;
+    EXPECT_FALSE(stalled(said)) << said;
   });
   return ticks;
 }

@@ -28,6 +28,7 @@ RunResult run_unless_stalled(const std::function<RunResult()>& run) {
     for (const FaultRow& info : kFaultTable) {
       if (faults & fault_bit(info.fault)) said += info.name;
     }
+    EXPECT_FALSE(stalled(said)) << said;
   });
   return result;
 }

@@ -56,6 +56,7 @@ TEST_F(RecordingTest, ThreadedRunReplaysBitForBit) {
   unless_stalled([&](std::string& said) {
     record("--clock realtime");
     said = output();
+    EXPECT_FALSE(stalled(said)) << said;
   });
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
 }
