@@ -16,7 +16,7 @@ void advance_pack(void* memory, const FootProfile<double>& foot_profile,
                   Footprints* const* footprints, int ticks) {
   auto& r = *static_cast<BatchRobot<S>*>(memory);
   const FootProfile<S> foot = convert_profile<S>(foot_profile);
-  RobotStepper<S> stepper;
+  static thread_local RobotStepper<S> stepper;  // too large to be cleared for each call
   StepReport<S> report;
   Relief<S> relief;
   Prints<S> prints;

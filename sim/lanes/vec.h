@@ -25,11 +25,11 @@ inline Vec3<S> operator*(S a, const Vec3<S>& b) noexcept {
 }
 /// a s + b
 template <typename S>
-inline Vec3<S> mul_add(const Vec3<S>& a, S s, const Vec3<S>& b) noexcept {
+[[gnu::always_inline]] inline Vec3<S> mul_add(const Vec3<S>& a, S s, const Vec3<S>& b) noexcept {
   return {fma(a.x, s, b.x), fma(a.y, s, b.y), fma(a.z, s, b.z)};
 }
 template <typename S>
-inline S dot(const Vec3<S>& a, const Vec3<S>& b) noexcept {
+[[gnu::always_inline]] inline S dot(const Vec3<S>& a, const Vec3<S>& b) noexcept {
   return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
 }
 template <typename S>
@@ -39,7 +39,7 @@ inline Vec3<S> cross(const Vec3<S>& a, const Vec3<S>& b) noexcept {
 }
 /// a x b + c
 template <typename S>
-inline Vec3<S> cross_add(const Vec3<S>& a, const Vec3<S>& b, const Vec3<S>& c) noexcept {
+[[gnu::always_inline]] inline Vec3<S> cross_add(const Vec3<S>& a, const Vec3<S>& b, const Vec3<S>& c) noexcept {
   return {fma(a.y, b.z, fma(-a.z, b.y, c.x)), fma(a.z, b.x, fma(-a.x, b.z, c.y)),
           fma(a.x, b.y, fma(-a.y, b.x, c.z))};
 }
@@ -54,7 +54,7 @@ struct Mat3 {
   Vec3<S> r0, r1, r2;
 };
 template <typename S>
-inline Vec3<S> operator*(const Mat3<S>& m, const Vec3<S>& v) noexcept {
+[[gnu::always_inline]] inline Vec3<S> operator*(const Mat3<S>& m, const Vec3<S>& v) noexcept {
   return {dot(m.r0, v), dot(m.r1, v), dot(m.r2, v)};
 }
 /// m v + a
