@@ -106,8 +106,8 @@ void send_command(const Options& options, Interrupt& interrupt) {
   if (!zero && mode != "-" && mode != mode_name(Mode::kWalk)) {
     throw RefusedError(
         fmt::format("sent {} commands, none had an effect: the robot is in mode {} and obeys "
-                    "velocities in walk only (mode arm, mode stand, mode walk)",
-                    sent, mode));
+                    "velocities in walk only ({}mode arm, mode stand, mode walk)",
+                    sent, mode, mode == mode_name(Mode::kFault) ? "mode reset_fault, " : ""));
   }
   print(fmt::format("sent {} commands in {:.2f} s, then zero\n", sent,
                     static_cast<double>(sent * kCommandPeriod_ns) * 1e-9));
