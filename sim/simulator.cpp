@@ -145,8 +145,7 @@ void Simulator::set_terrain(const TerrainDescription& terrain) {
     }
     state_.footprints = {};
     state_.robot.rigid.position.z += deepest;
-    state_.robot.feet = {};
-    state_.robot.impulse = {};
+    state_.robot.forget_contacts();
   }
   config_.terrain = terrain;
   terrain_ = make_terrain(terrain, foot_, robot_.model);
@@ -266,7 +265,15 @@ void Simulator::restore(const SimulatorState& state) noexcept { state_ = state; 
 
 void Simulator::add_to(StateHash& hash) const noexcept {
   hash.add(state_.tick);
-  hash.add(state_.robot);
+  const RobotState<double>& robot = state_.robot;
+  hash.add(robot.rigid);
+  hash.add(robot.feet);
+  hash.add(robot.impulse);
+  hash.add(robot.stop_impulse);
+  if (foot_.patches > 1) {
+    hash.add(robot.further_feet);
+    hash.add(robot.further_impulse);
+  }
   hash.add(state_.torque_nm);
   hash.add(state_.linear_acceleration_mps2);
   if (config_.sensor_delay_ticks > 0) hash.add(state_.sensors);

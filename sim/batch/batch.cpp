@@ -93,8 +93,12 @@ void Batch::put(Pointer pointer, int robot, std::vector<Pointer>& of_lanes) cons
   of_lanes.resize(static_cast<std::size_t>(packs()) * static_cast<std::size_t>(width()));
   of_lanes[static_cast<std::size_t>(robot)] = pointer;
 }
+// Feet of one patch have no further ones to copy.
+std::size_t Batch::state_bytes() const noexcept {
+  return foot_.patches > 1 ? sizeof(RobotState<float>) : offsetof(RobotState<float>, further_feet);
+}
 void Batch::set_state(int robot, const RobotState<float>& v) noexcept {
-  copy_in(robot, offset_of(&BatchRobot<float>::state), &v, sizeof(v));
+  copy_in(robot, offset_of(&BatchRobot<float>::state), &v, state_bytes());
 }
 void Batch::set_drive(int robot, const BatchDrive<float>& v) noexcept {
   copy_in(robot, offset_of(&BatchRobot<float>::drive), &v, sizeof(v));
@@ -109,7 +113,7 @@ BatchRobot<float> Batch::robot(int robot) const noexcept {
 }
 RobotState<float> Batch::state(int robot) const noexcept {
   RobotState<float> v;
-  copy_out(robot, offset_of(&BatchRobot<float>::state), &v, sizeof(v));
+  copy_out(robot, offset_of(&BatchRobot<float>::state), &v, state_bytes());
   return v;
 }
 BatchSums<float> Batch::sums(int robot) const noexcept {

@@ -126,6 +126,7 @@ class Batch {
   struct Free {
     void operator()(std::byte* memory) const noexcept;
   };
+  std::size_t state_bytes() const noexcept;
   template <typename Pointer>
   void put(Pointer pointer, int robot, std::vector<Pointer>& of_lanes) const;
   void copy_in(int robot, std::size_t offset, const void* values, std::size_t bytes) noexcept;

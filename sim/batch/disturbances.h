@@ -23,14 +23,19 @@ struct TouchdownWatch {
   /// Whether the foot has touched down since the last call for this leg.
   bool touched_down(const RobotState<float>& state, int leg) {
     const bool was_in_air = in_air[leg];
-    in_air[leg] = state.feet[leg].active == 0.0f;
+    in_air[leg] = true;
+    for (int patch = 0; patch < kMaxFootPatches; ++patch) {
+      if (state.contact(leg, patch).active != 0.0f) in_air[leg] = false;
+    }
     return was_in_air && !in_air[leg];
   }
 };
 
 /// Puts a foot on another patch of the terrain until it lifts off.
 inline void put_on_patch(RobotState<float>& state, int leg, int patch) {
-  state.feet[leg].region = static_cast<float>(patch);
+  for (int part = 0; part < kMaxFootPatches; ++part) {
+    state.contact(leg, part).region = static_cast<float>(patch);
+  }
 }
 
 }  // namespace sandrunner::sim

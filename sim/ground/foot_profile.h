@@ -34,6 +34,7 @@ struct FootProfile {
   S tyre_width{};        ///< 0: not a tyre
   S hydraulic_factor{};  ///< c_h
   FootShape shape = FootShape::kTyre;
+  int patches = 1;  ///< of the foot, which bear equal shares
   std::array<S, kDegree + 1> p0{}, p1{};
 
   /// r_h at depth z >= 0, m.
@@ -94,6 +95,7 @@ FootProfile<To> convert_profile(const FootProfile<double>& from) noexcept {
   to.tyre_width = To(from.tyre_width);
   to.hydraulic_factor = To(from.hydraulic_factor);
   to.shape = from.shape;
+  to.patches = from.patches;
   for (int i = 0; i <= FootProfile<To>::kDegree; ++i) {
     to.p0[i] = To(from.p0[i]);
     to.p1[i] = To(from.p1[i]);

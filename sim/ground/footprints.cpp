@@ -46,17 +46,17 @@ double Footprints::height_at(double x_m, double y_m) const noexcept {
   return (1.0 - fy) * along_x(j) + fy * along_x(j + 1);
 }
 
-double Footprints::height_under(int leg, bool in_contact, double x_m, double y_m) noexcept {
-  Foot& foot = feet_[static_cast<std::size_t>(leg)];
+double Footprints::height_under(int number, bool in_contact, double x_m, double y_m) noexcept {
+  Foot& foot = feet_[static_cast<std::size_t>(number)];
   if (!in_contact || foot.knows_touched == 0) foot.touched_m = height_at(x_m, y_m);
   foot.knows_touched = 1;
   return foot.touched_m;
 }
 
-void Footprints::follow(int leg, const Step& step) noexcept {
-  Foot& foot = feet_[static_cast<std::size_t>(leg)];
+void Footprints::follow(int number, const Step& step) noexcept {
+  Foot& foot = feet_[static_cast<std::size_t>(number)];
   if (!step.in_contact) {
-    if (foot.presses != 0) press(foot, step.radius_m, step.repose);
+    if (foot.presses != 0) press(foot, step);
     foot.presses = 0;
     return;
   }
@@ -87,8 +87,9 @@ void Footprints::keep_around(double x_m, double y_m) noexcept {
 
 void Footprints::move_feet() noexcept { feet_ = {}; }
 
-// The ball of a foot digs; what it takes away lies in a ring around it, and slips.
-void Footprints::press(const Foot& foot, double radius_m, double repose) noexcept {
+// A foot digs; what it takes away lies in a ring around it, and slips.
+void Footprints::press(const Foot& foot, const Step& step) noexcept {
+  const double radius_m = step.radius_m;
   const std::int64_t column = cell_of(foot.x_m), row = cell_of(foot.y_m);
   const double heap_m = 2.0 * radius_m + kCell_m;
   const auto reach = static_cast<std::int64_t>(heap_m / kCell_m) + 1;
@@ -110,7 +111,8 @@ void Footprints::press(const Foot& foot, double radius_m, double repose) noexcep
       ++around;
       return;
     }
-    const double rise_m = radius_m - std::sqrt(std::max(radius_m * radius_m - away2, 0.0));
+    const double rise_m =
+        step.flat ? 0.0 : radius_m - std::sqrt(std::max(radius_m * radius_m - away2, 0.0));
     const auto bottom_m = static_cast<float>(rise_m - foot.depth_m);
     if (height_m <= bottom_m) return;
     dug_m += static_cast<double>(height_m) - static_cast<double>(bottom_m);
@@ -120,8 +122,8 @@ void Footprints::press(const Foot& foot, double radius_m, double repose) noexcep
   for_each([&](float& height_m, bool under, double) {
     if (!under) height_m += static_cast<float>(dug_m / around);
   });
-  const auto spread = static_cast<std::int64_t>(2.0 * foot.depth_m / (repose * kCell_m));
-  slip(column, row, reach + std::clamp<std::int64_t>(spread, 1, kSide / 8), repose);
+  const auto spread = static_cast<std::int64_t>(2.0 * foot.depth_m / (step.repose * kCell_m));
+  slip(column, row, reach + std::clamp<std::int64_t>(spread, 1, kSide / 8), step.repose);
 }
 
 // Pairs of neighbours that are too steep share what is too much, until none is.

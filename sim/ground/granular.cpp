@@ -75,7 +75,7 @@ GranularLaw<double> derive_law(const GranularParameters& p, const FootProfile<do
       std::clamp(2.0 * p.cone_angle_rad - 0.5 * std::numbers::pi, 0.0, 0.25 * std::numbers::pi);
   g.layer_depth = p.layer_depth_m;
   g.layer_log_strength = logarithm(p.layer_strength);
-  g.layer_log_slope = g.layer_log_strength / rupture_depth(friction, 2.0 * foot_radius_m);
+  g.layer_log_slope = g.layer_log_strength / rupture_depth(friction, 2.0 * foot.radius);
   return g;
 }
 

@@ -246,7 +246,7 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   const S mass = g.added_mass * max(cone.flat_integral - c.restart_flat, zero);
   S raw = fma(g.drag * area, v * v, fma(mass, acceleration, quasistatic));
   // Over firmer ground the whole force at once, within the tolerance above the remembered depth,
-  // would throw a light foot up: there it rises over the tolerance.
+  // would throw a light foot up: there it rises over the tolerance, as from the bottom of a print.
   if (any(g.layer_depth > zero)) {
     const S within = (z - memory_before) + g.tolerance;
     const Mask<S> again = both(both(g.layer_depth > zero, g.memory > zero), within < g.tolerance);

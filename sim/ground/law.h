@@ -69,6 +69,14 @@ struct FootForce {
   S uncut{}, coupling{};
 };
 template <typename S>
+/// That of a patch of a foot, from the force on the whole of it.
+template <typename S>
+inline FootForce<S> share_of(FootForce<S> f, S share) noexcept {
+  for (S* part : {&f.normal, &f.raw, &f.friction_bound, &f.stroke, &f.uncut, &f.coupling}) {
+    *part = share * *part;
+  }
+  return f;
+}
 inline FootForce<S> select(const Mask<S>& m, const FootForce<S>& a,
                            const FootForce<S>& b) noexcept {
   return {select(m, a.normal, b.normal),

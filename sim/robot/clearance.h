@@ -18,9 +18,11 @@ double lowest_clearance(const RobotModel<double>& model, const JointArray<double
   for (int l = 0; l < kNumLegs; ++l) {
     const LegModel<double>& leg = model.legs[l];
     const LegPose<double> p = leg_pose(leg, q_rad[3 * l], q_rad[3 * l + 1], q_rad[3 * l + 2]);
-    const Vec3<double> foot = hip_to_base(leg, p, p.foot);
+    for (int patch = 0; patch < static_cast<int>(model.foot_patches); ++patch) {
+      const Vec3<double> foot = hip_to_base(leg, p, patch_centre(leg, p, patch));
+      lowest = std::min(lowest, foot.z - model.foot_radius_m - surface_height(foot.x, foot.y));
+    }
     const Vec3<double> knee = hip_to_base(leg, p, p.knee);
-    lowest = std::min(lowest, foot.z - model.foot_radius_m - surface_height(foot.x, foot.y));
     lowest = std::min(lowest, knee.z - model.knee_radius_m - surface_height(knee.x, knee.y));
   }
   const Vec3<double>&centre = model.base_box_centre_m, &half = model.base_box_half_m;

@@ -55,6 +55,21 @@ std::size_t unused_shapes(const UrdfReader& urdf, const RobotFile& file) {
   return shapes;
 }
 
+std::string feet_of(const RobotModel<double>& m) {
+  const std::string points =
+      m.foot_patches > 1.0 ? fmt::format(", each on {} points", static_cast<int>(m.foot_patches))
+                           : "";
+  if (m.foot_length_m > 0.0) {
+    return fmt::format("soles {:.4g} m long, {:.4g} m wide and {:.4g} m thick{}", m.foot_length_m,
+                       m.foot_width_m, 2.0 * m.foot_radius_m, points);
+  }
+  if (m.foot_width_m > 0.0) {
+    return fmt::format("tyres of radius {:.4g} m, {:.4g} m wide{}", m.foot_radius_m, m.foot_width_m,
+                       points);
+  }
+  return fmt::format("balls of radius {:.4g} m", m.foot_radius_m);
+}
+
 }  // namespace
 
 std::string describe(const Robot& robot) {
@@ -89,9 +104,7 @@ std::string describe(const Robot& robot) {
     page += fmt::format("| {} | {} | {} | {} | {} |\n", robot.description.leg_names[l],
                         text(leg.haa), text(leg.hfe), text(leg.kfe), text(leg.foot));
   }
-  page += fmt::format("\nFeet: {} of radius {:.4g} m{}. Base: a box of {} m around {}.\n",
-                      m.foot_width_m > 0.0 ? "tyres" : "balls", m.foot_radius_m,
-                      m.foot_width_m > 0.0 ? fmt::format(", {:.4g} m wide", m.foot_width_m) : "",
+  page += fmt::format("\nFeet: {}. Base: a box of {} m around {}.\n", feet_of(m),
                       text(2.0 * m.base_box_half_m), text(m.base_box_centre_m));
   page += fmt::format(
       "Not used: {} other collision shapes of the URDF. Knees and shanks touch the ground with "

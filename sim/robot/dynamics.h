@@ -81,6 +81,12 @@ inline Vec3<S> hip_to_base(const LegModel<S>& leg, const LegPose<S>& p, const Ve
   return leg.haa + rotate_x(p.s1, p.c1, v);
 }
 
+/// Centre of one of the foot's patches, hip frame, m.
+template <typename S>
+inline Vec3<S> patch_centre(const LegModel<S>& leg, const LegPose<S>& p, int patch) noexcept {
+  return p.foot + rotate_y(p.s23, p.c23, leg.patch[static_cast<std::size_t>(patch)]);
+}
+
 /// Mass matrix, bias and their factorisation at one configuration and velocity. SI units
 /// throughout: kg, m, kg m^2, rad.
 template <typename S>

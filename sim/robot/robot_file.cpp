@@ -57,6 +57,9 @@ constexpr Setting<F> kLinks[] = {
 constexpr Setting<F> kShapes[] = {
     {"foot_radius_m", &F::foot_radius_m, 0.0, 0.5,
      "Radius of a ball at the foot link's origin, in place of the URDF's shape.", "from the URDF"},
+    {"foot_patches", &F::foot_patches, 1, 4,
+     "Points of a foot that touch the ground: 1, of a cylinder 2, of a box 4.",
+     "4 of a box, else 1"},
     {"base_box_m", &F::base_box_m, 0.0, 5.0,
      "Edges of the base along x, y, z, in place of the URDF's box.", "from the URDF"},
     {"base_box_centre_m", &F::base_box_centre_m, -5.0, 5.0,

@@ -26,6 +26,7 @@ struct RobotFile {
   LegJoints<double> lower_rad{kNone, kNone, kNone}, upper_rad{kNone, kNone, kNone};
   LegJoints<double> torque_limit_nm{kNone, kNone, kNone}, speed_limit_radps{kNone, kNone, kNone};
   double foot_radius_m = 0.0;
+  int foot_patches = 0;  ///< 0: as the shape has them
   std::array<double, 3> base_box_m{}, base_box_centre_m{};
 
   /// Whether it has a box of its own in place of the URDF's.

@@ -115,6 +115,29 @@ Vec read_joint(const UrdfReader& urdf, const RobotFile& file, const Names& names
   return place_m;
 }
 
+// A foot's patches lie so that, where the force on each grows with its depth, force and moment of a
+// foot at an angle are those of its whole width and length (the points of Gauss's quadrature).
+void lay_patches(const RobotFile& file, const std::string& link, const UrdfFoot& foot,
+                 LegModel<double>& leg, RobotModel<double>& m) {
+  const int most = foot.length_m > 0.0 ? 4 : foot.width_m > 0.0 ? 2 : 1;
+  const int patches = file.foot_patches > 0 ? file.foot_patches : most == 4 ? 4 : 1;
+  if (patches != 1 && patches != most) {
+    file.fail(fmt::format("collision.foot_patches: found {}, expected {} of the {} of link '{}'",
+                          patches, most == 1 ? "1" : fmt::format("1 or {}", most),
+                          most == 4   ? "box"
+                          : most == 2 ? "cylinder"
+                                      : "ball",
+                          link));
+  }
+  const double share = 0.5 * std::numbers::inv_sqrt3;
+  for (int i = 0; i < patches && patches > 1; ++i) {
+    const double ahead_m = patches == 4 ? (i < 2 ? share : -share) * foot.length_m : 0.0;
+    const double left_m = (i % 2 == 0 ? share : -share) * foot.width_m;
+    leg.patch[static_cast<std::size_t>(i)] = ahead_m * foot.along + left_m * foot.across;
+  }
+  m.foot_patches = patches;
+}
+
 // The foot of leg l: its place and its shape, whose centre it returns in the foot link's own axes.
 // Its mass is the shank's.
 Vector3 read_foot(const UrdfReader& urdf, const RobotFile& file, const std::string& name,
@@ -130,14 +153,18 @@ Vector3 read_foot(const UrdfReader& urdf, const RobotFile& file, const std::stri
   if (foot.radius_m == 0.0) foot = urdf.foot(name, leg.foot);
   leg.foot = leg.foot + foot.centre_m;
   if (l > 0 && (std::fabs(foot.radius_m - m.foot_radius_m) > 1e-3 ||
-                std::fabs(foot.width_m - m.foot_width_m) > 1e-3)) {
+                std::fabs(foot.width_m - m.foot_width_m) > 1e-3 ||
+                std::fabs(foot.length_m - m.foot_length_m) > 1e-3)) {
     urdf.fail(fmt::format(
-        "link '{}': found a foot of radius {} m and width {} m, expected {} and {} as of the left "
-        "front leg",
-        name, foot.radius_m, foot.width_m, m.foot_radius_m, m.foot_width_m));
+        "link '{}': found a foot of radius {} m, width {} m and length {} m, expected {}, {} and "
+        "{} as of the left front leg",
+        name, foot.radius_m, foot.width_m, foot.length_m, m.foot_radius_m, m.foot_width_m,
+        m.foot_length_m));
   }
   m.foot_radius_m = foot.radius_m;
   m.foot_width_m = foot.width_m;
+  m.foot_length_m = foot.length_m;
+  lay_patches(file, name, foot, leg, m);
   return {foot.in_link_m.x, foot.in_link_m.y, foot.in_link_m.z};
 }
 

@@ -28,6 +28,8 @@ struct Body {
   Sym3<S> inertia;
 };
 
+inline constexpr int kMaxFootPatches = 4;
+
 /// One leg: three joints in a row, hip abduction (HAA, about x), hip flexion (HFE, about y), knee
 /// flexion (KFE, about y). With all joints at zero the link frames are parallel to the base's,
 /// however the URDF turns its own.
@@ -38,9 +40,10 @@ struct LegModel {
   Vec3<S> hfe;                                                ///< HFE origin in the hip frame, m
   Vec3<S> kfe;                                                ///< KFE origin in the thigh frame, m
   Vec3<S> foot;                                               ///< foot centre in the shank frame, m
-  Body<S> hip;                                                ///< between HAA and HFE
-  Body<S> thigh;                                              ///< between HFE and KFE
-  Body<S> shank;                                              ///< below KFE, with the foot
+  std::array<Vec3<S>, kMaxFootPatches> patch{};  ///< of the foot, from its centre, shank frame, m
+  Body<S> hip;                                   ///< between HAA and HFE
+  Body<S> thigh;                                 ///< between HFE and KFE
+  Body<S> shank;                                 ///< below KFE, with the foot
 };
 
 /// Speed of a joint, rad/s, below which its dry friction is proportional to its speed: a joint that
@@ -56,10 +59,12 @@ struct RobotModel {
   std::array<S, kNumJoints> friction_nm{};
   std::array<S, kNumJoints> lower_rad{}, upper_rad{};  ///< stops
   std::array<S, kNumJoints> torque_limit_nm{}, speed_limit_radps{};
-  S foot_radius_m{};                           ///< of the tyre or ball
-  S foot_width_m{};                            ///< of the tyre, along y; 0: a ball
-  S knee_radius_m{};                           ///< of the thigh's lower end
-  S shank_radius_m{};                          ///< half the thickness of the shank
+  S foot_radius_m{};        ///< of the tyre or ball; of a sole half its thickness
+  S foot_width_m{};         ///< of the tyre or sole; 0: a ball
+  S foot_length_m{};        ///< of a flat sole; 0: a tyre or ball
+  S foot_patches = S(1.0);  ///< points of a foot that touch the ground
+  S knee_radius_m{};        ///< of the thigh's lower end
+  S shank_radius_m{};       ///< half the thickness of the shank
   Vec3<S> base_box_centre_m, base_box_half_m;  ///< collision box, base frame
 
   /// Total mass, kg.
@@ -140,6 +145,7 @@ RobotModel<To> convert_model(const RobotModel<double>& from) noexcept {
                   vec(leg.hfe),
                   vec(leg.kfe),
                   vec(leg.foot),
+                  {vec(leg.patch[0]), vec(leg.patch[1]), vec(leg.patch[2]), vec(leg.patch[3])},
                   body(leg.hip),
                   body(leg.thigh),
                   body(leg.shank)};
@@ -154,6 +160,8 @@ RobotModel<To> convert_model(const RobotModel<double>& from) noexcept {
   }
   to.foot_radius_m = To(from.foot_radius_m);
   to.foot_width_m = To(from.foot_width_m);
+  to.foot_length_m = To(from.foot_length_m);
+  to.foot_patches = To(from.foot_patches);
   to.knee_radius_m = To(from.knee_radius_m);
   to.shank_radius_m = To(from.shank_radius_m);
   to.base_box_centre_m = vec(from.base_box_centre_m);

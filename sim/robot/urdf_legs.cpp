@@ -82,7 +82,8 @@ void add_fixed(const UrdfReader& urdf, const std::string& shank, const urdf::Lin
   }
 }
 
-/// The fixed link that is the foot: one with a round shape, or else the one furthest from the knee.
+/// The fixed link that is the foot: one with a round shape, or else the one furthest from the knee,
+/// with a box or none.
 std::string foot_of(const UrdfReader& urdf, const std::string& shank, LegGeometry& leg,
                     bool& has_shape) {
   std::vector<std::pair<std::string, Vec>> links;
@@ -93,19 +94,21 @@ std::string foot_of(const UrdfReader& urdf, const std::string& shank, LegGeometr
   }
   std::string best;
   double best_reach = -1.0;
-  has_shape = false;
+  bool best_is_round = false;
   for (const auto& [name, place] : links) {
     UrdfFoot foot;
-    bool round = true;
+    bool shaped = true;
     try {
       foot = urdf.foot(name, place);
     } catch (const InputError&) {
-      round = false;
+      shaped = false;
     }
+    const bool round = shaped && foot.length_m == 0.0;
     const Vec centre = place + foot.centre_m;
     const double reach = std::hypot(centre.x, centre.z);
-    if (round < has_shape || (round == has_shape && reach <= best_reach)) continue;
-    has_shape = round;
+    if (round < best_is_round || (round == best_is_round && reach <= best_reach)) continue;
+    best_is_round = round;
+    has_shape = shaped;
     best = name;
     best_reach = reach;
     leg.foot = centre;

@@ -21,7 +21,7 @@ struct UrdfLegs {
   std::array<std::vector<urdf::Joint>, kNumLegs> joints;
   std::array<std::string, kNumLegs> foot;  ///< links
   std::array<LegGeometry, kNumLegs> geometry;
-  bool feet_have_shapes = false;  ///< round ones
+  bool feet_have_shapes = false;
 };
 
 /// Finds four legs of three joints by their place. `name` stands for the text in errors. Throws

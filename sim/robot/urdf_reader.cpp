@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "rt/base/errors.h"
 #include "sim/robot/inertia.h"
@@ -71,6 +74,26 @@ const urdf::Link* carrier(const urdf::ModelInterface& model, const urdf::Link& l
 }
 
 double volume(const Vec& half) { return half.x * half.y * half.z; }
+
+// The sole has the two edges that are most across `down`; its length is the one nearer to x.
+void make_sole(const urdf::Vector3& edges, const Mat3<double>& turn, const Vec& down,
+               UrdfFoot& foot) {
+  struct Edge {
+    Vec axis;
+    double length_m;
+  };
+  std::array<Edge, 3> e{{{turn * Vec{1, 0, 0}, edges.x},
+                         {turn * Vec{0, 1, 0}, edges.y},
+                         {turn * Vec{0, 0, 1}, edges.z}}};
+  std::ranges::stable_sort(e, std::greater(),
+                           [&](const Edge& edge) { return std::fabs(dot(edge.axis, down)); });
+  if (std::fabs(e[1].axis.x) < std::fabs(e[2].axis.x)) std::swap(e[1], e[2]);
+  foot.radius_m = e[0].length_m / 2;
+  foot.length_m = e[1].length_m;
+  foot.width_m = e[2].length_m;
+  foot.along = std::copysign(1.0, e[1].axis.x) * e[1].axis;
+  foot.across = std::copysign(1.0, e[2].axis.y) * e[2].axis;
+}
 
 }  // namespace
 
@@ -224,8 +247,9 @@ std::optional<UrdfBox> UrdfReader::box() const {
 
 UrdfFoot UrdfReader::foot(const std::string& link_name, const Vec& down) const {
   const Placed link_axes{in_base(link(link_name)).turn, {}};
-  std::optional<UrdfFoot> lowest;
+  std::optional<UrdfFoot> lowest, sole;
   std::string others;
+  const auto reach = [&](const UrdfFoot& s) { return dot(s.centre_m, down) + s.radius_m; };
   for (const auto& collision : link(link_name).collision_array) {
     if (!collision->geometry) continue;
     const Placed in_base = link_axes * placed(collision->origin);
@@ -246,18 +270,20 @@ UrdfFoot UrdfReader::foot(const std::string& link_name, const Vec& down) const {
         break;
       }
       case urdf::Geometry::BOX:
-        others += ", a box";
+        make_sole(static_cast<const urdf::Box&>(*collision->geometry).dim, in_base.turn, down,
+                  shape);
+        if (shape.radius_m > 0.0 && (!sole || reach(shape) > reach(*sole))) sole = shape;
         continue;
       default:
         others += ", a mesh";
         continue;
     }
-    const auto reach = [&](const UrdfFoot& s) { return dot(s.centre_m, down) + s.radius_m; };
     if (shape.radius_m > 0.0 && (!lowest || reach(shape) > reach(*lowest))) lowest = shape;
   }
   if (lowest) return *lowest;
+  if (sole) return *sole;
   fail(
-      fmt::format("link '{}': found {}, expected a collision sphere or a cylinder along y, or "
+      fmt::format("link '{}': found {}, expected a collision sphere, cylinder along y or box, or "
                   "collision.foot_radius_m in the robot file",
                   link_name, others.empty() ? "no collision shape" : others.substr(2)));
 }

@@ -20,12 +20,15 @@ struct Placed {
   Vec3<double> place_m;
 };
 
-/// A ball, or a tyre that rolls forward.
+/// A ball, a tyre that rolls forward, or the sole that a box is. Vectors in base axes.
 struct UrdfFoot {
-  Vec3<double> centre_m{};   ///< from the link's origin, base axes
-  Vec3<double> in_link_m{};  ///< the same in the link's own axes
-  double radius_m = 0.0;
-  double width_m = 0.0;  ///< of a tyre, along y; 0: a ball
+  Vec3<double> centre_m{};      ///< from the link's origin
+  Vec3<double> in_link_m{};     ///< the same in the link's own axes
+  double radius_m = 0.0;        ///< of a sole half its thickness
+  double width_m = 0.0;         ///< 0: a ball
+  double length_m = 0.0;        ///< of a sole; 0: a ball or tyre
+  Vec3<double> along{1, 0, 0};  ///< its length
+  Vec3<double> across{0, 1, 0};
 };
 
 /// A box with edges along the base's axes, m.
@@ -59,7 +62,7 @@ class UrdfReader {
   /// counts with what it takes up along the base's axes.
   std::optional<UrdfBox> box() const;
   /// The collision shape of a foot that reaches furthest towards `down`: a sphere, or a cylinder
-  /// along y. Fails without one.
+  /// along y; where there is none of these, a box. Fails without one.
   UrdfFoot foot(const std::string& link_name, const Vec3<double>& down) const;
 
   /// All of it.

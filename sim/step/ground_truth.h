@@ -39,11 +39,13 @@ StateEstimate ground_truth(const RobotModel<double>& model, const RobotState<S>&
     const Vec3<double> foot = hip_to_base(leg, p, p.foot);
     truth.foot_height_m[l] =
         x.position.z - surface + static_cast<S>(up.x * foot.x + up.y * foot.y + up.z * foot.z);
-    const FootContact<S>& contact = state.feet[l];
-    const Ground<S>& ground = terrain.ground[static_cast<std::size_t>(contact.region)];
-    if (!(contact.active > S(0.0)) || ground.hard > S(0.0)) continue;
     const double depth = model.foot_radius_m - truth.foot_height_m[l] / stretch;
-    deepest = std::max(deepest, yielded_depth(ground, contact, static_cast<S>(depth)));
+    for (int patch = 0; patch < kMaxFootPatches; ++patch) {
+      const FootContact<S>& contact = state.contact(l, patch);
+      const Ground<S>& ground = terrain.ground[static_cast<std::size_t>(contact.region)];
+      if (!(contact.active > S(0.0)) || ground.hard > S(0.0)) continue;
+      deepest = std::max(deepest, yielded_depth(ground, contact, static_cast<S>(depth)));
+    }
   }
   truth.body_height_m = x.position.z - surface + deepest * stretch;
   return truth;

@@ -16,9 +16,14 @@
 
 namespace sandrunner::sim {
 
-// Contact points: feet, then knees (thigh), shanks, corners of the base.
+// Contact points: feet, or the first patch of each, then knees (thigh), shanks, corners of the
+// base.
 inline constexpr int kNumBaseCorners = 8;
 inline constexpr int kNumPoints = 3 * kNumLegs + kNumBaseCorners;
+/// Patches of feet beyond the first, patch by patch: points as well, behind the others.
+inline constexpr int kNumFurtherPatches = (kMaxFootPatches - 1) * kNumLegs;
+inline constexpr int kMaxPoints = kNumPoints + kNumFurtherPatches;
+static_assert(Footprints::kMost == kNumLegs + kNumFurtherPatches);
 
 /// All that one robot's step carries over to the next.
 template <typename S>
@@ -27,6 +32,26 @@ struct RobotState {
   std::array<FootContact<S>, kNumLegs> feet;
   std::array<std::array<S, 3>, kNumPoints> impulse{};  ///< of the last step: warm start, N s
   std::array<S, kNumJoints> stop_impulse{};            ///< signed: > 0 at the lower stop
+  /// Likewise, of feet with several patches.
+  std::array<FootContact<S>, kNumFurtherPatches> further_feet;
+  std::array<std::array<S, 3>, kNumFurtherPatches> further_impulse{};
+
+  FootContact<S>& contact(int leg, int patch) noexcept {
+    return patch == 0 ? feet[leg] : further_feet[(patch - 1) * kNumLegs + leg];
+  }
+  const FootContact<S>& contact(int leg, int patch) const noexcept {
+    return const_cast<RobotState&>(*this).contact(leg, patch);
+  }
+  std::array<S, 3>& impulse_of(int point) noexcept {
+    return point < kNumPoints ? impulse[point] : further_impulse[point - kNumPoints];
+  }
+  /// As if it had never touched the ground.
+  void forget_contacts() noexcept {
+    feet = {};
+    further_feet = {};
+    impulse = {};
+    further_impulse = {};
+  }
 };
 
 /// What sensors, statistics, rewards and pictures need to know of a step.
@@ -62,7 +87,7 @@ class RobotStepper {
             const Prints<S>& prints = {}) noexcept;
 
   /// The contact problem of the last step as solved, for tests.
-  const std::array<PointContact<S>, kNumPoints>& points() const noexcept { return points_; }
+  const std::array<PointContact<S>, kMaxPoints>& points() const noexcept { return points_; }
   int num_points() const noexcept { return num_points_; }
 
  private:
@@ -77,6 +102,14 @@ class RobotStepper {
     bool only_hard = false;    ///< ground that yields does not touch it
     int slot = 0;              ///< of its impulse in RobotState
   };
+  struct FootPatch {
+    FootForce<S> force;
+    S depth{};
+  };
+  /// Its index, patch by patch, from the slot of its point.
+  static constexpr int patch_of(int slot) noexcept {
+    return slot < kNumLegs ? slot : slot - kNumPoints + kNumLegs;
+  }
   using Columns = std::array<Vec3<S>, 3>;  // of a leg's Jacobian, body components
   /// Maps an impulse along e (body components) at r_base (from the base origin) to the base and the
   /// joints.
@@ -84,9 +117,15 @@ class RobotStepper {
                 std::array<S, 6>& w, std::array<S, 3>& j) noexcept;
   void fill_rows(const Vec3<S>& r_base, int leg, const Columns& columns, const Frame& frame,
                  PointContact<S>& c) noexcept;
+  Vec3<S> foot_in_hip(const RobotModel<S>& model, const FootProfile<S>& foot, int leg,
+                      int patch) const noexcept;
   void add_feet(const RobotModel<S>& model, const FootProfile<S>& foot, const Terrain<S>& terrain,
                 S dt, RobotState<S>& x, StepReport<S>& report) noexcept;
-  void couple_feet(const Terrain<S>& terrain, S dt, StepReport<S>& report) noexcept;
+  [[gnu::always_inline]] void add_foot(const RobotModel<S>& model, const FootProfile<S>& foot,
+                                       const Terrain<S>& terrain, S dt, int leg, int patch,
+                                       RobotState<S>& x, StepReport<S>& report) noexcept;
+  void couple_feet(const Terrain<S>& terrain, const FootProfile<S>& foot, S dt,
+                   StepReport<S>& report) noexcept;
   void add_body_points(const RobotModel<S>& model, const Terrain<S>& terrain, RobotState<S>& x,
                        StepReport<S>& report) noexcept;
   void add_hard_point(const RobotModel<S>& model, const Terrain<S>& terrain, const HardPoint& point,
@@ -97,17 +136,18 @@ class RobotStepper {
                  const Vec3<S>& r_base, const Vec3<S>& v_base, const Frame& frame,
                  FootMotion<S>& m) const noexcept;
 
+  S rate_{};  // steps per second
   Dynamics<S> dynamics_;
   Mat3<S> rotation_;  // body to world
   Vec3<S> velocity_;  // of the base origin, body components
   Motion<S> free_;    // velocities at the end of the step without contact
-  std::array<PointContact<S>, kNumPoints> points_;
-  std::array<int, kNumPoints> slots_{};
+  std::array<PointContact<S>, kMaxPoints> points_;
+  std::array<int, kMaxPoints> slots_{};
   int num_points_ = 0;
   std::array<StopRow<S>, kNumJoints> stops_;
   std::array<int, kNumJoints> stop_joints_{};
   int num_stops_ = 0;
-  std::array<FootForce<S>, kNumLegs> foot_force_;
+  std::array<FootPatch, static_cast<std::size_t>(kMaxFootPatches) * kNumLegs> patches_;
   Relief<S> relief_;
   Prints<S> prints_;
   Ground<S> mixed_ground_;  // of lanes that stand on different patches

@@ -86,10 +86,18 @@ void RobotStepper<S>::fill_rows(const Vec3<S>& r_base, int leg, const Columns& c
   c.g.zz = block(2, 2);
 }
 
+// Centre of the foot, or of a patch of it.
 template <typename S>
-void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>& foot,
-                               const Terrain<S>& terrain, S dt, RobotState<S>& x,
-                               StepReport<S>& report) noexcept {
+Vec3<S> RobotStepper<S>::foot_in_hip(const RobotModel<S>& model, const FootProfile<S>& foot,
+                                     int leg, int patch) const noexcept {
+  const LegPose<S>& pose = dynamics_.leg(leg);
+  return foot.patches == 1 ? pose.foot : patch_centre(model.legs[leg], pose, patch);
+}
+
+template <typename S>
+inline void RobotStepper<S>::add_foot(const RobotModel<S>& model, const FootProfile<S>& foot,
+                                      const Terrain<S>& terrain, S dt, int l, int patch,
+                                      RobotState<S>& x, StepReport<S>& report) noexcept {
   const S zero = S(0.0), one = S(1.0);
   const S rate = one / dt;
   for (int l = 0; l < kNumLegs; ++l) {
@@ -116,63 +124,63 @@ void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>&
     report.foot_centre[l] = centre;
     report.penetration[l] = penetration;
     report.heaped[l] = heaped;
-    const Columns columns = dynamics_.leg_jacobian(
-        model, l, pose.foot + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n));
-    Vec3<S> v_base = cross_add(x.rigid.angular_velocity, r_base, velocity_);
-    for (int j = 0; j < 3; ++j) v_base = mul_add(columns[j], x.rigid.qd[3 * l + j], v_base);
-    const Vec3<S> velocity = rotation_ * v_base;
     report.foot_velocity[l] = velocity;
-    const Vec3<S> point = x.rigid.position + rotation_ * r_base;
-    FootMotion<S> motion{point.x,    point.y,   penetration, -dot(frame.n, v_base),
-                         velocity.x, velocity.y};
-    const Mask<S> along = both(terrain.shape.uneven > zero, ground.hard == zero);
-    if (any(along)) {
-      lay_along(terrain.shape, along, x.rigid.position, r_base, v_base, frame, motion);
-    }
-    motion.pressed = max(-heaped, zero);
-    const FootForce<S>& force = foot_force_[l] = foot_force(ground, foot, motion, rate, contact);
-    if (!prints_.are_none()) {
-      prints_.follow(l, contact.active * ground.footprints, centre.x, centre.y,
-                     penetration - heaped, model.foot_radius_m, ground.repose);
-    }
     report.raw_force[l] = force.raw;
 
-    PointContact<S>& c = points_[num_points_];
-    slots_[num_points_] = l;
-    c.active = penetration >= zero;
-    if (!any(c.active)) {
-      x.impulse[l] = {zero, zero, zero};
-      continue;
-    }
-    c.hard = ground.hard == one;
-    fill_rows(r_base, l, columns, frame, c);
-    c.friction = ground.friction;
-    c.disc = force.friction_bound * dt;
-    c.impulse = {x.impulse[l][0], x.impulse[l][1],
-                 select(c.hard, x.impulse[l][2], force.normal * dt)};
-    ++num_points_;
+  PointContact<S>& c = points_[num_points_];
+  slots_[num_points_] = slot;
+  c.active = penetration >= zero;
+  std::array<S, 3>& impulse = x.impulse_of(slot);
+  if (!any(c.active)) {
+    impulse = {zero, zero, zero};
+    return;
   }
-  couple_feet(terrain, dt, report);
+  c.hard = ground.hard == one;
+  fill_rows(r_base, l, columns, frame, c);
+  c.friction = ground.friction;
+  c.disc = force.friction_bound * dt;
+  c.impulse = {impulse[0], impulse[1], select(c.hard, impulse[2], force.normal * dt)};
+  ++num_points_;
+}
+
+template <typename S>
+void RobotStepper<S>::add_feet(const RobotModel<S>& model, const FootProfile<S>& foot,
+                               const Terrain<S>& terrain, S dt, RobotState<S>& x,
+                               StepReport<S>& report) noexcept {
+  for (int l = 0; l < kNumLegs; ++l) {
+    for (int patch = 0; patch < foot.patches; ++patch) {
+      add_foot(model, foot, terrain, dt, l, patch, x, report);
+    }
+  }
+  couple_feet(terrain, foot, dt, report);
   if (!prints_.are_none()) prints_.keep_around(x.rigid.position.x, x.rigid.position.y);
 }
 
 // Adds what a foot bears of the pressure that all feet on coupled ground make. The points are those
 // of the feet.
 template <typename S>
-void RobotStepper<S>::couple_feet(const Terrain<S>& terrain, S dt, StepReport<S>& report) noexcept {
+void RobotStepper<S>::couple_feet(const Terrain<S>& terrain, const FootProfile<S>& foot, S dt,
+                                  StepReport<S>& report) noexcept {
   const S zero = S(0.0);
   if (!any(terrain.coupled > zero)) return;
   S pressure = zero;
-  for (int l = 0; l < kNumLegs; ++l) {
-    pressure = fma(foot_force_[l].coupling, max(report.penetration[l], zero), pressure);
+  for (int i = 0; i < foot.patches * kNumLegs; ++i) {
+    pressure = fma(patches_[i].force.coupling, max(patches_[i].depth, zero), pressure);
   }
   for (int i = 0; i < num_points_; ++i) {
     PointContact<S>& c = points_[i];
-    const int l = slots_[i];
-    const FootForce<S>& force = foot_force_[l];
+  } else {
+    const Mask<S> deeper = penetration > report.penetration[l];
+    report.penetration[l] = select(deeper, penetration, report.penetration[l]);
+    report.heaped[l] = select(deeper, heaped, report.heaped[l]);
+    report.foot_velocity[l] = select(deeper, velocity, report.foot_velocity[l]);
+    report.raw_force[l] = report.raw_force[l] + force.raw;
+  }
+    const FootForce<S>& force = patches_[patch_of(slots_[i])].force;
     const Mask<S> shares = both(c.active, force.coupling > zero);
     const S normal = max(fma(force.coupling, pressure, force.uncut), zero);
-    report.raw_force[l] = select(shares, normal, report.raw_force[l]);
+    S& raw = report.raw_force[slots_[i] % kNumLegs];
+    raw = select(shares, foot.patches == 1 ? normal : raw + (normal - force.raw), raw);
     c.disc = select(shares, c.friction * normal * dt, c.disc);
     c.impulse[2] = select(shares, normal * dt, c.impulse[2]);
   }
@@ -274,7 +282,6 @@ void RobotStepper<S>::add_body_points(const RobotModel<S>& model, const Terrain<
 template <typename S>
 void RobotStepper<S>::add_stops(const RobotModel<S>& model, S dt, const RobotState<S>& x) noexcept {
   const S zero = S(0.0);
-  const S rate = S(1.0) / dt;
   for (int joint = 0; joint < kNumJoints; ++joint) {
     const int leg = joint / 3, j = joint % 3;
     const S q = x.rigid.q[joint];
@@ -299,7 +306,7 @@ void RobotStepper<S>::add_stops(const RobotModel<S>& model, S dt, const RobotSta
     for (int i = 0; i < 6; ++i) g = fma(c.w[i], c.w[i], g);
     c.g = g;
     // May close the gap within the step; beyond the stop it only may not go further.
-    c.free = fma(max(gap, zero), rate, free);
+    c.free = fma(max(gap, zero), rate_, free);
     c.impulse = max(sign * x.stop_impulse[joint], zero);
   }
 }
@@ -347,19 +354,23 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   add_stops(model, dt, x);
 
   ImpulseSum<S> sum;
-  report.sweeps = solve_contacts<S, kNumPoints, kNumJoints>(
+  report.sweeps = solve_contacts<S, kMaxPoints, kNumJoints>(
       points_, num_points_, stops_, num_stops_, S(settings.tolerance_ns), settings.max_sweeps, sum);
-  const S rate = S(1.0) / dt;
   for (auto& force : report.foot_force) force = {zero, zero, zero};
   for (int i = 0; i < num_points_; ++i) {
-    x.impulse[slots_[i]] = points_[i].impulse;
-    if (slots_[i] < kNumLegs) {
-      for (int r = 0; r < 3; ++r) report.foot_force[slots_[i]][r] = points_[i].impulse[r] * rate;
+    const int slot = slots_[i];
+    x.impulse_of(slot) = points_[i].impulse;
+    if (slot >= kNumLegs && slot < kNumPoints) continue;
+    for (int r = 0; r < 3; ++r) {
+      const S force = points_[i].impulse[r] * rate_;
+      S& all = report.foot_force[slot % kNumLegs][r];
+      all = slot < kNumLegs ? force : all + force;
     }
   }
   x.stop_impulse.fill(zero);
   for (int i = 0; i < num_stops_; ++i) {
     const int joint = stop_joints_[i];
+  rate_ = S(1.0) / dt;
     // Not the product alone: it is -0 for a lane that has left its upper stop, where one robot
     // alone has +0.
     x.stop_impulse[joint] =
@@ -368,18 +379,21 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
 
   // Stroke resistance acts outside the contact problem, on the flank of the foot: a radius outwards
   // and up from the deepest point, which is level with the centre.
-  for (int l = 0; l < kNumLegs; ++l) {
-    const FootForce<S>& f = foot_force_[l];
+  for (int i = 0; i < foot.patches * kNumLegs; ++i) {
+    const FootForce<S>& f = patches_[i].force;
     if (!any(f.stroke > zero)) continue;
-    const Vec3<S>& centre = report.foot_centre[l];
+    const int l = i % kNumLegs;
+    const LegPose<S>& pose = dynamics_.leg(l);
+    const Vec3<S> centre_hip = foot_in_hip(model, foot, l, i / kNumLegs);
+    const Vec3<S> centre_base = hip_to_base(model.legs[l], pose, centre_hip);
+    const Vec3<S> centre = x.rigid.position + rotation_ * centre_base;
     const Frame frame =
         contact_frame(terrain.shape, surface_at(terrain.shape, relief_, centre.x, centre.y));
-    const LegPose<S>& pose = dynamics_.leg(l);
     const Vec3<S> outward =
         mul_add(frame.t1, f.direction_x, mul_add(frame.t2, f.direction_y, zero * frame.n));
-    const Vec3<S> arm =
-        mul_add(outward, model.foot_radius_m, hip_to_base(model.legs[l], pose, pose.foot));
-    const Vec3<S> arm_hip = pose.foot + unrotate_x(pose.s1, pose.c1, model.foot_radius_m * outward);
+    const Vec3<S> arm = mul_add(outward, model.foot_radius_m, centre_base);
+    const Vec3<S> arm_hip =
+        centre_hip + unrotate_x(pose.s1, pose.c1, model.foot_radius_m * outward);
     std::array<S, 6> w;
     std::array<S, 3> j;
     fill_row(outward, arm, l, dynamics_.leg_jacobian(model, l, arm_hip), w, j);
@@ -391,7 +405,7 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   // Velocities, then positions with the new velocities.
   Vec3<S> linear, angular;
   dynamics_.back_solve(sum.y, linear, angular);
-  report.base_acceleration = mul_add(linear, rate, acceleration.linear);
+  report.base_acceleration = mul_add(linear, rate_, acceleration.linear);
   x.rigid.velocity = x.rigid.velocity + rotation_ * mul_add(acceleration.linear, dt, linear);
   x.rigid.angular_velocity = free_.angular + angular;
   for (int l = 0; l < kNumLegs; ++l) {

@@ -14,6 +14,7 @@
 #include "sim/ground/ground.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/lanes/random.h"
+#include "sim/robot/embedded.h"
 #include "sim/robot/robot_model.h"
 #include "sim/simulator.h"
 #include "sim/step/robot_step.h"
@@ -216,6 +217,27 @@ inline std::string edited(std::string text, const std::string& near, const std::
   const auto at = text.find(from, start);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
+}
+
+/// Raibo's URDF with a box for each foot: 10 x 8 x 2 cm, level as the robot stands.
+inline std::string urdf_with_soles() {
+  std::string text(embedded_robot_file("raibo.urdf"));
+  const std::string tyre =
+      R"(<collision>
+      <origin xyz="0 0 0" rpy="1.570796327 0 0"/>
+      <geometry><cylinder radius="0.0295" length="0.025"/></geometry>)";
+  const std::string box =
+      R"(<collision><origin xyz="0 0 0" rpy="0 0.559836 0"/>
+      <geometry><box size="0.1 0.08 0.02"/></geometry>)";
+  for (int l = 0; l < kNumLegs; ++l) text = edited(text, "_FOOT\">", tyre, box);
+  return text;
+}
+/// Raibo on flat feet. `more`: lines of the robot file's [collision].
+inline Robot robot_on_soles(const std::string& more = "") {
+  const std::string map = edited(std::string(embedded_robot_file("raibo.toml")), "",
+                                 "[collision]\n", "[collision]\n" + more);
+  return parse_robot(edited(map, "", "nominal_height_m = 0.4725\n", ""), "soles.toml",
+                     urdf_with_soles(), "soles.urdf");
 }
 
 }  // namespace sandrunner::sim

@@ -78,9 +78,12 @@ py::array step_feet(const Feet& feet, py::array contact_array, const py::object&
 
 void bind_ground(py::module_& module) {
   py::class_<Feet>(module, "Feet")
-      .def(py::init<const std::string&, const std::vector<std::string>&, double, double>(),
+      .def(py::init([](const std::string& ground, const std::vector<std::string>& settings,
+                       double radius_m, double width_m, double length_m, int patches) {
+             return Feet(ground, settings, {radius_m, width_m, length_m, patches});
+           }),
            py::kw_only(), py::arg("ground"), py::arg("settings"), py::arg("foot_radius_m"),
-           py::arg("foot_width_m"))
+           py::arg("foot_width_m"), py::arg("foot_length_m"), py::arg("foot_patches"))
       .def("step", &step_feet);
   module.def("contacts", &contacts);
   module.def("terrain_preset_names", &sim::terrain_preset_names);

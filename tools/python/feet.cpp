@@ -19,7 +19,8 @@ FootForce force_of(const sim::Terrain<double>& terrain, const sim::FootProfile<d
                                        .v = -velocity[2],
                                        .vx = velocity[0],
                                        .vy = velocity[1]};
-  const sim::FootForce<double> f = sim::foot_force(ground, foot, motion, rate_hz, contact);
+  const sim::FootForce<double> f =
+      share_of(sim::foot_force(ground, foot, motion, rate_hz, contact), 1.0 / foot.patches);
   return {.normal = f.normal,
           .raw = f.raw,
           .friction_bound = f.friction_bound,
@@ -30,10 +31,15 @@ FootForce force_of(const sim::Terrain<double>& terrain, const sim::FootProfile<d
 }  // namespace
 
 Feet::Feet(const std::string& ground, const std::vector<std::string>& settings,
-           double foot_radius_m, double foot_width_m) {
+           const FootSize& size) {
   sim::RobotModel<double> model;
-  model.foot_radius_m = checked("foot_radius_m", foot_radius_m, 1e-3, 1.0);
-  model.foot_width_m = checked("foot_width_m", foot_width_m, 0.0, 1.0);
+  model.foot_radius_m = checked("foot_radius_m", size.radius_m, 1e-3, 1.0);
+  model.foot_width_m = checked("foot_width_m", size.width_m, 0.0, 1.0);
+  model.foot_length_m = checked("foot_length_m", size.length_m, 0.0, 1.0);
+  if (size.length_m > 0.0 && size.width_m == 0.0) {
+    throw InputError("foot_width_m: found 0, expected that of a sole of this length");
+  }
+  model.foot_patches = size.patches;
   const sim::TerrainDescription description = read_ground(ground, settings);
   for (const sim::TerrainPatch& patch : description.patches) {
     if (patch.ground.is_hard()) {

@@ -17,17 +17,21 @@ struct FootForce {
   double stroke_x = 0.0, stroke_y = 0.0;  ///< of the crater's wall, N
 };
 
+/// A foot: a ball; of a width, a tyre that lies on its side; of a length too, a flat sole.
+struct FootSize {
+  double radius_m, width_m, length_m;
+  int patches;  ///< that bear equal shares
+};
+
 /// The contact law of one kind of foot, for a simulator that is not ours.
 class Feet {
  public:
-  /// `ground`: a preset or terrain file; `settings`: PATH=VALUE of its table. A width of 0 is a
-  /// ball. Throws InputError, also for hard ground, springs that couple the feet of a robot,
-  /// and ground that is not level.
-  Feet(const std::string& ground, const std::vector<std::string>& settings, double foot_radius_m,
-       double foot_width_m);
+  /// `ground`: a preset or terrain file; `settings`: PATH=VALUE of its table. Throws InputError,
+  /// also for hard ground, springs that couple the feet of a robot, and ground that is not level.
+  Feet(const std::string& ground, const std::vector<std::string>& settings, const FootSize& size);
 
-  /// One time step of `count` feet, whose deepest points are at `position` (m) and move with
-  /// `velocity` (m/s), three numbers each.
+  /// One time step of `count` feet or patches of feet, whose deepest points are at `position` (m)
+  /// and move with `velocity` (m/s), three numbers each.
   void step(std::size_t count, const double* position, const double* velocity, double step_s,
             sim::FootContact<double>* contacts, FootForce* forces) const noexcept;
 

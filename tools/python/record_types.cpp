@@ -22,6 +22,7 @@ py::dtype leg_type() {
       .add("hfe", offsetof(L, hfe), 3)
       .add("kfe", offsetof(L, kfe), 3)
       .add("foot", offsetof(L, foot), 3)
+      .add_table("patch", offsetof(L, patch), sim::kMaxFootPatches, 3)
       .add_struct("hip", offsetof(L, hip), body)
       .add_struct("thigh", offsetof(L, thigh), body)
       .add_struct("shank", offsetof(L, shank), body)
@@ -44,6 +45,9 @@ py::dtype state_type() {
       .add_struct("contacts", offsetof(T, feet), contact_type<float>(), kNumLegs)
       .add_table("impulse", offsetof(T, impulse), sim::kNumPoints, 3)
       .add("stop_impulse", offsetof(T, stop_impulse), kNumJoints)
+      .add_struct("further_contacts", offsetof(T, further_feet), contact_type<float>(),
+                  sim::kNumFurtherPatches)
+      .add_table("further_impulse", offsetof(T, further_impulse), sim::kNumFurtherPatches, 3)
       .dtype();
 }
 
@@ -60,6 +64,8 @@ py::dtype model_type() {
       .add("speed_limit_radps", offsetof(M, speed_limit_radps), kNumJoints)
       .add("foot_radius_m", offsetof(M, foot_radius_m))
       .add("foot_width_m", offsetof(M, foot_width_m))
+      .add("foot_length_m", offsetof(M, foot_length_m))
+      .add("foot_patches", offsetof(M, foot_patches))
       .add("knee_radius_m", offsetof(M, knee_radius_m))
       .add("shank_radius_m", offsetof(M, shank_radius_m))
       .add("base_box_centre_m", offsetof(M, base_box_centre_m), 3)

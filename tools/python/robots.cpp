@@ -78,6 +78,10 @@ void require_model(int robot, const sim::RobotModel<float>& m) {
   }
   require_least("model", robot, "foot_radius_m", m.foot_radius_m, kLeast);
   require_least("model", robot, "foot_width_m", m.foot_width_m, 0.0);
+  require_least("model", robot, "foot_length_m", m.foot_length_m, 0.0);
+  if (m.foot_patches != 1.0f && m.foot_patches != 2.0f && m.foot_patches != 4.0f) {
+    fail("model", fmt::format("foot_patches {}", m.foot_patches), robot, "that of its robot");
+  }
   require_least("model", robot, "knee_radius_m", m.knee_radius_m, 0.0);
   require_least("model", robot, "shank_radius_m", m.shank_radius_m, 0.0);
   const auto& half = m.base_box_half_m;
@@ -154,6 +158,7 @@ void Robots::set_ground(const std::string& ground, const std::vector<std::string
     batch_.set_footprints(r, prints.get());
     auto& state = states_[static_cast<std::size_t>(r)];
     state.feet = {};
+    state.further_feet = {};
     batch_.set_state(r, state);
   }
 }
@@ -161,13 +166,13 @@ void Robots::set_ground(const std::string& ground, const std::vector<std::string
 void Robots::set_state(int robot, const sim::RobotState<float>& state) {
   require_robot(robot);
   require_finite("state", robot, state);
-  for (const auto& foot : state.feet) {
-    if (foot.region >= 0.0f && foot.region < float(sim::kMaxRegions) &&
-        foot.region == std::floor(foot.region)) {
+  for (int i = 0; i < sim::kMaxFootPatches * kNumLegs; ++i) {
+    const float region = state.contact(i % kNumLegs, i / kNumLegs).region;
+    if (region >= 0.0f && region < float(sim::kMaxRegions) && region == std::floor(region)) {
       continue;
     }
     throw InputError(fmt::format("state: found contacts.region = {} at robot {}, expected 0 to {}",
-                                 foot.region, robot, sim::kMaxRegions - 1));
+                                 region, robot, sim::kMaxRegions - 1));
   }
   const auto& o = state.rigid.orientation;
   const float length = std::sqrt(o.w * o.w + o.x * o.x + o.y * o.y + o.z * o.z);

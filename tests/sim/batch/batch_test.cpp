@@ -34,9 +34,15 @@ const Robot& raibo() {
   static const Robot robot = load_raibo();
   return robot;
 }
+const Robot& soles() {
+  static const Robot robot = robot_on_soles();
+  return robot;
+}
+FootProfile<double> foot_of(const Robot& robot) {
+  return make_foot_profile(one_patch(ground_of_kind(GroundKind::kGranular)), robot.model);
+}
 const FootProfile<double>& foot() {
-  static const FootProfile<double> profile =
-      make_foot_profile(one_patch(ground_of_kind(GroundKind::kGranular)), raibo().model);
+  static const FootProfile<double> profile = foot_of(raibo());
   return profile;
 }
 
@@ -73,7 +79,7 @@ ShapeParameters random_shape(Draw& draw, Kind kind) {
   return s;
 }
 
-Terrain<float> random_terrain(Draw& draw, Kind kind) {
+Terrain<float> random_terrain(Draw& draw, Kind kind, const Robot& robot) {
   const bool patches = kind == kPatches || kind == kUnevenPatches;
   TerrainDescription t =
       one_patch(random_ground(draw, patches ? kSand : kind), random_shape(draw, kind));
@@ -85,11 +91,11 @@ Terrain<float> random_terrain(Draw& draw, Kind kind) {
       t.patches.push_back({from_x_m, random_ground(draw, next)});
     }
   }
-  return convert_terrain<float>(make_terrain(t, foot(), raibo().model));
+  return convert_terrain<float>(make_terrain(t, foot_of(robot), robot.model));
 }
 
-RobotModel<float> random_model(Draw& draw) {
-  RobotModel<double> m = raibo().model;
+RobotModel<float> random_model(Draw& draw, const Robot& robot) {
+  RobotModel<double> m = robot.model;
   const auto scale = [&](Body<double>& body) {
     const double f = draw(0.8, 1.2);
     body.mass *= f;
@@ -125,12 +131,14 @@ RobotState<float> random_start(Draw& draw) {
 
 /// What happens to one robot: all of it follows from its number.
 struct Story {
-  explicit Story(int number) : draw(static_cast<std::uint64_t>(number) + 1) {
+  explicit Story(int number, const Robot& robot = raibo())
+      : draw(static_cast<std::uint64_t>(number) + 1) {
     kind = static_cast<Kind>(number % kNumKinds);
-    model = random_model(draw);
-    terrain = random_terrain(draw, kind);
+    model = random_model(draw, robot);
+    terrain = random_terrain(draw, kind, robot);
     start = random_start(draw);
-    later_terrain = random_terrain(draw, static_cast<Kind>((number / kNumKinds) % kNumKinds));
+    later_terrain =
+        random_terrain(draw, static_cast<Kind>((number / kNumKinds) % kNumKinds), robot);
     terrain_changes = static_cast<int>(draw(5.0, 45.0));
     reset = static_cast<int>(draw(5.0, 45.0));
     rate_hz = draw(1.5, 3.0);
@@ -186,11 +194,12 @@ struct Story {
 using Hashes = std::vector<std::uint64_t>;
 
 /// Robot `order[i]` at place i, the packs dealt to the threads one after the other.
-Hashes run(const std::vector<int>& order, BatchWidth width, int threads = 1) {
+Hashes run(const std::vector<int>& order, BatchWidth width, int threads = 1,
+           const Robot& robot = raibo()) {
   flush_denormals_to_zero();
-  Batch batch(static_cast<int>(order.size()), foot(), {}, width);
+  Batch batch(static_cast<int>(order.size()), foot_of(robot), {}, width);
   std::vector<Story> stories;
-  for (const int number : order) stories.emplace_back(number);
+  for (const int number : order) stories.emplace_back(number, robot);
   std::vector<StateHash> hashes(order.size());
   for (int period = 0; period < kPeriods; ++period) {
     for (int i = 0; i < batch.size(); ++i) stories[i].act(period, batch, i);
@@ -297,6 +306,14 @@ TEST(BatchTest, StoriesCoverEveryGroundKneesBaseAndStops) {
 TEST(BatchTest, SameBitsAtEveryWidth) {
   for (const BatchWidth width : pack_widths()) {
     EXPECT_EQ(different(run(in_order(), width)), kNone) << static_cast<int>(width);
+  }
+}
+
+TEST(BatchTest, SameBitsAtEveryWidthOnFlatFeet) {
+  const Hashes one = run(in_order(), BatchWidth::kOne, 1, soles());
+  EXPECT_NE(one, alone());
+  for (const BatchWidth width : pack_widths()) {
+    EXPECT_EQ(run(in_order(), width, 1, soles()), one) << static_cast<int>(width);
   }
 }
 

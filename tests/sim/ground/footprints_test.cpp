@@ -59,6 +59,16 @@ TEST(FootprintsTest, APrintIsAHollowWithARimNoSteeperThanTheAngleOfRepose) {
   EXPECT_GT(steepest, 0.9 * kRepose);
 }
 
+TEST(FootprintsTest, ASoleLeavesAFlatBottomAndABallAHollow) {
+  for (const bool flat : {true, false}) {
+    auto prints = std::make_unique<Footprints>();
+    prints->follow(0, {true, 0.01, 0.01, 0.01, 0.06, kRepose, flat});
+    prints->follow(0, {false, 0.01, 0.01, 0.0, 0.06, kRepose, flat});
+    EXPECT_NEAR(prints->height_at(0.01, 0.01), -0.01, 1e-6);
+    EXPECT_NEAR(prints->height_at(0.05, 0.01), flat ? -0.01 : 0.0, flat ? 1e-6 : 5e-3);
+  }
+}
+
 TEST(FootprintsTest, TheSquareGoesWithTheRobotAndForgetsWhatItLeaves) {
   auto prints = std::make_unique<Footprints>();
   leave_print(*prints, 0.01, 0.01, 0.05);

@@ -187,8 +187,8 @@ TEST(UrdfFramesTest, ACoverNextToABallIsNoTyre) {
   EXPECT_EQ(robot.model.foot_width_m, 0.0);
   const std::string alone = "<geometry><cylinder radius=\"0.02\" length=\"0.3\"/></geometry>";
   EXPECT_NE(refusal(foot_shape(alone))
-                .find("link 'LF_FOOT': found a cylinder along 0 0 1, expected a collision sphere "
-                      "or a cylinder along y, or collision.foot_radius_m"),
+                .find("link 'LF_FOOT': found a cylinder along 0 0 1, expected a collision sphere, "
+                      "cylinder along y or box, or collision.foot_radius_m"),
             std::string::npos);
 }
 

@@ -18,7 +18,7 @@ using std::numbers::pi;
 
 /// A contact problem as a step of the robot left it, solved.
 struct Problem {
-  std::array<PointContact<double>, kNumPoints> points;
+  std::array<PointContact<double>, kMaxPoints> points;
   int num_points = 0;
   int sweeps = 0;
   /// At most one point a leg and none on the base: then the impulses are unique, and comparable.
@@ -124,7 +124,7 @@ Violation violation(const Problem& p) {
 
 /// The paper's iteration (algorithm S1; constants of the authors' code): one projected gradient
 /// step per visit, started without impulses. Returns the number of sweeps, at most `max_sweeps`.
-int solve_by_projection(std::array<PointContact<double>, kNumPoints>& points, int num_points,
+int solve_by_projection(std::array<PointContact<double>, kMaxPoints>& points, int num_points,
                         double tolerance_ns, int max_sweeps) {
   ImpulseSum<double> sum;
   for (int i = 0; i < num_points; ++i) {
@@ -247,7 +247,7 @@ TEST(HardContactTest, OneFootStopsAtAnyVelocity) {
     for (double& v : c.free) v = draw(-1.0, 1.0);
     c.impulse = {0.0, 0.0, 0.0};
     ImpulseSum<double> sum;
-    solve_contacts<double, kNumPoints, kNumJoints>(one.points, 1, no_stops, 0, 1e-9, 1000, sum);
+    solve_contacts<double, kMaxPoints, kNumJoints>(one.points, 1, no_stops, 0, 1e-9, 1000, sum);
     const Violation v = violation(one);
     worst = std::max({worst, v.opening, v.sticking, v.sliding});
     EXPECT_LT(v.disc, 1e-12);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/robot/clearance.h"
 #include "tests/sim/support.h"
@@ -205,8 +206,13 @@ BaseImpulse impulse_on_base(const Bench& bench, const RigidState<double>& before
 }
 
 TEST(RobotStepTest, ReportedFootForcesAreWhatMovesTheRobot) {
-  for (const GroundKind kind : {GroundKind::kGranular, GroundKind::kRigid, GroundKind::kLinear}) {
-    Bench bench(ground_of_kind(kind));
+  const std::pair<GroundKind, Robot> cases[] = {{GroundKind::kGranular, load_raibo()},
+                                                {GroundKind::kRigid, load_raibo()},
+                                                {GroundKind::kLinear, load_raibo()},
+                                                {GroundKind::kRigid, robot_on_soles()},
+                                                {GroundKind::kLinear, robot_on_soles()}};
+  for (const auto& [kind, robot] : cases) {
+    Bench bench(ground_of_kind(kind), robot);
     bench.state.rigid.velocity = {2.0, 0.5, 0.0};
     Draw draw(4);
     int checked = 0, ploughing = 0;
@@ -232,17 +238,26 @@ TEST(RobotStepTest, ReportedFootForcesAreWhatMovesTheRobot) {
         // Solved contact force at the deepest point; the rest, the stroke resistance, level with
         // the foot's centre and a radius outwards.
         Vec3<double> contact{};
+        const double radius = bench.robot.model.foot_radius_m;
+        const LegModel<double>& leg = bench.robot.model.legs[l];
+        const std::array<double, kNumJoints>& q = before.rigid.q;
+        const LegPose<double> pose = leg_pose(leg, q[3 * l], q[3 * l + 1], q[3 * l + 2]);
+        int patch = 0;
         for (int k = 0; k < bench.stepper.num_points(); ++k) {
           const PointContact<double>& c = bench.stepper.points()[k];
-          if (c.leg == l)
-            contact = (1.0 / bench.settings.dt_s) *
-                      Vec3<double>{c.impulse[0], c.impulse[1], c.impulse[2]};
+          if (c.leg != l) continue;
+          const Vec3<double> part =
+              (1.0 / bench.settings.dt_s) * Vec3<double>{c.impulse[0], c.impulse[1], c.impulse[2]};
+          Vec3<double> place;  // of the next patch that is in the ground
+          do {
+            place = r * hip_to_base(leg, pose, patch_centre(leg, pose, patch++));
+          } while (before.rigid.position.z + place.z > radius);
+          angular = angular + cross(place - Vec3<double>{0, 0, radius}, part);
+          contact = contact + part;
         }
         const Vec3<double> stroke = whole - contact;
         const Vec3<double> centre = bench.report.foot_centre[l] - before.rigid.position;
-        const double radius = bench.robot.model.foot_radius_m,
-                     strength = std::hypot(stroke.x, stroke.y);
-        angular = angular + cross(centre - Vec3<double>{0, 0, radius}, contact);
+        const double strength = std::hypot(stroke.x, stroke.y);
         if (strength > 1e-9) {
           ++ploughing;
           angular = angular + cross(centre - (radius / strength) * stroke, stroke);
@@ -328,7 +343,7 @@ TEST(RobotStepTest, AThrownRobotLosesEnergyOnly) {
   // small beside 150 J.
   for (const GroundKind kind : {GroundKind::kGranular, GroundKind::kRigid}) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-      Bench bench(ground_of_kind(kind));
+      Bench bench(ground, robot);
       RigidState<double>& x = bench.state.rigid;
       Draw draw(seed);
       x.position.z += 0.1;

@@ -72,6 +72,22 @@ class GranularGround(unittest.TestCase):
             self.assertEqual(pair[1], single[0])
 
 
+class FlatSole(unittest.TestCase):
+    def test_its_patches_bear_what_it_bears_on_one_point(self):
+        sole = dict(foot_radius_m=0.01, foot_length_m=0.1, foot_width_m=0.08)
+        whole, patches = Ground(**sole), Ground(**sole, foot_patches=4)
+        alone, four = whole.contacts(1), patches.contacts(4)
+        for k in range(1, 50):
+            z = np.array([[0.0, 0.0, -2e-4 * k]])
+            speed = np.array([[0.0, 0.0, -0.8]])
+            expected = whole.step(alone, z, speed, 2.5e-4)["normal"][0]
+            each = patches.step(four, z.repeat(4, 0), speed.repeat(4, 0), 2.5e-4)["normal"]
+            np.testing.assert_allclose(each, expected / 4.0)
+        self.assertGreater(expected, 100.0)  # an area 40 times that of a ball of 1 cm
+        with self.assertRaisesRegex(ValueError, "foot_width_m: found 0, expected that of a sole"):
+            Ground(foot_length_m=0.1)
+
+
 class OtherGrounds(unittest.TestCase):
     def test_springs_push_as_they_are_stiff_and_never_pull(self):
         ground = Ground("memory-foam", {"terrain.kind": "linear", "terrain.stiffness_npm": 5000.0,

@@ -18,6 +18,8 @@ class Ground:
              (sim/ground/presets/README.md); it has to yield
     settings of the table [terrain]: {"terrain.sigma_flat_npm3": 0.7e6}
     foot_radius_m, foot_width_m: of a tyre that lies on its side; a width of 0: a ball
+    foot_length_m, foot_width_m: of a flat sole; a length of 0: a tyre or ball
+    foot_patches: of each foot, all of them "feet" below, each with an equal share of the force
     """
 
     def __init__(
@@ -27,12 +29,16 @@ class Ground:
         *,
         foot_radius_m: float = 0.0295,
         foot_width_m: float = 0.0,
+        foot_length_m: float = 0.0,
+        foot_patches: int = 1,
     ) -> None:
         self._native = _native.Feet(
             ground=_check.path("ground", ground),
             settings=_check.settings_lines(settings),
             foot_radius_m=_check.number("foot_radius_m", foot_radius_m),
             foot_width_m=_check.number("foot_width_m", foot_width_m),
+            foot_length_m=_check.number("foot_length_m", foot_length_m),
+            foot_patches=_check.integer("foot_patches", foot_patches, 1, 64),
         )
 
     @staticmethod

@@ -356,6 +356,7 @@ void Task::soft_reset(int env, Env& e, float x_m) {
     // What feet remember of mud means nothing to sand.
     sim::RobotState<float> state = batch_.state(env);
     state.feet = {};
+    state.further_feet = {};
     batch_.set_state(env, state);
   }
 }
