@@ -65,6 +65,7 @@ GranularLaw<double> derive_law(const GranularParameters& p, const FootProfile<do
   // 4 kHz.
   g.filter_step = p.filter ? 100.0 * 0.25e-3 : 0.0;
   g.friction_gated = p.gated_friction ? 1.0 : 0.0;
+  g.directed = p.direction ? 1.0 : 0.0;
   g.stroke_stiffness = p.stroke_resistance ? p.stroke_stiffness_npm : 0.0;
   g.stroke_damping = p.stroke_resistance ? p.stroke_damping_nspm : 0.0;
   g.stroke_depth_scaling = p.stroke_depth_scaling;

@@ -2,11 +2,12 @@
 // The law of granular ground: Aguilar & Goldman's developing cone as the paper generalises it
 // (section S11), its plastic memory, the moving average of the normal force (eq. S16), and the
 // horizontal stroke resistance (paper, eqs. 1 and 2). Beyond the paper: firmer ground below
-// (layer_growth()). Where the paper's text and its authors' code differ, the code is followed,
-// since the published network was trained with it: the filter's constants, ungated friction, depth
-// term z - r_f, stroke resistance that begins beyond the crater's radius and counts horizontal
-// travel as fresh ground (the paper's text: any overlap with the wall, and its greatest value so
-// far).
+// (layer_growth()), and on demand less force on what moves sideways or is turned away
+// (share_of_direction()). Where the paper's text and its authors' code differ, the code is
+// followed, since the published network was trained with it: the filter's constants, ungated
+// friction, depth term z - r_f, stroke resistance that begins beyond the crater's radius and counts
+// horizontal travel as fresh ground (the paper's text: any overlap with the wall, and its greatest
+// value so far).
 #pragma once
 
 #include <numbers>
@@ -50,7 +51,8 @@ struct GranularParameters {
   bool filter = true;   ///< moving average of the normal force (eq. S16)
   bool stroke_resistance = true;
   bool gated_friction =
-      false;  ///< friction only while the normal force acts (authors' code: always)
+      false;               ///< friction only while the normal force acts (authors' code: always)
+  bool direction = false;  ///< quasistatic normal force by direction and tilt
 
   using P = GranularParameters;
   static constexpr Setting<P> kSettings[] = {
@@ -97,6 +99,8 @@ struct GranularParameters {
        "Granular: resistance against a foot that moves sideways."},
       {"effects.gated_friction", &P::gated_friction,
        "Granular: friction only while the normal force acts."},
+      {"effects.direction", &P::direction,
+       "Granular: less normal force on a foot that moves sideways, and on a sole at an angle."},
   };
 };
 
@@ -118,6 +122,7 @@ struct GranularLaw {
   S crater_radius{};             ///< r_c, m
   S filter_step{};               ///< c_r, what tau_r gains at a reversal; 0: no filter
   S friction_gated{};            ///< 1: friction only while the normal force acts
+  S directed{};                  ///< 1: force by direction and tilt
   S stroke_stiffness{}, stroke_damping{}, stroke_depth_scaling{};  ///< k_h, b_h, beta_d
   S stroke_offset{};  ///< r_f/sin(gamma_c) - r_c - r_f/tan(gamma_c), m
   S inverse_tan_crater{};
@@ -171,6 +176,26 @@ inline S layer_growth(const GranularLaw<S>& g, S z) noexcept {
   return select(g.layer_depth > zero, growth, S(1.0));
 }
 
+/// The normal force on a foot over that on a level one that moves straight down, as resistive force
+/// theory has it for all dry sands alike: alpha_z(beta, gamma) of the generic coefficients (Li,
+/// Zhang & Goldman, Science 339, 1408), which is 1 there. gamma: angle of the motion from the
+/// horizontal; beta: of the sole, whose sign is that of its rise along the motion. Below 1 cm/s
+/// sideways the motion loses its direction, so that a foot at rest stands as without.
+template <typename S>
+inline S share_of_direction(const FootMotion<S>& m) noexcept {
+  const S one = S(1.0), slow = S(0.01);
+  const S along2 = fma(m.vx, m.vx, m.vy * m.vy), down2 = fma(m.v, m.v, slow * slow);
+  const S inverse = one / sqrt(down2 + along2);
+  const S sin_gamma = sqrt(down2) * inverse;
+  const S cos2_beta = one / fma(m.tilt_x, m.tilt_x, fma(m.tilt_y, m.tilt_y, one));
+  const S cos_2beta = fma(S(2.0), cos2_beta, -one);
+  const S rise = fma(m.tilt_x, m.vx, m.tilt_y * m.vy) * inverse;  // tan(beta) cos(gamma)
+  // A00 + A10 cos(2 beta) + B01 sin(gamma) + B11 sin(gamma + 2 beta) + B-11 sin(gamma - 2 beta)
+  const S straight = fma(S(0.212 + 0.055), cos_2beta, S(0.358));
+  const S sideways = S(2.0 * (0.212 - 0.055)) * (cos2_beta * rise);
+  return max(fma(S(0.169), cos_2beta, S(0.206)) + fma(straight, sin_gamma, sideways), S(0.0));
+}
+
 /// Quasistatic force at depth z >= 0 of a foot, N.
 template <typename S>
 inline S quasistatic_force(const GranularLaw<S>& g, const FootProfile<S>& foot, S z) noexcept {
@@ -186,7 +211,7 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   const S zero = S(0.0), one = S(1.0);
   const GranularLaw<S>& g = *this;
   FootContact<S>& c = contact;
-  const auto& [x, y, z, v, vx, vy, pressed] = motion;
+  const auto& [x, y, z, v, vx, vy, pressed, tilt_x, tilt_y] = motion;
   const Mask<S> touching = z >= zero;
   const Mask<S> touchdown = both(touching, c.active == zero);
   const S v_before = c.velocity;
@@ -244,11 +269,16 @@ inline FootForce<S> GranularLaw<S>::step(const FootProfile<S>& foot, S friction,
   // F = F_p + c_d (dm_a/dz) v^2 + m_a dv/dt  (S15, z down), gated, filtered (S16), never pulling.
   const S acceleration = (v - v_before) * rate_hz;
   const S mass = g.added_mass * max(cone.flat_integral - c.restart_flat, zero);
-  S raw = fma(g.drag * area, v * v, fma(mass, acceleration, quasistatic));
+  S resistance = quasistatic;
+  if (any(g.directed > zero)) {
+    resistance = select(g.directed > zero, quasistatic * share_of_direction(motion), quasistatic);
+  }
+  S raw = fma(g.drag * area, v * v, fma(mass, acceleration, resistance));
   // Over firmer ground the whole force at once, within the tolerance above the remembered depth,
   // would throw a light foot up: there it rises over the tolerance, as from the bottom of a print.
   if (any(g.layer_depth > zero)) {
-    const S within = (z - memory_before) + g.tolerance;
+    const S above_memory = (z - memory_before) + g.tolerance;
+    const S within = select(pressed > zero, min(above_memory, z), above_memory);
     const Mask<S> again = both(both(g.layer_depth > zero, g.memory > zero), within < g.tolerance);
     raw = select(again, raw * (within / g.tolerance), raw);
   }

@@ -22,10 +22,11 @@ namespace sandrunner::sim {
 
 /// Place and motion of a foot's deepest point. x, y: along the ground (Shape), on level ground in
 /// the world, m; z: its depth below the surface, along the normal, m; v = dz/dt and vx, vy in m/s;
-/// pressed: how deep that surface has been pressed below the undisturbed one before, m.
+/// pressed: how deep that surface has been pressed below the undisturbed one before, m; tilt_x,
+/// tilt_y: by how much a sole rises along x and y over the ground.
 template <typename S>
 struct FootMotion {
-  S x{}, y{}, z{}, v{}, vx{}, vy{}, pressed{};
+  S x{}, y{}, z{}, v{}, vx{}, vy{}, pressed{}, tilt_x{}, tilt_y{};
 };
 
 /// What a foot's contact remembers, in the words of the granular law; mud.h says what it keeps in
@@ -68,7 +69,6 @@ struct FootForce {
   // root of the pressure's stiffness; 0: none.
   S uncut{}, coupling{};
 };
-template <typename S>
 /// That of a patch of a foot, from the force on the whole of it.
 template <typename S>
 inline FootForce<S> share_of(FootForce<S> f, S share) noexcept {
@@ -77,6 +77,7 @@ inline FootForce<S> share_of(FootForce<S> f, S share) noexcept {
   }
   return f;
 }
+template <typename S>
 inline FootForce<S> select(const Mask<S>& m, const FootForce<S>& a,
                            const FootForce<S>& b) noexcept {
   return {select(m, a.normal, b.normal),

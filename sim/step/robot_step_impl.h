@@ -99,33 +99,72 @@ inline void RobotStepper<S>::add_foot(const RobotModel<S>& model, const FootProf
                                       const Terrain<S>& terrain, S dt, int l, int patch,
                                       RobotState<S>& x, StepReport<S>& report) noexcept {
   const S zero = S(0.0), one = S(1.0);
-  const S rate = one / dt;
-  for (int l = 0; l < kNumLegs; ++l) {
-    const LegPose<S>& pose = dynamics_.leg(l);
-    const Vec3<S> centre_base = hip_to_base(model.legs[l], pose, pose.foot);
-    const Vec3<S> centre = x.rigid.position + rotation_ * centre_base;
-    FootContact<S>& contact = x.feet[l];
-    // A contact keeps the patch on which it began.
-    contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
-    const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
-    const Surface<S> surface = surface_at(terrain.shape, relief_, centre.x, centre.y);
-    const Frame frame = contact_frame(terrain.shape, surface);
-    // Deepest point: a foot radius from the centre against the normal; depth measured along the
-    // normal.
-    const Vec3<S> r_base = mul_add(frame.n, -model.foot_radius_m, centre_base);
-    const S normal_z = dot(frame.n, rotation_.r2);
-    S penetration = model.foot_radius_m - (centre.z - surface.height) * normal_z;
-    S heaped = zero;  // of the present surface over the undisturbed one
-    if (!prints_.are_none()) {
-      heaped = select(ground.footprints > zero,
-                      prints_.height_under(l, contact.active, centre.x, centre.y), zero);
-      penetration = penetration + heaped;
-    }
+  const LegPose<S>& pose = dynamics_.leg(l);
+  const Vec3<S> centre_hip = foot_in_hip(model, foot, l, patch);
+  const Vec3<S> centre_base = hip_to_base(model.legs[l], pose, centre_hip);
+  const Vec3<S> centre = x.rigid.position + rotation_ * centre_base;
+  FootContact<S>& contact = x.contact(l, patch);
+  // A contact keeps the patch of ground on which it began.
+  contact.region = select(contact.active == zero, terrain.region_at(centre.x), contact.region);
+  const Ground<S>& ground = terrain.pick(contact.region, mixed_ground_);
+  const Surface<S> surface = surface_at(terrain.shape, relief_, centre.x, centre.y);
+  const Frame frame = contact_frame(terrain.shape, surface);
+  // Deepest point: a foot radius from the centre against the normal; depth measured along the
+  // normal.
+  const Vec3<S> r_base = mul_add(frame.n, -model.foot_radius_m, centre_base);
+  const S normal_z = dot(frame.n, rotation_.r2);
+  S penetration = model.foot_radius_m - (centre.z - surface.height) * normal_z;
+  S heaped = zero;  // of the present surface over the undisturbed one
+  if (!prints_.are_none()) {
+    heaped = select(ground.footprints > zero,
+                    prints_.height_under(patch * kNumLegs + l, contact.active, centre.x, centre.y),
+                    zero);
+    penetration = penetration + heaped;
+  }
+  const Columns columns = dynamics_.leg_jacobian(
+      model, l, centre_hip + unrotate_x(pose.s1, pose.c1, (-model.foot_radius_m) * frame.n));
+  Vec3<S> v_base = cross_add(x.rigid.angular_velocity, r_base, velocity_);
+  for (int j = 0; j < 3; ++j) v_base = mul_add(columns[j], x.rigid.qd[3 * l + j], v_base);
+  const Vec3<S> velocity = rotation_ * v_base;
+  const Vec3<S> point = x.rigid.position + rotation_ * r_base;
+  FootMotion<S> motion{point.x,    point.y,   penetration, -dot(frame.n, v_base),
+                       velocity.x, velocity.y};
+  const Mask<S> along = both(terrain.shape.uneven > zero, ground.hard == zero);
+  if (any(along)) {
+    lay_along(terrain.shape, along, x.rigid.position, r_base, v_base, frame, motion);
+  }
+  motion.pressed = max(-heaped, zero);
+  if (foot.patches == kMaxFootPatches && any(ground.directed > zero)) {
+    const std::array<Vec3<S>, kMaxFootPatches>& p = model.legs[l].patch;
+    const Vec3<S> up =
+        rotate_x(pose.s1, pose.c1, rotate_y(pose.s23, pose.c23, cross(p[0] - p[2], p[0] - p[1])));
+    const S inverse = one / max(dot(frame.n, up), S(0.05) * sqrt(dot(up, up)));
+    motion.tilt_x = -(dot(frame.t1, up) * inverse);
+    motion.tilt_y = -(dot(frame.t2, up) * inverse);
+  }
+  const int slot = patch == 0 ? l : kNumPoints + (patch - 1) * kNumLegs + l;
+  auto& [force, depth] = patches_[patch_of(slot)];
+  depth = penetration;
+  force = foot_force(ground, foot, motion, rate_, contact);
+  if (foot.patches > 1) force = share_of(force, S(1.0 / foot.patches));
+  if (!prints_.are_none()) {
+    prints_.follow(patch * kNumLegs + l, contact.active * ground.footprints, centre.x, centre.y,
+                   penetration - heaped, foot.radius * S(std::sqrt(1.0 / foot.patches)),
+                   foot.shape == FootShape::kDisc, ground.repose);
+  }
+  if (patch == 0) {
     report.foot_centre[l] = centre;
     report.penetration[l] = penetration;
     report.heaped[l] = heaped;
     report.foot_velocity[l] = velocity;
     report.raw_force[l] = force.raw;
+  } else {
+    const Mask<S> deeper = penetration > report.penetration[l];
+    report.penetration[l] = select(deeper, penetration, report.penetration[l]);
+    report.heaped[l] = select(deeper, heaped, report.heaped[l]);
+    report.foot_velocity[l] = select(deeper, velocity, report.foot_velocity[l]);
+    report.raw_force[l] = report.raw_force[l] + force.raw;
+  }
 
   PointContact<S>& c = points_[num_points_];
   slots_[num_points_] = slot;
@@ -169,13 +208,6 @@ void RobotStepper<S>::couple_feet(const Terrain<S>& terrain, const FootProfile<S
   }
   for (int i = 0; i < num_points_; ++i) {
     PointContact<S>& c = points_[i];
-  } else {
-    const Mask<S> deeper = penetration > report.penetration[l];
-    report.penetration[l] = select(deeper, penetration, report.penetration[l]);
-    report.heaped[l] = select(deeper, heaped, report.heaped[l]);
-    report.foot_velocity[l] = select(deeper, velocity, report.foot_velocity[l]);
-    report.raw_force[l] = report.raw_force[l] + force.raw;
-  }
     const FootForce<S>& force = patches_[patch_of(slots_[i])].force;
     const Mask<S> shares = both(c.active, force.coupling > zero);
     const S normal = max(fma(force.coupling, pressure, force.uncut), zero);
@@ -335,6 +367,7 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
                            StepReport<S>& report, const Relief<S>& relief,
                            const Prints<S>& prints) noexcept {
   const S dt = S(settings.dt_s), zero = S(0.0);
+  rate_ = S(1.0) / dt;
   relief_ = relief;
   prints_ = prints;
   rotation_ = rotation_matrix(x.rigid.orientation);
@@ -370,7 +403,6 @@ void RobotStepper<S>::step(const RobotModel<S>& model, const FootProfile<S>& foo
   x.stop_impulse.fill(zero);
   for (int i = 0; i < num_stops_; ++i) {
     const int joint = stop_joints_[i];
-  rate_ = S(1.0) / dt;
     // Not the product alone: it is -0 for a lane that has left its upper stop, where one robot
     // alone has +0.
     x.stop_impulse[joint] =

@@ -129,6 +129,25 @@ TEST(FlatFeetTest, AtAnAngleItBearsTheMomentOfTheWholeSole) {
   EXPECT_NEAR(moment_nm, expected_nm, 1e-6 * expected_nm);
 }
 
+TEST(FlatFeetTest, ASoleThatRisesAlongItsMotionIsBorneBetter) {
+  GroundParameters ground;
+  ground.direction = true;
+  ground.added_mass = ground.inertial_drag = false;
+  double force_n[2];
+  for (const bool toes_up : {false, true}) {
+    Bench bench(ground, robot_on_soles());
+    RigidState<double>& x = bench.state.rigid;
+    const double angle = toes_up ? -0.1 : 0.1;
+    for (int l = 0; l < kNumLegs; ++l) x.q[3 * l + 2] += angle;
+    put_at_depth(bench, 0.012);
+    x.velocity = {0.5, 0.0, -0.1};
+    bench.step({});
+    force_n[toes_up] = 0.0;
+    for (const double raw_n : bench.report.raw_force) force_n[toes_up] += raw_n;
+  }
+  EXPECT_GT(force_n[1], 1.05 * force_n[0]);
+}
+
 TEST(FlatFeetTest, StandsOnHardGroundWithoutSliding) {
   Bench bench(ground_of_kind(GroundKind::kRigid), robot_on_soles());
   const double weight_n = bench.robot.model.mass() * kGravity_mps2;
