@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The network's activations as branch-free scalar functions, so that a loop over an array
 // vectorises. Every element gets the same bits whatever the vector width and the compiler: each
-// operation is written out (std::fma where fused), and none comes from the mathematics library.
+// operation is written out (fma where fused), and none comes from the mathematics library.
 #pragma once
 
-#include <cmath>
+#include "rt/core/fma.h"
 
 namespace sandrunner {
 
@@ -32,15 +32,15 @@ inline float tanh_approximation(float x) noexcept {
   const float t = clip(x, 9.0f);
   const float s = t * t;
   float p = 1.3354639538451463e-08f;
-  p = std::fma(p, s, 2.060906413632663e-05f);
-  p = std::fma(p, s, 3.495586905501053e-03f);
-  p = std::fma(p, s, 1.3381024564813773e-01f);
-  p = std::fma(p, s, 1.0f);
+  p = fma(p, s, 2.060906413632663e-05f);
+  p = fma(p, s, 3.495586905501053e-03f);
+  p = fma(p, s, 1.3381024564813773e-01f);
+  p = fma(p, s, 1.0f);
   float q = 7.77654864917657e-07f;
-  q = std::fma(q, s, 3.285632906224987e-04f);
-  q = std::fma(q, s, 2.587697741289923e-02f);
-  q = std::fma(q, s, 4.671434015516987e-01f);
-  q = std::fma(q, s, 1.0f);
+  q = fma(q, s, 3.285632906224987e-04f);
+  q = fma(q, s, 2.587697741289923e-02f);
+  q = fma(q, s, 4.671434015516987e-01f);
+  q = fma(q, s, 1.0f);
   return clip(t * p / q, 1.0f);
 }
 
@@ -52,8 +52,6 @@ inline float elu(float x) noexcept {
 }
 
 /// Logistic function 1 / (1 + exp(-x)); absolute error at most 1.9e-7; NaN stays NaN.
-inline float sigmoid(float x) noexcept {
-  return std::fma(0.5f, tanh_approximation(0.5f * x), 0.5f);
-}
+inline float sigmoid(float x) noexcept { return fma(0.5f, tanh_approximation(0.5f * x), 0.5f); }
 
 }  // namespace sandrunner

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Eight floats in registers: one of AVX, two of NEON. Memory is aligned to 32 bytes.
+// Eight floats in registers: one of AVX, two of NEON or of WebAssembly. Memory is aligned to 32
+// bytes.
 #pragma once
 
 #ifdef __aarch64__
 #include <arm_neon.h>
+#elif defined(__wasm__)
+#include <wasm_simd128.h>
+
+#include "rt/core/fma.h"
 #else
 #include <immintrin.h>
 #endif
@@ -35,6 +40,31 @@ inline EightFloats either(EightFloats a, EightFloats b) noexcept {
 inline void store_eight(float* to, EightFloats a) noexcept {
   vst1q_f32(to, a.low);
   vst1q_f32(to + 4, a.high);
+}
+#elif defined(__wasm__)
+struct EightFloats {
+  v128_t low, high;
+};
+inline EightFloats load_eight(const float* from) noexcept {
+  return {wasm_v128_load(from), wasm_v128_load(from + 4)};
+}
+inline EightFloats eight_times(float x) noexcept {
+  return {wasm_f32x4_splat(x), wasm_f32x4_splat(x)};
+}
+inline EightFloats add(EightFloats a, EightFloats b) noexcept {
+  return {wasm_f32x4_add(a.low, b.low), wasm_f32x4_add(a.high, b.high)};
+}
+/// a b + c, fused.
+inline EightFloats multiply_add(EightFloats a, EightFloats b, EightFloats c) noexcept {
+  return {fma(a.low, b.low, c.low), fma(a.high, b.high, c.high)};
+}
+/// Their bits.
+inline EightFloats either(EightFloats a, EightFloats b) noexcept {
+  return {wasm_v128_or(a.low, b.low), wasm_v128_or(a.high, b.high)};
+}
+inline void store_eight(float* to, EightFloats a) noexcept {
+  wasm_v128_store(to, a.low);
+  wasm_v128_store(to + 4, a.high);
 }
 #else
 using EightFloats = __m256;

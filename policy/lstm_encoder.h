@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "policy/activations.h"
 #include "policy/network.h"
@@ -57,7 +56,7 @@ inline void LstmEncoder::step(const float* proprioception, NetworkState& state) 
     float* const c = state.c.data() + p * kUnits;
     for (int u = 0; u < kUnits; ++u) {
       const float in = sigmoid(gates[0][u]) * tanh_approximation(gates[2][u]);
-      c[u] = std::fma(sigmoid(gates[1][u]), c[u], in);
+      c[u] = fma(sigmoid(gates[1][u]), c[u], in);
       h[u] = sigmoid(gates[3][u]) * tanh_approximation(c[u]);
     }
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "policy/network.h"
 
-#include <fmt/format.h>
+#ifdef __linux__
 #include <sys/mman.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@
 #include "policy/lstm_encoder.h"
 #include "policy/packed_layer.h"
 #include "policy/tcn_encoder.h"
-#include "rt/base/errors.h"
 
 namespace sandrunner {
 namespace {
@@ -54,20 +54,12 @@ constexpr std::align_val_t kHugePageAlignment{kHugePageBytes};
 /// which fork() and a lock split a huge one, the kernel would join while the policy thread reads.
 void* allocate_huge_page() {
   void* const memory = ::operator new(kHugePageBytes, kHugePageAlignment);
+#ifdef __linux__
   madvise(memory, kHugePageBytes, MADV_HUGEPAGE);
   *static_cast<volatile char*>(memory) = 0;
   madvise(memory, kHugePageBytes, MADV_NOHUGEPAGE);
+#endif
   return memory;
-}
-
-void check_sizes(const NetworkParameters& parameters) {
-  NetworkParameters copy = parameters;
-  for (const NamedTensor& tensor : tensors_of(copy)) {
-    if (tensor.values->size() != tensor.size()) {
-      throw InputError(fmt::format("network: tensor '{}' has {} values, expected {}", tensor.name,
-                                   tensor.values->size(), tensor.size()));
-    }
-  }
 }
 
 struct alignas(64) StreamedWeights {
@@ -97,12 +89,6 @@ struct Network::PackedWeights {
 
 Network::Network(const NetworkParameters& parameters) {
   const Wiring& wiring = parameters.wiring;
-  if (wiring.sees_insight()) {
-    throw InputError(
-        fmt::format("network: found networks that see what no sensor measures ({}), expected none",
-                    wiring_text(wiring)));
-  }
-  check_sizes(parameters);
   static_assert(sizeof(PackedWeights) <= kHugePageBytes);
   const std::shared_ptr<PackedWeights> packed(
       new (allocate_huge_page()) PackedWeights(),  // value-initialised: padding is zero

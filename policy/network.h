@@ -72,8 +72,8 @@ struct NetworkOutput {
 /// is a fixed chain of fused multiply-adds. Copies share the weights, which never change.
 class Network {
  public:
-  /// Packs the parameters. Throws InputError if a tensor does not have its size, or for a wiring
-  /// that sees the insight.
+  /// Packs the parameters, for which require_runnable() holds, as for those of a file that
+  /// load_policy takes. It is not checked here.
   explicit Network(const NetworkParameters& parameters);
 
   /// One step. `observation` is raw, i.e. not normalised. Real-time safe. A NaN in the observation

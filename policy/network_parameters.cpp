@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "rt/base/errors.h"
+
 namespace sandrunner {
 
 std::array<int, 4> actor_sizes(const ActorInputs& sees) {
@@ -54,6 +56,21 @@ std::vector<NamedTensor> tensors_of(NetworkParameters& parameters) {
   add_layers("estimator", kEstimatorSizes, parameters.estimator);
   add_layers("actor", actor_sizes(parameters.wiring.actor_sees), parameters.actor);
   return tensors;
+}
+
+void require_runnable(const NetworkParameters& parameters) {
+  if (parameters.wiring.sees_insight()) {
+    throw InputError(
+        fmt::format("network: found networks that see what no sensor measures ({}), expected none",
+                    wiring_text(parameters.wiring)));
+  }
+  NetworkParameters copy = parameters;
+  for (const NamedTensor& tensor : tensors_of(copy)) {
+    if (tensor.values->size() != tensor.size()) {
+      throw InputError(fmt::format("network: tensor '{}' has {} values, expected {}", tensor.name,
+                                   tensor.values->size(), tensor.size()));
+    }
+  }
 }
 
 }  // namespace sandrunner

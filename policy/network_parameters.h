@@ -51,4 +51,8 @@ std::array<int, 4> actor_sizes(const ActorInputs& sees);
 /// live as long as `parameters`.
 std::vector<NamedTensor> tensors_of(NetworkParameters& parameters);
 
+/// Throws InputError unless a Network can be made of them: every tensor has its size, and the
+/// wiring sees no insight.
+void require_runnable(const NetworkParameters& parameters);
+
 }  // namespace sandrunner

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a network of others sees, as a list of terms. A new term is a row and a case of
-// observation_layout.cpp.
+// What a network of others sees, as a list of terms. A new term is cases in
+// observation_layout.cpp and a row in observation_text.cpp.
 #pragma once
 
 #include <array>

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "policy/perceptron.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <new>
 #include <utility>
 
 #include "policy/activations.h"
-#include "policy/names.h"
 #include "policy/packed_layer.h"
 
 namespace sandrunner {
@@ -24,11 +20,6 @@ constexpr int kPanelRows = 64;
 constexpr int kMostChains = 8;
 constexpr int kWidestInput =
     std::max(ObservationLayout::kMostInputs, PerceptronParameters::kWidest);
-
-constexpr Named<Activation> kActivations[] = {{Activation::kElu, "elu"},
-                                              {Activation::kRelu, "relu"},
-                                              {Activation::kLeakyRelu, "leaky_relu"},
-                                              {Activation::kTanh, "tanh"}};
 
 constexpr int padded(int count, int to) { return (count + to - 1) / to * to; }
 
@@ -70,58 +61,8 @@ struct AlignedDelete {
 
 }  // namespace
 
-Activation parse_activation(const std::string& where, const std::string& text) {
-  return value_named(kActivations, where, text);
-}
-
-std::string activation_text(Activation activation) { return name_of(kActivations, activation); }
-
 int PerceptronParameters::actor_inputs() const {
   return estimator.empty() ? observation.inputs() : observation.numbers() + estimator.back();
-}
-
-std::vector<NamedTensor> tensors_of(const std::string& where, PerceptronParameters& parameters) {
-  using P = PerceptronParameters;
-  std::vector<NamedTensor> tensors;
-  const auto add = [&](const char* part, int inputs, std::vector<int> widths,
-                       std::vector<DenseParameters>& layers) {
-    if (std::ssize(widths) > P::kMostHidden + 1) {
-      throw InputError(fmt::format("{}: {} has {} hidden layers, expected at most {}", where, part,
-                                   widths.size() - 1, P::kMostHidden));
-    }
-    layers.resize(widths.size());
-    for (std::size_t k = 0; k < widths.size(); ++k) {
-      if (widths[k] < 1 || widths[k] > P::kWidest) {
-        throw InputError(fmt::format("{}: {} has a layer of {} units, expected 1 to {}", where,
-                                     part, widths[k], P::kWidest));
-      }
-      add_layer(fmt::format("{}.{}", part, k), inputs, widths[k], layers[k], tensors);
-      inputs = widths[k];
-    }
-  };
-  const ObservationLayout& layout = parameters.observation;
-  if (layout.inputs() > ObservationLayout::kMostInputs) {
-    throw InputError(fmt::format("{}: {} observations of {} numbers, expected at most {} numbers",
-                                 where, layout.history, layout.numbers(),
-                                 ObservationLayout::kMostInputs));
-  }
-  if (!parameters.estimator.empty()) {
-    if (parameters.estimator.back() <= P::kVelocitySize) {
-      throw InputError(
-          fmt::format("{}: the estimator has {} outputs, expected a velocity (3) and "
-                      "a latent",
-                      where, parameters.estimator.back()));
-    }
-    if (layout.history > 1 && layout.order != HistoryOrder::kNewestFirst) {
-      throw InputError(fmt::format("{}: found an estimator and a history {}, expected newest_first",
-                                   where, history_order_text(layout.order)));
-    }
-    add("estimator", layout.inputs(), parameters.estimator, parameters.estimator_layers);
-  }
-  std::vector<int> widths = parameters.actor;
-  widths.push_back(kNumJoints);
-  add("actor", parameters.actor_inputs(), widths, parameters.actor_layers);
-  return tensors;
 }
 
 struct Perceptron::Packed {
@@ -246,7 +187,7 @@ void Perceptron::answer(const float* input, JointArray<float>& action,
     constexpr int kVelocity = PerceptronParameters::kVelocitySize;
     const int size = p.estimator.back().outputs;
     float square = 0.0f;
-    for (int i = kVelocity; i < size; ++i) square = std::fma(values[i], values[i], square);
+    for (int i = kVelocity; i < size; ++i) square = fma(values[i], values[i], square);
     const float norm = std::sqrt(square);
     const float divisor = norm < 1e-12f ? 1e-12f : norm;
     for (int i = 0; i < kVelocity; ++i) {

@@ -7,10 +7,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
 #include "policy/golden.h"
+#include "policy/names.h"
 #include "policy/spec_metadata.h"
 #include "policy/text.h"
 
@@ -28,6 +30,11 @@ constexpr const char* kEstimatorKey = "sandrunner.estimator_layers";
 constexpr const char* kVelocityKey = "sandrunner.estimator_velocity_scale";
 constexpr int kMostHistory = 100;
 constexpr double kLargest = 1e6;
+
+constexpr Named<Activation> kActivations[] = {{Activation::kElu, "elu"},
+                                              {Activation::kRelu, "relu"},
+                                              {Activation::kLeakyRelu, "leaky_relu"},
+                                              {Activation::kTanh, "tanh"}};
 
 /// Whole numbers with commas between; none: an empty text.
 std::vector<int> widths_of(Metadata& values, const char* key) {
@@ -97,6 +104,56 @@ std::vector<NamedTensor> all_tensors(const std::string& path, PerceptronFile& fi
 }
 
 }  // namespace
+
+Activation parse_activation(const std::string& where, const std::string& text) {
+  return value_named(kActivations, where, text);
+}
+
+std::string activation_text(Activation activation) { return name_of(kActivations, activation); }
+
+std::vector<NamedTensor> tensors_of(const std::string& where, PerceptronParameters& parameters) {
+  using P = PerceptronParameters;
+  std::vector<NamedTensor> tensors;
+  const auto add = [&](const char* part, int inputs, std::vector<int> widths,
+                       std::vector<DenseParameters>& layers) {
+    if (std::ssize(widths) > P::kMostHidden + 1) {
+      throw InputError(fmt::format("{}: {} has {} hidden layers, expected at most {}", where, part,
+                                   widths.size() - 1, P::kMostHidden));
+    }
+    layers.resize(widths.size());
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+      if (widths[k] < 1 || widths[k] > P::kWidest) {
+        throw InputError(fmt::format("{}: {} has a layer of {} units, expected 1 to {}", where,
+                                     part, widths[k], P::kWidest));
+      }
+      add_layer(fmt::format("{}.{}", part, k), inputs, widths[k], layers[k], tensors);
+      inputs = widths[k];
+    }
+  };
+  const ObservationLayout& layout = parameters.observation;
+  if (layout.inputs() > ObservationLayout::kMostInputs) {
+    throw InputError(fmt::format("{}: {} observations of {} numbers, expected at most {} numbers",
+                                 where, layout.history, layout.numbers(),
+                                 ObservationLayout::kMostInputs));
+  }
+  if (!parameters.estimator.empty()) {
+    if (parameters.estimator.back() <= P::kVelocitySize) {
+      throw InputError(
+          fmt::format("{}: the estimator has {} outputs, expected a velocity (3) and "
+                      "a latent",
+                      where, parameters.estimator.back()));
+    }
+    if (layout.history > 1 && layout.order != HistoryOrder::kNewestFirst) {
+      throw InputError(fmt::format("{}: found an estimator and a history {}, expected newest_first",
+                                   where, history_order_text(layout.order)));
+    }
+    add("estimator", layout.inputs(), parameters.estimator, parameters.estimator_layers);
+  }
+  std::vector<int> widths = parameters.actor;
+  widths.push_back(kNumJoints);
+  add("actor", parameters.actor_inputs(), widths, parameters.actor_layers);
+  return tensors;
+}
 
 bool is_perceptron(const TensorFile& content) { return content.metadata.contains(kNetworkKey); }
 

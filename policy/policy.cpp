@@ -5,24 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "policy/text.h"
-
 namespace sandrunner {
 
 bool has_one_scale(const PolicySpec& spec) {
   return std::ranges::all_of(spec.action_scale_rad,
                              [&](double scale) { return scale == spec.action_scale_rad[0]; });
-}
-
-void require_joints(const PolicySpec& spec, const RobotDescription& robot) {
-  for (int j = 0; j < kNumJoints; ++j) {
-    if (spec.joint_names[j] == robot.joint_names[j]) continue;
-    throw InputError(fmt::format(
-        "policy '{}' is for another robot: found joint {} '{}', expected '{}' of robot '{}'; train "
-        "one with sandrunner-train --robot FILE, or let it only stand with --policy none",
-        printable(spec.name), j + 1, printable(spec.joint_names[j]), robot.joint_names[j],
-        robot.name));
-  }
 }
 
 PolicyStep policy_step(const PolicySpec& spec, const std::array<float, kNumJoints>& action,

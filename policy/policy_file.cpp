@@ -145,6 +145,17 @@ std::map<std::string, std::string> metadata_of(const PolicyFile& file) {
 
 }  // namespace
 
+void require_joints(const PolicySpec& spec, const RobotDescription& robot) {
+  for (int j = 0; j < kNumJoints; ++j) {
+    if (spec.joint_names[j] == robot.joint_names[j]) continue;
+    throw InputError(fmt::format(
+        "policy '{}' is for another robot: found joint {} '{}', expected '{}' of robot '{}'; train "
+        "one with sandrunner-train --robot FILE, or let it only stand with --policy none",
+        printable(spec.name), j + 1, printable(spec.joint_names[j]), robot.joint_names[j],
+        robot.name));
+  }
+}
+
 PolicyFile read_policy_file(const std::string& path) {
   return decode(path, read_safetensors(path));
 }

@@ -19,7 +19,6 @@ inline constexpr double kCentripetalLimit_mps2 = 0.3 * kGravity_mps2;
 template <typename Scalar>
 Scalar shape_yaw_rate(const Scalar& wz_radps, const Scalar& vx_mps, const Scalar& vy_mps,
                       const Scalar& centripetal_limit_mps2) {
-  using std::fma;
   using std::max;
   using std::sqrt;
   const Scalar speed_mps = sqrt(fma(vx_mps, vx_mps, vy_mps * vy_mps));

@@ -2,6 +2,7 @@
 // Thresholds of the safety gate, and what no setting can put them beyond.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "rt/core/messages.h"
@@ -156,19 +157,14 @@ inline constexpr GateThreshold<std::uint64_t> kGateTickThresholds[] = {
      "Fault: this many policy steps with the same targets."},
 };
 
-/// The row of a threshold. Does not compile for one that has none.
+/// The row of a threshold. Does not compile for one that has none: its end is no row.
 consteval GateThreshold<double> gate_threshold(double GateConfig::* value) {
-  for (const GateThreshold<double>& threshold : kGateThresholds) {
-    if (threshold.value == value) return threshold;
-  }
-  throw "no such threshold";
+  return *std::ranges::find(kGateThresholds, value, &GateThreshold<double>::value);
 }
 consteval GateThreshold<double, LegJoints<double>> gate_threshold(
     LegJoints<double> GateConfig::* value) {
-  for (const auto& threshold : kGateJointThresholds) {
-    if (threshold.value == value) return threshold;
-  }
-  throw "no such threshold";
+  return *std::ranges::find(kGateJointThresholds, value,
+                            &GateThreshold<double, LegJoints<double>>::value);
 }
 
 /// `config` with no threshold above its ceiling.

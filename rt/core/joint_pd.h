@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/core/fma.h"
+
 namespace sandrunner {
 
 /// `value` held to [lower, upper]. `Scalar` is double, float or a pack with `min` and `max` found
@@ -26,7 +28,6 @@ Scalar joint_torque(const Scalar& position_rad, const Scalar& velocity_radps,
                     const Scalar& position_desired_rad, const Scalar& velocity_desired_radps,
                     const Scalar& kp_nmprad, const Scalar& kd_nmsprad,
                     const Scalar& feedforward_nm) {
-  using std::fma;
   return fma(kp_nmprad, position_desired_rad - position_rad,
              fma(kd_nmsprad, velocity_desired_radps - velocity_radps, feedforward_nm));
 }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -51,8 +50,6 @@ VelocityCommand checked(double vx, double vy, double wz, const std::string& wher
   return {vx, vy, wz};
 }
 
-double between(double a, double b, double share) { return a + share * (b - a); }
-
 }  // namespace
 
 CommandSource::CommandSource(const std::string& text) : text_(text) {
@@ -94,19 +91,6 @@ CommandSource::CommandSource(const std::string& text) : text_(text) {
     rows_.push_back({numbers[0], checked(numbers[1], numbers[2], numbers[3], where)});
   }
   if (rows_.empty()) throw InputError(fmt::format("{}: no rows, expected at least one", text));
-}
-
-VelocityCommand CommandSource::at(double time_s) const noexcept {
-  const auto next = std::upper_bound(rows_.begin(), rows_.end(), time_s,
-                                     [](double t, const Row& row) { return t < row.t_s; });
-  if (next == rows_.begin()) return rows_.front().command;
-  const Row& a = *(next - 1);
-  if (next == rows_.end()) return a.command;
-  const Row& b = *next;
-  const double share = (time_s - a.t_s) / (b.t_s - a.t_s);
-  return {between(a.command.vx_mps, b.command.vx_mps, share),
-          between(a.command.vy_mps, b.command.vy_mps, share),
-          between(a.command.wz_radps, b.command.wz_radps, share)};
 }
 
 }  // namespace sandrunner

@@ -2,18 +2,10 @@
 #include "rt/run/operators.h"
 
 namespace sandrunner {
-namespace {
-
-const char* no_walk(const ProcessConfig& config, bool has_policy) {
-  if (config.controller.gate.hanging) return "the robot hangs (hardware.hanging), it may not walk";
-  return has_policy ? nullptr : "no policy to walk with";
-}
-
-}  // namespace
 
 Operators::Operators(const Options& options, const ProcessConfig& config,
                      const CommandSource& command, bool has_policy)
-    : no_walk_(no_walk(config, has_policy)),
+    : no_walk_(no_walk(config.controller.gate, has_policy)),
       script_(command, {.walk_s = options.duration_s, .start_walking = options.start_walking},
               no_walk_ == nullptr) {
   if (!options.live) return;

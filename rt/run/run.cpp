@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rt/run/run.h"
 
+#include "rt/run/run_script.h"
+
 namespace sandrunner {
 namespace {
 
@@ -25,6 +27,17 @@ RunResult run(const Rig& rig, const RunRows& rows, const Loop& loop) {
 }
 
 }  // namespace
+
+void RunScript::report(RunResult& result) const {
+  result.survived = survived();
+  result.fall_reason = survived() ? "" : fall_reason_;
+  if (!survived()) {
+    result.fall_time_s = fall_time_s_;
+    result.fall_mode = fall_mode_;
+  }
+  result.interrupted = interrupted_;
+  result.walked_s = walked_s();
+}
 
 RunResult run_in_lockstep(const Rig& rig, const RunRows& rows) {
   return run(rig, rows,

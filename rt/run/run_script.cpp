@@ -51,17 +51,6 @@ OperatorVerdict RunScript::advance(const TickFacts& facts) noexcept {
   return verdict;
 }
 
-void RunScript::report(RunResult& result) const {
-  result.survived = survived();
-  result.fall_reason = survived() ? "" : fall_reason_;
-  if (!survived()) {
-    result.fall_time_s = fall_time_s_;
-    result.fall_mode = fall_mode_;
-  }
-  result.interrupted = interrupted_;
-  result.walked_s = walked_s();
-}
-
 AfterTick RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
   switch (phase_) {
     case Phase::kArm:

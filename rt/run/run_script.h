@@ -3,18 +3,26 @@
 
 #include <cstdint>
 
+#include "rt/core/gate_config.h"
 #include "rt/loop/operator_input.h"
 #include "rt/operator/gentle_end.h"
-#include "rt/report/run_result.h"
 #include "rt/run/command_source.h"
 
 namespace sandrunner {
+
+struct RunResult;
 
 /// What the run is to be.
 struct RunPlan {
   double walk_s = 20.0;
   bool start_walking = false;  ///< at once in Walk from the nominal pose; ends in Walk
 };
+
+/// Why a robot may not walk; null: it may.
+inline const char* no_walk(const GateConfig& gate, bool has_policy) noexcept {
+  if (gate.hanging) return "the robot hangs (hardware.hanging), it may not walk";
+  return has_policy ? nullptr : "no policy to walk with";
+}
 
 /// The operator of a run from the command line: stands the robot up, lets it settle and walk, stops
 /// it, waits, and lets it lie down, as after an interrupt; or just walks. After a fall, a fault or
@@ -27,7 +35,7 @@ class RunScript final : public OperatorInput {
   OperatorCommand command(std::uint64_t tick) noexcept override;
   OperatorVerdict advance(const TickFacts& facts) noexcept override;
 
-  /// Enters what became of the run under this script.
+  /// Enters what became of the run under this script. In run.cpp.
   void report(RunResult& result) const;
 
   bool survived() const noexcept { return fall_reason_ == nullptr; }

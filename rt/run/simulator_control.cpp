@@ -12,22 +12,10 @@
 
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
+#include "rt/run/offered_ground.h"
 
 namespace sandrunner {
 namespace {
-
-using Ground = sim::GroundParameters;
-
-// What pages may set of the ground.
-constexpr std::pair<const char*, double Ground::*> kOffered[] = {
-    {"sigma_flat_npm3", &Ground::sigma_flat_npm3},
-    {"sigma_cone_npm3", &Ground::sigma_cone_npm3},
-    {"stiffness_npm", &Ground::stiffness_npm},
-    {"friction", &Ground::friction},
-    {"drag", &Ground::drag},
-    {"packing", &Ground::packing},
-    {"strength_pa", &Ground::strength_pa},
-    {"suction", &Ground::suction}};
 
 GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& wanted) {
   const sim::GroundParameters& ground = terrain.patches.front().ground;
@@ -37,7 +25,7 @@ GroundNow describe(const sim::TerrainDescription& terrain, const WantedGround& w
   now.kind = sim::kind_name(ground.kind);
   now.granular = sim::Laws::kDrawnAsSand[static_cast<int>(ground.kind)];
   now.presets = sim::terrain_preset_names();
-  for (const auto& [key, member] : kOffered) now.values.emplace_back(key, ground.*member);
+  for (const auto& [key, member] : kOfferedGround) now.values.emplace_back(key, ground.*member);
   return now;
 }
 
@@ -53,7 +41,7 @@ sim::TerrainDescription read(const WantedGround& wanted, const std::string& sett
                                  fmt::join(sim::terrain_preset_names(), ", ")));
   }
   std::vector<std::string_view> keys;
-  for (const auto& [key, member] : kOffered) keys.emplace_back(key);
+  for (const auto& [key, member] : kOfferedGround) keys.emplace_back(key);
   for (const auto& [key, value] : wanted.set) {
     if (std::ranges::count(keys, key) == 0) {
       throw InputError(

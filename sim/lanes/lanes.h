@@ -10,6 +10,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "rt/core/fma.h"
+
 namespace sandrunner::sim {
 
 /// Type of a comparison of two S: bool for one robot, a lane mask for a pack.
@@ -20,8 +22,7 @@ struct MaskOf {
 template <typename S>
 using Mask = typename MaskOf<S>::type;
 
-inline double fma(double a, double b, double c) noexcept { return std::fma(a, b, c); }
-inline float fma(float a, float b, float c) noexcept { return std::fma(a, b, c); }
+using sandrunner::fma;
 inline double sqrt(double a) noexcept { return std::sqrt(a); }
 inline float sqrt(float a) noexcept { return std::sqrt(a); }
 inline double floor(double a) noexcept { return std::floor(a); }

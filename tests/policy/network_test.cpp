@@ -86,7 +86,8 @@ TEST(NetworkTest, AgreesWithPlainDoubleEvaluation) {
 }
 
 TEST(NetworkTest, RunsNoNetworkThatSeesTheInsight) {
-  EXPECT_THROW(Network(random_policy_file(1, {EncoderKind::kInsight, {}}).parameters), InputError);
+  EXPECT_THROW(require_runnable(random_policy_file(1, {EncoderKind::kInsight, {}}).parameters),
+               InputError);
 }
 
 // The first step and one after a reset alike; the 53rd step after an observation forgets it.
@@ -226,7 +227,7 @@ TEST(NetworkTest, RefusesParametersOfAnotherSize) {
   NetworkParameters parameters = random_policy_file().parameters;
   parameters.actor[1].weight.pop_back();
   try {
-    const Network network(parameters);
+    require_runnable(parameters);
     FAIL() << "no error";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "network: tensor 'actor.1.weight' has 32767 values, expected 32768");

@@ -25,6 +25,7 @@ std::string curve_page(const Progress& progress, const PolicyFile& file, double 
   ConfigTree tree;
   sim::add_terrain_layer(tree, kGround);
   const ProcessConfig config = read_process_config(tree, &file.spec, &robot);
+  require_runnable(file.parameters);
   PolicyRunner policy(Policy(file.spec, Network(file.parameters)));
   sim::Simulator simulator(config.robot, config.simulator);
   const CommandSource command(fmt::format("{},0,0", speed_mps));
