@@ -94,11 +94,14 @@ std::string view_hello(const RunScene& scene, const std::string& note) {
                                 {"key", row.key == 0 ? std::string() : std::string(1, row.key)},
                                 {"refused", refused}});
   }
-  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
-    text.replace(at, 1, "\\u003c");
+  return without_tags(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+std::string without_tags(std::string json) {
+  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) {
+    json.replace(at, 1, "\\u003c");
   }
-  return text;
+  return json;
 }
 
 }  // namespace sandrunner

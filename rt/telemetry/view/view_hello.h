@@ -28,4 +28,7 @@ std::span<const RowField> page_fields();
 /// characters that HTML could take for its own are escaped.
 std::string view_hello(const RunScene& scene, const std::string& note);
 
+/// The same JSON, with all characters that HTML could take for its own escaped.
+std::string without_tags(std::string json);
+
 }  // namespace sandrunner

@@ -30,14 +30,6 @@ void append_until(std::string& page, std::string_view& html, std::string_view li
   html.remove_prefix(at + line.size());
 }
 
-/// Appends an element with what `append_content` appends.
-template <typename AppendContent>
-void append_data(std::string& page, std::string_view id, const AppendContent& append_content) {
-  page += fmt::format("<script type=\"text/plain\" id=\"{}\">", id);
-  append_content();
-  page += "</script>\n";
-}
-
 std::string note_of(const RunRecord& record) {
   if (record.rows.empty()) return "Not one frame was seen of this run.";
   std::string text;
@@ -56,25 +48,36 @@ std::string note_of(const RunRecord& record) {
 std::string page_of(const RunRecord& record, std::string_view curve) {
   std::vector<Footprint> footprints;
   std::ranges::copy_if(record.footprints, std::back_inserter(footprints), &Footprint::shows);
+  std::vector<PageData> data = {{"hello", view_hello(record.scene, note_of(record))},
+                                {"frames", {}},
+                                {"footprints", {}},
+                                {"tiles", {}}};
+  append_rows(data[1].text, page_fields(), record.rows);
+  append_rows(data[2].text, kFootprintFields, footprints);
+  append_rows(data[3].text, kViewTileFields, view_tiles(record.scene, record.rows, kMostTiles));
+  if (!curve.empty()) append_gzip(data.emplace_back("curve-data").text, curve);
+  return page_with(data);
+}
+
+}  // namespace
+
+std::string page_with(std::span<const PageData> data) {
   std::string page;
   std::string_view html = embedded_page_file("page.html");
   append_until(page, html, "<link rel=\"stylesheet\" href=\"page.css\">");
   page += fmt::format("<style>\n{}</style>", embedded_page_file("page.css"));
   append_until(page, html, "<script src=\"page.js\"></script>");
-  append_data(page, "hello", [&] { page += view_hello(record.scene, note_of(record)); });
-  append_data(page, "frames", [&] { append_rows(page, page_fields(), record.rows); });
-  append_data(page, "footprints", [&] { append_rows(page, kFootprintFields, footprints); });
-  append_data(page, "tiles", [&] {
-    append_rows(page, kViewTileFields, view_tiles(record.scene, record.rows, kMostTiles));
-  });
-  if (!curve.empty()) append_data(page, "curve-data", [&] { append_gzip(page, curve); });
-  append_data(page, "program", [&] { append_base64(page, embedded_page_file("page.js.gz")); });
+  const auto add = [&](std::string_view id, std::string_view text) {
+    page += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, text);
+  };
+  for (const PageData& element : data) add(element.id, element.text);
+  std::string program;
+  append_base64(program, embedded_page_file("page.js.gz"));
+  add("program", program);
   page += fmt::format("<script>\n{}</script>", embedded_page_file("unpack.js"));
   page += html;
   return page;
 }
-
-}  // namespace
 
 std::string run_page(const RunRecord& record, std::size_t most_bytes, std::string_view curve) {
   std::string page = page_of(record, curve);

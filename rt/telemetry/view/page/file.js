@@ -4,7 +4,8 @@ import { Table } from './table.js';
 
 const text = (id) => document.getElementById(id).textContent;
 
-async function inflate(id) {
+/** Bytes of an element that holds them as gzip and base64. */
+export async function inflate(id) {
   const packed = Uint8Array.from(atob(text(id)), (c) => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
   return new Uint8Array(await new Response(stream).arrayBuffer());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The source of a page that this computer's sandrunner serves: the same as of a file, but it grows. It connects again
-// by itself, keeps what was seen, and begins anew if another run answers.
+// by itself, keeps what was seen, and begins anew if another run answers. In a sandbox the page serves itself.
 import { GrowingTable } from './growing_table.js';
 import { tellsTruth } from './moment.js';
 
@@ -17,10 +17,12 @@ function takeKey() {
 }
 
 export class Live {
-  /** @param {Function} begin gets {hello, frames, footprints, tiles, live} once there is something to draw */
-  constructor(begin) {
+  /** @param {Function} begin gets {hello, frames, footprints, tiles, live} once there is something to draw
+   * @param {Function} open makes a socket; null: to the server of the page */
+  constructor(begin, open = null) {
     this.begin = begin;
-    this.key = takeKey();
+    this.open = open ?? (() => new WebSocket(`ws://${location.host}/live`));
+    this.key = open ? '' : takeKey();
     this.state = { t_s: 0, ended: false, paused: false, rate: 1 };
     this.mayTouch = this.hasPace = this.takesCommands = false;
     this.onAnswer = this.onState = this.onRun = () => {};
@@ -39,7 +41,7 @@ export class Live {
   }
 
   #connect() {
-    const socket = this.socket = new WebSocket(`ws://${location.host}/live`);
+    const socket = this.socket = this.open();
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => this.say({ say: 'hello', key: this.key });
     socket.onmessage = ({ data }) => {
