@@ -31,13 +31,17 @@ packages=(
 )
 [[ ${1:-all} != @(test|checks) ]] || packages+=(chromium-headless-shell python3-venv spin)
 [[ ${1:-all} != checks ]] || packages+=(clang clang-format-19 clang-tidy libclang-rt-dev)
+codename=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
+# WebAssembly, for tools/sandbox. Debian 13 has no clang-16: there it is skipped.
+[[ ${1:-all} != checks || $codename != bookworm ]] ||
+  packages+=(clang-16 lld-16 wasi-libc libclang-rt-16-dev-wasm32 libc++-16-dev-wasm32)
 arm64=(
   libtomlplusplus-dev libfmt-dev liburdfdom-dev libconsole-bridge-dev libtinyxml2-dev cyclonedds-dev libssl-dev
   libzstd-dev zlib1g-dev libgtest-dev libgmock-dev libmujoco-dev
 )
 [[ ${1:-all} != arm64 ]] || packages=(g++-aarch64-linux-gnu qemu-user-static "${arm64[@]/%/:arm64}")
 # Named otherwise in Debian 13.
-[[ $(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release) != trixie ]] ||
+[[ $codename != trixie ]] ||
   packages=("${packages[@]/#libfastrtps-dev/libfastdds-dev}")
 
 fail() {

@@ -13,6 +13,7 @@ import { kColors } from './overlays.js';
 import { Player } from './player.js';
 import { Robot } from './robot.js';
 import { makeRobotTime } from './robot_time.js';
+import { hasSandbox, openSandbox } from './sandbox.js';
 import { Scene } from './scene.js';
 import { State } from './state.js';
 import { Surface } from './surface.js';
@@ -189,4 +190,9 @@ async function showFile() {
   }
 }
 
-if (hasRun()) showFile(); else new Live(show);
+async function showSandbox() {
+  const open = await openSandbox();
+  if (open) new Live(show, open);
+}
+
+if (hasRun()) showFile(); else if (hasSandbox()) showSandbox(); else new Live(show);
