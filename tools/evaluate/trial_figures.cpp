@@ -148,6 +148,18 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
   f.foot_height_rmse_m = std::sqrt(sum.estimate_foot2 / n);
 }
 
+// Whether in the first `periods` no joint was past a stop for as long as a policy step. Such a
+// stretch has its ticks in two periods; so many ticks that are not in a row count as well.
+bool TrialRecorder::stops_brief(std::size_t periods) const {
+  float before = 0.0f;
+  for (std::size_t i = 0; i < periods; ++i) {
+    const float now = periods_[i].past_stop;
+    if (before + now > 1.0f - 1e-3f) return false;
+    before = now;
+  }
+  return true;
+}
+
 void TrialRecorder::track_figures(const Trial& trial, const RobotFacts& facts,
                                   TrialFigures& f) const {
   // Time at which a distance was reached for the first time; the end of period i is the start of
@@ -161,14 +173,17 @@ void TrialRecorder::track_figures(const Trial& trial, const RobotFacts& facts,
     return kNotDefined;
   };
   const double begin_s = reached(trial.track_begin_m), end_s = reached(trial.track_end_m);
+  const bool begun = !std::isnan(begin_s);
+  const auto begin = begun ? static_cast<std::size_t>(begin_s / kStep_s) : periods_.size();
+  f.failed_before_track = (!begun && f.fell) || !stops_brief(begin);
   if (std::isnan(end_s) || end_s > trial.longest_s) return;
   f.track_done = true;
   f.track_speed_mps = (trial.track_end_m - trial.track_begin_m) / (end_s - begin_s);
-  const auto begin = static_cast<std::size_t>(begin_s / kStep_s);
   const auto end = std::min(static_cast<std::size_t>(end_s / kStep_s) + 1, periods_.size());
   f.track_limits_kept =
       std::all_of(periods_.begin(), periods_.begin() + static_cast<std::ptrdiff_t>(end),
                   [](const Period& p) { return p.past_stop == 0.0f; });
+  f.track_stops_brief = stops_brief(end);
   double power = 0.0;
   for (std::size_t i = begin; i < end; ++i) {
     power += periods_[i].power + periods_[i].torque2 / square(facts.motor_constant);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -24,8 +25,11 @@ struct TrialFigures {
   double disturbance_met = kNotDefined;
 
   // Track.
-  bool track_done = false;               ///< reached its end without a fall and in time
-  bool track_limits_kept = false;        ///< and until there no joint was past a stop at any tick
+  bool track_done = false;         ///< reached its end without a fall and in time
+  bool track_limits_kept = false;  ///< and until there no joint was past a stop at any tick
+  bool track_stops_brief = false;  ///< or none was for as long as a policy step
+  /// Fell before its start line, or a joint was past a stop there for as long as a policy step.
+  bool failed_before_track = false;
   double track_speed_mps = kNotDefined;  ///< length over time
   double track_cot = kNotDefined;        ///< (P_mech + P_heat)/(m g v), from start to end line
   double track_end_speed_mps =
@@ -99,6 +103,7 @@ class TrialRecorder {
     float power = 0, extension_power = 0, torque2 = 0, too_fast = 0, past_stop = 0;
   };
   void track_figures(const Trial& trial, const RobotFacts& facts, TrialFigures& f) const;
+  bool stops_brief(std::size_t periods) const;
   void steady_figures(const RobotFacts& facts, TrialFigures& f) const;
 
   std::vector<Period> periods_;

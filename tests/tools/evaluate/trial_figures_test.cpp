@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 namespace sandrunner::evaluate {
 namespace {
@@ -140,6 +141,37 @@ TEST_F(TrialFiguresTest, StopCountsUpToTheEndOfTheTrack) {
   }
   EXPECT_TRUE(figures().track_done);
   EXPECT_FALSE(figures().track_limits_kept);
+  EXPECT_TRUE(figures().track_stops_brief);
+}
+
+TEST_F(TrialFiguresTest, StopOfAPolicyStepIsNotBriefWhereverItBegins) {
+  for (const auto& [first, second, brief] :
+       {std::tuple{40, 0, false}, {15, 25, false}, {15, 24, true}}) {
+    TrialRecorder fresh;
+    recorder_ = fresh;
+    for (int i = 0; i < 650; ++i) {
+      sums_.ticks_past_stop = static_cast<float>(i == 500 ? first : i == 501 ? second : 0);
+      period(1.0f);
+    }
+    EXPECT_EQ(figures().track_stops_brief, brief) << first << " " << second;
+    EXPECT_FALSE(figures().failed_before_track);
+  }
+}
+
+TEST_F(TrialFiguresTest, FailureBeforeTheStartLineIsAFallOrAStopThere) {
+  for (int i = 0; i < 90; ++i) period(1.0f);
+  EXPECT_TRUE(figures(true).failed_before_track);
+  EXPECT_FALSE(figures(false).failed_before_track);  // only slow
+  for (int i = 90; i < 110; ++i) period(1.0f);
+  EXPECT_FALSE(figures(true).failed_before_track);
+  TrialRecorder fresh;
+  recorder_ = fresh;
+  for (int i = 0; i < 650; ++i) {
+    sums_.ticks_past_stop = i == 50 ? 40.0f : 0.0f;
+    period(1.0f);
+  }
+  EXPECT_TRUE(figures().track_done);
+  EXPECT_TRUE(figures().failed_before_track);
 }
 
 TEST_F(TrialFiguresTest, SlowRunDoesNotReachTheEnd) {

@@ -39,7 +39,8 @@ Measured run_grounds(Lab& lab, const Model& model) {
 Measured run_mattress(Lab& lab, const Model& model) {
   Measured measured;
   add_turns(lab, model, "air-mattress", 1.0, measured);
-  if (std::string_view(model.controller->key) == "ours") {
+  // What the paper prints of Ours at 2 rad/s.
+  if (std::string_view(model.controller->key) == "ours" || model.controller->is_published) {
     add_turns(lab, model, "air-mattress", 2.0, measured);
   }
   return measured;

@@ -132,11 +132,11 @@ RunGroup straight_group(const std::string& ground, double command, const std::ve
   const auto put = [&](const char* name, double value) { group.runs[name].push_back(value); };
   for (const Ran& run : runs) {
     const evaluate::TrialFigures& f = run.figures;
-    const bool success = f.track_done && f.track_limits_kept;
-    put("success", success);
     put("reached", f.track_done);
     put("alive", !f.fell);
-    put("limit_alone", f.track_done && !f.track_limits_kept);
+    put("limits_kept", f.track_limits_kept);
+    put("stops_brief", f.track_stops_brief);
+    put("failed_before_track", f.failed_before_track);
     put("speed_mps", f.track_speed_mps);
     put("end_speed_mps", f.track_end_speed_mps);
     put("cot", f.track_cot);

@@ -10,7 +10,7 @@ namespace sandrunner::study {
 
 /// Part of the key of each measurement in the cache. Raise it with every change of the simulator,
 /// an experiment or the format after which a measurement may be another.
-inline constexpr int kMeasurementVersion = 2;
+inline constexpr int kMeasurementVersion = 3;
 
 /// Measures each model in each chosen experiment. Each measurement is kept in
 /// OUT/cache/EXPERIMENT-NAME-SEED.json and taken from there if model, settings and

@@ -32,6 +32,7 @@ class Value:
     every controller."""
     value: float
     runs: np.ndarray = field(default_factory=lambda: np.array([]))
+    succeeded: bool = True  # False: it has no successful run, and `value` is the worst that there is
 
 
 def median(values):
@@ -69,11 +70,24 @@ def mean_value(groups, name, successes=False):
     return Value(mean(rows), mean(rows, 0))
 
 
+def success_rate(groups, name="success"):
+    """Mean over the groups, each of which counts alike, as the paper's five trials a command. A
+    group in which no run counts has none; each run's mean over the groups."""
+    rows = run_values(groups, name)
+    rates = [mean(row) if (~np.isnan(row)).any() else 0.0 for row in rows]
+    return Value(mean(rates), mean(rows, 0))
+
+
 def greatest_of_first_five(groups, name):
     """Greatest value of the successful runs among 0 to 4, as many as the paper has; each run's
     greatest."""
     runs = np.fmax.reduce(run_values(groups, name, True), axis=0, initial=NAN)
     return Value(np.fmax.reduce(runs[:5], initial=NAN), runs)
+
+
+def or_worst(value, worst):
+    """A seed's figure of its successful runs. Without one, a speed of 0 or a cost of infinity."""
+    return Value(worst, succeeded=False) if np.isnan(value.runs).all() else value
 
 
 def nearest_to(groups, speed_mps):
@@ -84,10 +98,10 @@ def nearest_to(groups, speed_mps):
 
 class Evidence:
     """measured[experiment][controller][seed]: groups of runs. `contact`: of sandrunner-bench
-    contact, or None."""
+    contact, or None. `competent`: controllers that need no proof of it."""
 
-    def __init__(self, measured=None, contact=None):
-        self.measured, self.contact = measured or {}, contact
+    def __init__(self, measured=None, contact=None, competent=()):
+        self.measured, self.contact, self.competent = measured or {}, contact, competent
 
     def seeds(self, experiment, controller):
         """Groups by seed; empty if it was not run."""
@@ -101,6 +115,8 @@ class Evidence:
     def is_competent(self, controller):
         """Whether it survives at least 15 of 16 runs at 1, 2 and 3 m/s on the ground of its own
         training."""
+        if controller in self.competent:
+            return True
         alive = [self.figure("fairness", controller, lambda g: mean_value(select(g, "own", "", v, v), "alive"))
                  for v in (1.0, 2.0, 3.0)]
         return all(median(figure) >= 15 / 16 for figure in alive)
@@ -139,10 +155,25 @@ def oracle_value(evidence, oracle, name, at=0):
     return evidence.figure("E8", oracle, lambda g: select(g, "training")[0].lists[name][at])
 
 
+def add_success(group):
+    """Success of a straight run as the paper counted it. A joint fails a run if it is past its stop
+    for as long as a policy step, so that a log would show it. On the beach a run that fails before
+    the start line has none: the paper's "were not recorded as a failure". `strict_success` counts
+    all runs, and a joint past its stop in any tick."""
+    runs = group.runs
+    fails_uncounted = (runs["failed_before_track"] == 1.0) & (group.ground == "beach")
+    runs["success"] = np.where(fails_uncounted, NAN, runs["reached"] * runs["stops_brief"])
+    runs["limit_alone"] = np.where(fails_uncounted, NAN, runs["reached"] * (1.0 - runs["stops_brief"]))
+    runs["strict_success"] = runs["reached"] * runs["limits_kept"]
+
+
 def read_group(raw):
     # null becomes nan
     arrays = [{name: np.array(values, float) for name, values in raw[kind].items()} for kind in ("runs", "lists")]
-    return Group(raw["ground"], raw["scenario"], raw["command"], *arrays, raw.get("packed", {}))
+    group = Group(raw["ground"], raw["scenario"], raw["command"], *arrays, raw.get("packed", {}))
+    if "stops_brief" in group.runs:
+        add_success(group)
+    return group
 
 
 def load(path):

@@ -78,13 +78,16 @@ TEST(RunFiguresTest, ATurnSucceedsByMoreThanHalfATurnTheCommandedWay) {
             (std::vector<double>{1.0, 0.0, 0.0, 0.0}));
 }
 
-TEST(RunFiguresTest, SuccessNeedsTheGoalAndTheLimits) {
+TEST(RunFiguresTest, AStraightRunHasWhatSuccessIsJudgedBy) {
   std::vector<Ran> runs(3);
   runs[0].figures.track_done = runs[0].figures.track_limits_kept = true;
-  runs[1].figures.track_done = true;
+  runs[1].figures.track_done = runs[1].figures.track_stops_brief = true;
+  runs[2].figures.failed_before_track = true;
   const RunGroup group = straight_group("beach", 1.0, runs);
-  EXPECT_EQ(group.values("success"), (std::vector<double>{1.0, 0.0, 0.0}));
-  EXPECT_EQ(group.values("limit_alone"), (std::vector<double>{0.0, 1.0, 0.0}));
+  EXPECT_EQ(group.values("reached"), (std::vector<double>{1.0, 1.0, 0.0}));
+  EXPECT_EQ(group.values("limits_kept"), (std::vector<double>{1.0, 0.0, 0.0}));
+  EXPECT_EQ(group.values("stops_brief"), (std::vector<double>{0.0, 1.0, 0.0}));
+  EXPECT_EQ(group.values("failed_before_track"), (std::vector<double>{0.0, 0.0, 1.0}));
 }
 
 }  // namespace

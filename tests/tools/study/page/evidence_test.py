@@ -11,7 +11,7 @@ import numpy as np
 import figures
 import hidden_state
 from evidence import (PARTS, Evidence, Group, greatest_of_first_five, grid_medians, load, mean_value, nearest_to,
-                      soft_and_stiff)
+                      or_worst, read_group, soft_and_stiff, success_rate)
 
 NAN = math.nan
 
@@ -36,6 +36,30 @@ class FiguresOfRuns(unittest.TestCase):
         self.assertTrue(math.isnan(value.runs[1]))
         self.assertEqual(mean_value(both, "success").value, 0.5)
         self.assertTrue(math.isnan(mean_value([], "success").value))
+
+    def test_success_is_what_a_log_shows_of_the_runs_that_begin_and_strictly_of_all(self):
+        # Kept; past a stop for a tick; for a step; before the line for a step; fell there; only slow.
+        runs = {"reached": [1, 1, 1, 1, 0, 0], "limits_kept": [1, 0, 0, 0, 0, 0], "stops_brief": [1, 1, 0, 0, 0, 0],
+                "failed_before_track": [0, 0, 0, 1, 1, 0]}
+        raw = {"scenario": "", "command": 1.0, "runs": runs, "lists": {}}
+        for ground, success, limit in (("beach", [1, 1, 0, NAN, NAN, 0], [0, 0, 1, NAN, NAN, 0]),
+                                       ("grass", [1, 1, 0, 0, 0, 0], [0, 0, 1, 1, 0, 0])):
+            group = read_group({**raw, "ground": ground})
+            np.testing.assert_array_equal(group.runs["success"], success)
+            np.testing.assert_array_equal(group.runs["limit_alone"], limit)
+            np.testing.assert_array_equal(group.runs["strict_success"], [1, 0, 0, 0, 0, 0])
+
+    def test_each_command_counts_alike_and_one_without_a_run_that_counts_is_a_failure(self):
+        half, all_of_two, none = (group_of(1.0, success, [1.0] * 4) for success in (
+            [1, 0, 1, 0], [1, 1, NAN, NAN], [NAN] * 4))
+        self.assertEqual(success_rate([half, all_of_two]).value, 0.75)
+        self.assertEqual(success_rate([half, none]).value, 0.25)
+
+    def test_without_a_success_a_figure_is_the_worst_that_there_is(self):
+        none = or_worst(mean_value([group_of(1.0, [0, 0], [1.0, 1.0])], "speed_mps", True), 0.0)
+        self.assertEqual((none.value, none.succeeded), (0.0, False))
+        one = or_worst(mean_value([group_of(1.0, [0, 1], [1.0, 2.0])], "speed_mps", True), 0.0)
+        self.assertEqual((one.value, one.succeeded), (2.0, True))
 
     def test_the_nearest_command_is_by_the_average_speed_of_its_successes(self):
         a, b = group_of(0.5, [1, 1], [0.9, 1.0]), group_of(1.0, [1, 1], [1.4, 1.4])
