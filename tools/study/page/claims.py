@@ -10,9 +10,10 @@ import rules_oracles  # noqa: F401
 from rules import RULES, Case
 from terms import LEAST_PAIRS
 
+NOT_COMPETENT = "not competently trained"
 CLAIMS_FILE = Path(__file__).resolve().parent.parent / "CLAIMS.md"
-AGREES, CONTRADICTS, CANNOT_TELL, NOT_TESTABLE = VERDICTS = (
-    "agrees", "contradicts", "can't tell", "not testable in simulation")
+AGREES, OTHER_SIZE, CONTRADICTS, CANNOT_TELL, NOT_TESTABLE = VERDICTS = (
+    "agrees", "same direction, other size", "contradicts", "can't tell", "not testable in simulation")
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,14 @@ def read_claims(markdown):
     return claims
 
 
+def read_repairs(markdown):
+    """The rows of its table of repaired rules: claim, defect, repair, the verdict of the old
+    rule."""
+    lines = markdown.partition("## Repaired rules")[2].partition("\n## ")[0].splitlines()
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines if line.startswith("|")]
+    return rows[2:]
+
+
 def was_run(rule, evidence):
     """Whether all that the rule needs was measured with enough runs, and whether a controller has
     one seed."""
@@ -74,10 +83,12 @@ def judge(claim, evidence):
     case = Case(evidence)
     agrees, contradicts, ours = rule.judge(case)
     if not all(evidence.is_competent(c) for c in rule.controllers):
-        return Judgement(reason="not competently trained", ours=ours)
-    if not enough or case.too_few and not agrees and not contradicts:
-        return Judgement(reason="too few runs", ours=ours)
-    return Judgement(AGREES if agrees else CONTRADICTS if contradicts else CANNOT_TELL, "", one_seed, ours)
+        return Judgement(reason=NOT_COMPETENT, ours=ours)
+    if not enough or case.too_few and not agrees and not contradicts and not case.same_direction:
+        return Judgement(reason=case.reason or "too few runs", ours=ours)
+    if not agrees and not contradicts and not case.same_direction:
+        return Judgement(CANNOT_TELL, case.reason, one_seed and not case.reason, ours)
+    return Judgement(AGREES if agrees else CONTRADICTS if contradicts else OTHER_SIZE, "", one_seed, ours)
 
 
 def judge_all(evidence):

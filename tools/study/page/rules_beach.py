@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The rules of CLAIMS.md, "Dry sand" and "All of it"."""
+import math
+
 import numpy as np
 
 import paper
-from controllers import BEACH, COMMANDS
-from evidence import NAN, Value, mean, mean_value, median, nearest_to, run_values
+from controllers import BEACH, COMMANDS, name_of
+from evidence import NAN, Value, mean, mean_value, median, nearest_to, or_worst, run_values
 from rules import rule
-from terms import (is_about, is_far_from, is_far_from_share, is_share, kendall_tau, percent, printed, values_of)
+from terms import (NO_SUCCESS, is_about, is_far_from, is_far_from_share, is_share, kendall_tau, number, percent,
+                   printed, values_of)
 
 SIX = " ".join(BEACH)
 OTHERS = BEACH[1:]
@@ -14,15 +17,16 @@ SLOWEST, FASTEST = 0.5, 4.0  # m/s, commands
 
 
 def failures(groups, name):
-    """A figure in the runs without success."""
-    return run_values(groups, name)[run_values(groups, "success") == 0.0]
+    """A figure in the runs without success, also those that do not count."""
+    return run_values(groups, name)[run_values(groups, "success") != 1.0]
 
 
 def at_one_mps(case, controller, name):
-    """A figure at the command whose average speed is nearest to 1 m/s."""
+    """A figure at the command whose average speed is nearest to 1 m/s; infinite without a successful
+    run."""
     def at_nearest(groups):
         nearest = nearest_to(groups, 1.0)
-        return mean_value([nearest], name, True) if nearest else Value(NAN)
+        return or_worst(mean_value([nearest], name, True), math.inf) if nearest else Value(math.inf, succeeded=False)
     return case.straight(controller, "beach", SLOWEST, FASTEST, at_nearest)
 
 
@@ -41,18 +45,20 @@ def sinking(case):
 @rule("8", "E1", "ours")
 def no_failure(case):
     share = case.success("ours")
-    return all(v >= 0.97 for v in values_of(share)), median(share) < 0.90, percent(share)
+    return all(v >= 0.97 for v in values_of(share)), median(share) < 0.90, case.success_text("ours")
 
 
 def success(case, controller):
-    """Against the success rate that the paper prints."""
+    """Against the success rate that the paper prints, all of which are below that of Ours."""
     share, x = case.success(controller), paper.BEACH[controller].success
-    return is_share(share, x), is_far_from_share(share, x), percent(share)
+    case.same_direction = median(case.success("ours")) - median(share) > 0.15
+    return (is_share(share, x), is_far_from_share(share, x) and not case.same_direction,
+            f"{case.success_text(controller)}; Ours {percent(case.success('ours'))}")
 
 
-rule("9", "E1", "pl-rigid")(lambda case: success(case, "pl-rigid"))
-rule("13", "E1", "pl-gm")(lambda case: success(case, "pl-gm"))
-rule("22", "E1", "env-rigid")(lambda case: success(case, "env-rigid"))
+rule("9", "E1", "ours pl-rigid")(lambda case: success(case, "pl-rigid"))
+rule("13", "E1", "ours pl-gm")(lambda case: success(case, "pl-gm"))
+rule("22", "E1", "ours env-rigid")(lambda case: success(case, "env-rigid"))
 
 
 @rule("10", "E1", "pl-rigid")
@@ -66,25 +72,27 @@ def pl_rigid_bell(case):
 @rule("12", "E1", "pl-rigid")
 def pl_rigid_hind_feet(case):
     ratio = case.straight("pl-rigid", "beach", 3.0, FASTEST, lambda g: mean(failures(g, "hind_over_front")))
+    if math.isnan(median(ratio)):
+        case.reason = "no failed run"
     return median(ratio) > 1.2, median(ratio) < 1.0, printed(ratio)
 
 
 @rule("14", "E1", "pl-gm")
 def pl_gm_slow(case):
     share = case.success("pl-gm", "beach", 0.5, 2.5)
-    return median(share) == 1.0, median(share) < 72 / 80, percent(share)
+    return median(share) == 1.0, median(share) < 72 / 80, case.success_text("pl-gm", "beach", 0.5, 2.5)
 
 
 @rule("15", "E1", SIX)
 def pl_gm_clearance(case):
     def iqr(controller):
-        return case.straight(controller, "beach", 1.0, 2.0,
-                             lambda g: mean_value([one for one in g if one.command != 1.5], "iqr_m", True))
+        return case.straight(controller, "beach", 1.0, 2.0, lambda g: or_worst(
+            mean_value([one for one in g if one.command != 1.5], "iqr_m", True), 0.0))
     mine, others = iqr("pl-gm"), [iqr(c) for c in BEACH if c != "pl-gm"]
     above = [case.above_by_share(mine, other, 0.2) for other in others]
     middle = median([median(other) for other in others])
     return (all(above), median(mine) < middle,
-            f"{printed(mine, 1e3, 1)} mm; median of the others {1e3 * middle:.1f}")
+            f"{printed(mine, 1e3, 1)} mm; median of the others {number(middle, 1e3, 1)}")
 
 
 @rule("16", "E1", "ours pl-gm")
@@ -96,7 +104,9 @@ def pl_gm_limits(case):
 @rule("17", "E1", SIX)
 def order_of_speeds(case):
     tau = kendall_tau([median(case.top_speed(c)) for c in paper.BEACH], [row.top_mps for row in paper.BEACH.values()])
-    return tau >= 0.6, tau <= 0.0, f"tau {tau:.2f}"
+    none = [name_of(c) for c in paper.BEACH if not median(case.top_speed(c))]
+    return (tau >= 0.6, tau <= 0.0,
+            f"tau {tau:.2f}" + (f"; {NO_SUCCESS}, so slowest: {', '.join(none)}" if none else ""))
 
 
 def faster_than(case, other, x):
@@ -116,7 +126,8 @@ def cheaper_than_pl(case):
                 a, b = (case.mean(c, "beach", v, v, "cot") for c in ("ours", other))
                 higher += median(a) > median(b)
                 lower.append(case.below_by_share(a, b, 0.1))
-    case.too_few = case.too_few or not lower
+    if not lower:
+        case.nothing_to_compare("ours", "pl-gm", "pl-rigid")
     return (bool(lower) and all(lower), 2 * higher > len(lower), f"higher in {higher} of {len(lower)} comparisons")
 
 
@@ -129,7 +140,7 @@ def peak_torques(case):
         middle = median([median(other) for other in others])
         below_all = below_all and all(below)
         above_median = above_median and median(ours) > middle
-        texts.append(f"{printed(ours, 1.0, 1)} N m; median of the others {middle:.1f}")
+        texts.append(f"{printed(ours, 1.0, 1)} N m; median of the others {number(middle, 1.0, 1)}")
     return below_all, above_median, "; ".join(texts)
 
 
@@ -140,6 +151,9 @@ def env_rigid_fails_fast(case):
         succeeded = run_values(groups, "success") == 1.0
         return mean(commands[~succeeded]) - mean(commands[succeeded])
     figure = case.straight("env-rigid", "beach", SLOWEST, FASTEST, difference)
+    share = case.success("env-rigid")
+    if math.isnan(median(figure)):
+        case.reason = NO_SUCCESS if any(v == 0.0 for v in values_of(share)) else "no failed run"
     return median(figure) >= 0.5, median(figure) < 0.0, printed(figure) + " m/s"
 
 
@@ -159,19 +173,21 @@ def quasistatic_completes(case):
 @rule("26", "E1", "env-quasistatic")
 def quasistatic_fails_fast(case):
     share = case.success("env-quasistatic", "beach", 3.5, FASTEST)
-    return median(share) <= 0.5, median(share) >= 0.9, percent(share)
+    return median(share) <= 0.5, median(share) >= 0.9, case.success_text("env-quasistatic", "beach", 3.5, FASTEST)
 
 
 @rule("27", "E1", "ours env-quasistatic")
 def quasistatic_cost(case):
-    theirs, ours = (case.mean(c, "beach", 1.0, 3.0, "cot") for c in ("env-quasistatic", "ours"))
-    ratio = median(theirs) / median(ours)
+    theirs, ours = (case.cost(c, "beach", 1.0, 3.0) for c in ("env-quasistatic", "ours"))
+    ratio = np.float64(median(theirs)) / median(ours)
+    case.needs_success(ratio)
     return 0.85 <= ratio < 1.0, ratio > 1.0, f"{printed(theirs, 1.0, 3)}; Ours {printed(ours, 1.0, 3)}"
 
 
 @rule("28", "E1", SIX)
 def linear_success(case):
     agrees, _, text = success(case, "env-linear")
+    case.same_direction = False  # the claim is of an order
     share = median(case.success("env-linear"))
     lower = sum(median(case.success(other)) < share for other in BEACH if other != "env-linear")
     return agrees and lower == 0, lower >= 2, text
@@ -180,6 +196,8 @@ def linear_success(case):
 @rule("29", "E1", "env-linear")
 def linear_falls(case):
     falls = case.straight("env-linear", "beach", SLOWEST, FASTEST, lambda g: mean(failures(g, "alive") == 0.0))
+    if math.isnan(median(falls)):
+        case.reason = "no failed run"
     return median(falls) >= 0.5, median(falls) < 0.25, percent(falls)
 
 
@@ -187,12 +205,12 @@ def linear_falls(case):
 def outperforms(case):
     counts = []  # of each other controller and figure: at how many commands it is better
     for other in OTHERS:
-        def value(controller, v, name):
-            return median(case.mean(controller, "beach", v, v, name))
         counts += [sum(median(case.success(other, "beach", v, v)) > median(case.success("ours", "beach", v, v))
                        for v in COMMANDS),
-                   sum(value(other, v, "speed_mps") > value("ours", v, "speed_mps") for v in COMMANDS),
-                   sum(value(other, v, "cot") < value("ours", v, "cot") for v in COMMANDS)]
+                   sum(median(case.speed(other, "beach", v)) > median(case.speed("ours", "beach", v))
+                       for v in COMMANDS),
+                   sum(median(case.cost(other, "beach", v, v)) < median(case.cost("ours", "beach", v, v))
+                       for v in COMMANDS)]
     return (sum(counts) == 0, 2 * max(counts) > len(COMMANDS),
             f"another one is better in {sum(counts)} comparisons; in one figure at up to {max(counts)} of "
             f"{len(COMMANDS)} commands")

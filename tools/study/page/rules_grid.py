@@ -46,12 +46,13 @@ def loses_on_soft_ground(case):
 
 
 def adapts_less(case, *others):
-    """Slopes of clearance of all these against those of Ours."""
+    """How much higher on softer ground the feet of all these are, against those of Ours."""
     if not is_papers(case):
         return NOTHING
-    pairs = [[abs(median(grid_figure(case.evidence, c, name))) for c in (other, "ours")]
+    pairs = [[-median(grid_figure(case.evidence, c, name)) for c in (other, "ours")]
              for other in others for name in SLOPES]
-    return (all(theirs < 0.5 * ours for theirs, ours in pairs), all(theirs > ours for theirs, ours in pairs),
+    return (all(theirs < 0.5 * ours and ours > 0.0 for theirs, ours in pairs),
+            all(theirs > ours for theirs, ours in pairs),
             slope_text(case, "ours", *others))
 
 

@@ -7,7 +7,7 @@ import paper
 from controllers import COMMANDS, name_of
 from evidence import mean, mean_value, median, select
 from rules import rule
-from terms import is_about, is_far_from, percent, printed
+from terms import NO_SUCCESS, is_about, is_far_from, number, percent, printed
 
 ENOUGH, FEW = 14 / 16, 8 / 16
 HARDER = ("vinyl", "athletic-track", "grass")
@@ -43,7 +43,7 @@ def onto_wet_sand(case):
                                 for name in ("alive", "speed_after_mps", "speed_before_mps"))
         shares.append(median(alive))
         ratios.append(median(after) / median(before))
-        texts.append(f"{v:.0f} m/s: {percent(alive)} alive, {ratios[-1]:.2f}")
+        texts.append(f"{v:.0f} m/s: {percent(alive)} alive, {number(ratios[-1])}")
     return (all(s >= ENOUGH for s in shares) and all(0.9 <= r <= 1.15 for r in ratios),
             any(s < FEW for s in shares), "; ".join(texts))
 
@@ -76,14 +76,19 @@ rule("33", "E3", "ours")(lambda case: top_speed_on(case, "vinyl"))
 
 @rule("35", "E3", "ours env-rigid")
 def comparable_speeds(case):
-    offs = []
+    offs, none = [], []  # a controller without a success has no speed, which is not a comparable one
     for ground in HARDER:
         for v in COMMANDS[:6]:
-            a, b = (median(case.mean(c, ground, v, v, "speed_mps")) for c in ("ours", "env-rigid"))
-            # A controller without a success has no speed, which is not a comparable one.
-            offs.append(1.0 if math.isnan(a) or math.isnan(b) else abs(a / b - 1.0))
-    return (max(offs) <= 0.05, 2 * sum(off > 0.10 for off in offs) >= len(offs),
-            f"up to {100 * max(offs):.0f} % apart")
+            a, b = (median(case.speed(c, ground, v)) for c in ("ours", "env-rigid"))
+            if a and b:
+                offs.append(abs(a / b - 1.0))
+            else:
+                none.append(f"{ground} at {v:.1f} m/s")
+    apart = sum(off > 0.10 for off in offs) + len(none)
+    return (not none and max(offs) <= 0.05, 2 * apart >= len(offs) + len(none),
+            f"more than 10 % apart at {apart} of {len(offs) + len(none)} commands; " +
+            (f"up to {100 * max(offs):.0f} %" if offs else "no speed in common") +
+            (f"; {NO_SUCCESS} of one of them: {', '.join(none)}" if none else ""))
 
 
 def faster_on(case, ground):
@@ -97,28 +102,32 @@ rule("37", "E3", "ours env-rigid")(lambda case: faster_on(case, "grass"))
 
 @rule("38", "E3", "env-rigid")
 def slower_when_commanded_more(case):
-    slow, fast = (case.mean("env-rigid", "grass", v, v, "speed_mps") for v in (3.0, 3.5))
-    ratio = median(fast) / median(slow)
+    slow, fast = (case.speed("env-rigid", "grass", v) for v in (3.0, 3.5))
+    ratio = median(fast) / median(slow) if median(slow) else math.nan
+    case.needs_success(ratio)
     return ratio < 1.0, ratio >= 1.05, f"{printed(fast)} after {printed(slow)} m/s"
 
 
 @rule("39", "E3", "env-rigid")
 def fails_on_grass(case):
     share = case.success("env-rigid", "grass", 4.0, 4.0)
-    return median(share) <= 0.5, median(share) >= 0.9, percent(share)
+    return median(share) <= 0.5, median(share) >= 0.9, case.success_text("env-rigid", "grass", 4.0, 4.0)
 
 
 @rule("39a", "E3", "env-rigid")
 def large_clearance(case):
     slow, fast = (case.mean("env-rigid", "grass", v, v, "iqr_m") for v in (3.0, 3.5))
     ratio = median(fast) / median(slow)
+    case.needs_success(ratio)
     return ratio >= 1.2, ratio <= 1.0, f"{printed(fast, 1e3, 1)} after {printed(slow, 1e3, 1)} mm"
 
 
 @rule("40", "E3", "ours env-rigid")
 def same_on_vinyl(case):
     a, b = (case.top_speed(c, "vinyl") for c in ("ours", "env-rigid"))
-    off = abs(median(a) / median(b) - 1.0)
+    slower, faster = sorted((median(a), median(b)))
+    off = faster / slower - 1.0 if slower else math.inf if faster else math.nan
+    case.needs_success(off)
     return off <= 0.03, off > 0.10, f"{printed(a)} and {printed(b)} m/s"
 
 
@@ -126,7 +135,8 @@ def same_on_vinyl(case):
 def comparable_cost(case):
     ratios = [median(case.mean("ours", ground, v, v, "cot")) / median(case.mean("env-rigid", ground, v, v, "cot"))
               for ground in GROUNDS for v in COMMANDS if case.both_succeed("ours", "env-rigid", ground, v)]
-    case.too_few = case.too_few or not ratios
+    if not ratios:
+        case.nothing_to_compare("ours", "env-rigid", grounds=GROUNDS)
     worst, higher = max([0.0, *ratios]), sum(ratio > 1.0 for ratio in ratios)
     return (bool(ratios) and worst <= 1.05, 2 * higher > len(ratios),
             f"up to {worst:.2f}; above 1 in {higher} of {len(ratios)}")
@@ -137,23 +147,38 @@ def steep_cost(case):
     rise = {ground: median(case.mean("ours", ground, 4.0, 4.0, "cot")) /
             median(case.mean("ours", ground, 2.5, 2.5, "cot")) for ground in HARDER}
     track, grass = rise["athletic-track"] / rise["vinyl"], rise["grass"] / rise["vinyl"]
-    return track >= 1.25 and grass >= 1.25, track <= 1.0 and grass <= 1.0, f"track {track:.2f}, grass {grass:.2f}"
+    case.needs_success(track, grass)
+    return (track >= 1.25 and grass >= 1.25, track <= 1.0 and grass <= 1.0,
+            f"track {number(track)}, grass {number(grass)}")
 
 
 @rule("43", "E1 E3", "ours env-rigid")
 def insensitive_cost(case):
+    # Both over the same: the commands at which both have eight successes, on grounds with one.
+    common = {ground: [v for v in (1.0, 2.0, 3.0) if case.both_succeed("ours", "env-rigid", ground, v)]
+              for ground in GROUNDS}
+    common = {ground: commands for ground, commands in common.items() if commands}
+    if len(common) < 2:
+        case.reason = "fewer than two grounds in common"
+        return False, False, ", ".join(common) or "none in common"
+
     def spread(controller):
-        costs = [mean([median(case.mean(controller, ground, v, v, "cot")) for v in (1.0, 2.0, 3.0)])
-                 for ground in GROUNDS]
-        costs = [cost for cost in costs if not math.isnan(cost)]
-        return max(costs, default=math.nan) / min(costs, default=math.nan)
+        costs = [mean([median(case.cost(controller, ground, v, v)) for v in commands])
+                 for ground, commands in common.items()]
+        return max(costs) / min(costs)
     ours, rigid = spread("ours"), spread("env-rigid")
-    return ours < rigid, ours > rigid, f"{ours:.2f}; Env-Rigid {rigid:.2f}"
+    return ours < rigid, ours > rigid, f"{ours:.2f}; Env-Rigid {rigid:.2f}; on {', '.join(common)}"
+
+
+def no_states(case, told):
+    if math.isnan(median(told)):
+        case.reason = "too few states"
 
 
 @rule("44", "E4", "ours")
 def tells_the_ground(case):
     told, shuffled = (hidden_state.figure(case.evidence, name) for name in ("told", "told_shuffled"))
+    no_states(case, told)
     return (median(told) >= 0.75 and median(told) > median(shuffled), median(told) <= median(shuffled),
             f"{percent(told)}; shuffled {percent(shuffled)}")
 
@@ -161,6 +186,7 @@ def tells_the_ground(case):
 @rule("45", "E4", "ours")
 def tells_the_phase(case):
     told = hidden_state.figure(case.evidence, "phase_told")
+    no_states(case, told)
     return median(told) >= 0.8, median(told) < 0.4, printed(told)
 
 
@@ -197,12 +223,15 @@ def no_half_turn(case):
 @rule("50", "E5", "ours env-rigid pl-gm")
 def turns_dearly(case):
     def cost(controller):
-        return median(case.evidence.figure("E5", controller, lambda g: mean_value(
-            select(g, "air-mattress", "turn", -1.0, 1.0), "cotu", True)))
+        """Of the seeds that have a success."""
+        costs = case.evidence.figure("E5", controller, lambda g: mean_value(
+            select(g, "air-mattress", "turn", -1.0, 1.0), "cotu", True))
+        return median([cost.value for cost in costs.values() if not math.isnan(cost.value)])
     ratios = {other: cost(other) / cost("ours") for other in ("env-rigid", "pl-gm")}
+    case.needs_success(*ratios.values())
     return (all(turned(case, other, 16) >= 1 and ratio >= 1.3 for other, ratio in ratios.items()),
             all(ratio < 1.0 for ratio in ratios.values()),
-            ", ".join(f"{name_of(other)} {ratio:.2f}" for other, ratio in ratios.items()) + " times that of Ours")
+            ", ".join(f"{name_of(other)} {number(ratio)}" for other, ratio in ratios.items()) + " times that of Ours")
 
 
 @rule("51", "E6", "ours")

@@ -15,7 +15,7 @@ from markup import NOT_RUN, escaped, from_markdown, named, table
 from rules_oracles import JOINTS
 from terms import mean_interval, printed, ratio
 
-CLASSES = dict(zip(claims.VERDICTS, ("agrees", "contradicts", "unknown", "untestable")))
+CLASSES = dict(zip(claims.VERDICTS, ("agrees", "size", "contradicts", "unknown", "untestable")))
 # Parameters of the ground and what the actor sees of them (train::terrain_features).
 PARAMETERS = (("rigid", "1 on hard ground, else 0"),
               ("&sigma;_flat", "log10(&sigma;_flat / 3 MN/m&sup3;)"),

@@ -2,12 +2,9 @@
 """Verdicts on made-up measurements of the robot half, and the table of claims."""
 import unittest
 
-import numpy as np
-
 import claims
-from evidence import Evidence, Group
-from made_up import on_the_beach, straight_runs, verdict
-from rules_oracles import JOINTS
+from evidence import Evidence
+from made_up import on_the_beach, oracle, straight_runs, verdict
 
 
 class Verdicts(unittest.TestCase):
@@ -48,10 +45,15 @@ class Verdicts(unittest.TestCase):
 
     def test_excess_agrees_from_half_to_twice_and_contradicts_the_other_way_round(self):
         for other_mps, text in ((2.0, "agrees"),  # 50 % faster, the paper 50.7 %
-                                (2.9, "can't tell"),  # 3 %
-                                (1.2, "can't tell"),  # 150 %
+                                (2.9, "same direction, other size"),  # 3 %
+                                (1.2, "same direction, other size"),  # 150 %
                                 (3.2, "contradicts")):
             self.expect(text, "19", ours={}, pl_gm={"top_mps": other_mps})
+
+    def test_a_rival_without_a_success_is_slower(self):
+        self.expect("same direction, other size", "18", ours={}, pl_rigid={"successes": 0})
+        self.expect("contradicts", "18", ours={"successes": 0}, pl_rigid={})
+        self.expect("can't tell (no successful run)", "18", ours={"successes": 0}, pl_rigid={"successes": 0})
 
     def test_the_benchmark_of_contact_models_is_judged(self):
         for ratio, text in ((20.0, "agrees"), (8.0, "can't tell"), (4.0, "contradicts")):
@@ -77,14 +79,6 @@ class Claims(unittest.TestCase):
     def test_quotes_are_doubled_in_the_csv(self):
         row = claims.Claim("1", '"a", b', "c", "d", "", "Part"), claims.Judgement(ours="1.0")
         self.assertEqual(claims.claims_csv([row]).splitlines()[1], '1,"""a"", b","c","d","","1.0","can\'t tell"')
-
-
-def oracle(terrain=0.1, estimate=0.3, bins=(0.1, 0.2), gradients=(0.3, 0.2, 0.1)):
-    """Actions that depend on T and e by this much, in the bins of sigma_flat by `bins`, and on
-    sigma_flat, sigma_cone and the inertial factor by `gradients`."""
-    lists = {name: np.array([0.0, gradients[0], gradients[1], 0.0, gradients[2]]) for name in JOINTS.values()}
-    return [Group("training", runs={"T": terrain + 0.001 * np.arange(10), "e": np.full(10, estimate)},
-                  lists={"bin_T": np.array(bins), **lists})]
 
 
 class OracleVerdicts(unittest.TestCase):

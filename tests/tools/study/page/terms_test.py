@@ -47,6 +47,34 @@ class Above(unittest.TestCase):
         self.assertTrue(terms.above(a, b).holds)
 
 
+class WithoutASuccess(unittest.TestCase):
+    def none(self, worst):
+        return {1: Value(worst, succeeded=False)}
+
+    def test_the_worst_is_below_any_speed_and_above_any_cost(self):
+        self.assertTrue(terms.above(made_up(3.0), self.none(0.0)).holds)
+        self.assertFalse(terms.above(self.none(0.0), made_up(3.0)).holds)
+        self.assertTrue(terms.below_by_share(made_up(3.0), self.none(math.inf), 0.1).holds)
+        self.assertFalse(terms.below_by_share(self.none(math.inf), made_up(3.0), 0.1).holds)
+
+    def test_the_other_side_needs_eight_runs(self):
+        few = made_up(3.0)
+        few[1].runs[0] = math.nan
+        self.assertFalse(terms.above(few, self.none(0.0)).holds)
+        self.assertEqual(terms.above(few, self.none(0.0)).pairs, 7)
+
+    def test_two_without_are_not_compared(self):
+        for worst in (0.0, math.inf):
+            found = terms.above(self.none(worst), self.none(worst))
+            self.assertTrue(found.none)
+            self.assertFalse(found.holds)
+
+    def test_it_is_said_in_words(self):
+        self.assertEqual(terms.printed(self.none(math.inf)), "no successful run")
+        self.assertEqual(terms.percent(self.none(0.0)), "no successful run")
+        self.assertEqual(terms.printed({**made_up(3.0), 2: Value(math.inf, succeeded=False)}), "none [3.00, none]")
+
+
 class Terms(unittest.TestCase):
     def test_about_is_15_percent_and_far_is_30_of_every_seed(self):
         self.assertTrue(terms.is_about(made_up(1.14), 1.0))
@@ -68,6 +96,21 @@ class Terms(unittest.TestCase):
         self.assertFalse(terms.is_about(made_up(math.nan), 1.0))
         self.assertFalse(terms.is_far_from({}, 1.0))
         self.assertEqual(median(made_up(3.0, 1.0, 2.0)), 2.0)
+
+    def test_tolerances_are_half_or_twice_as_wide_and_as_they_are_afterwards(self):
+        for width, about, share, excess in ((0.5, False, False, False), (1.0, True, True, False), (2.0, True, True, True)):
+            with terms.tolerances(width):
+                self.assertEqual(terms.is_about(made_up(1.1), 1.0), about)
+                self.assertEqual(terms.is_share(made_up(0.6), 0.5), share)
+                self.assertEqual(terms.is_excess(0.3, 0.1), excess)
+        self.assertFalse(terms.is_excess(0.3, 0.1))
+        self.assertTrue(terms.is_excess(0.2, 0.1))
+
+    def test_the_interval_of_a_rate_is_wilsons(self):
+        low, high = terms.rate_interval([1.0] * 9 + [0.0, math.nan])
+        self.assertAlmostEqual(low, 0.5958, 4)
+        self.assertAlmostEqual(high, 0.9821, 4)
+        self.assertTrue(math.isnan(terms.rate_interval([math.nan])[0]))
 
     def test_figures_are_printed_with_their_range_over_seeds(self):
         self.assertEqual(terms.printed(made_up(1.25)), "1.25")
