@@ -18,6 +18,7 @@
 #include "tools/study/experiments/experiments.h"
 #include "tools/study/simulated/task_run.h"
 #include "tools/train/task/leg_modes.h"
+#include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::study {
 namespace {
@@ -39,9 +40,10 @@ constexpr int kBins = 10;
 constexpr std::uint64_t kSeed = 8;
 
 // The task of the model's own training, on soil alone: hard ground and patches would mix other
-// parameters into the mean input.
-train::TaskConfig task_on_soil(const train::TaskNetwork& network) {
+// parameters into the mean input. A setting that its trainer did not have yet is the usual one.
+train::TaskConfig task_on_soil(const train::TaskNetwork& network, const sim::Robot& robot) {
   ConfigTree settings;
+  train::add_training_layers(settings, robot);
   settings.add_text(network.spec.provenance.at("config"), "provenance.config");
   train::TaskConfig task = train::read_task_config(settings);
   task.ground.rigid_envs = task.ground.patchy_envs = 0;
@@ -181,7 +183,7 @@ void add_parameters(const Attribution& a, std::size_t first_alone, RunGroup& gro
 
 Measured run_attribution(Lab& lab, const Model& model) {
   WorkerPool pool(lab.settings().threads);
-  const train::TaskConfig task = task_on_soil(model.network);
+  const train::TaskConfig task = task_on_soil(model.network, lab.robot());
   const States states = collect(model.network, task, lab.settings().grid_runs, lab.robot(), pool);
   const std::vector<InputGroup> groups = input_groups(model.network.layout);
   const Attribution a =
