@@ -8,6 +8,7 @@ from charts import (BLUE, DARK, GREEN, GREY, ORANGE, RED, Sheet, bars, caps, lea
                     name_axes)
 from controllers import BEACH, COMMANDS, CONTROLLERS, name_of
 from evidence import mean_value, median, run_values, select
+from terms import rate_interval
 
 FASTEST_MPS = 4.2  # end of the axes of speed
 HARDER = {"vinyl": "vinyl tile", "athletic-track": "athletic track", "grass": "grass"}
@@ -30,10 +31,17 @@ def ran(evidence, experiment):
     return [(c, evidence.seeds(experiment, c.key)) for c in CONTROLLERS.values() if evidence.seeds(experiment, c.key)]
 
 
+def label_of(controller, seeds):
+    """Its name, and of how many trainings what is drawn is."""
+    if controller.key == "published":
+        return controller.name
+    return f"{controller.name} ({len(seeds)} seed{'' if len(seeds) == 1 else 's'})"
+
+
 def command_chart(ax, evidence, title, y_label, name, scale=1.0, experiment="E1", ground="beach", successes=True,
                   ends=None):
     """A figure over the command: the median over the seeds that have it, and, of the two figures
-    `ends`, the least and greatest value of any successful run."""
+    `ends`, the least and greatest value of any successful run; of success, the 95 % interval."""
     for i, (controller, seeds) in enumerate(ran(evidence, experiment)):
         y, low, high = [], [], []
         for v in COMMANDS:
@@ -44,8 +52,12 @@ def command_chart(ax, evidence, title, y_label, name, scale=1.0, experiment="E1"
                 runs = [np.concatenate([run_values(g, end, True).ravel() for g in of_seeds]) for end in ends]
                 low.append(scale * least_and_greatest(runs[0])[0])
                 high.append(scale * least_and_greatest(runs[1])[1])
-        line(ax, COMMANDS, y, controller.name, **look(controller))
-        if ends:
+            if name == "success":
+                ends_of_rate = rate_interval(np.concatenate([run_values(g, name).ravel() for g in of_seeds]))
+                low.append(scale * ends_of_rate[0])
+                high.append(scale * ends_of_rate[1])
+        line(ax, COMMANDS, y, label_of(controller, seeds), **look(controller))
+        if low:
             caps(ax, np.array(COMMANDS) + 0.02 * (i % 5 - 2), low, high, controller.color)
     name_axes(ax, title, "commanded speed, m/s", y_label, True)
     ax.set_xlim(0.0, FASTEST_MPS)
@@ -90,7 +102,7 @@ def cost_chart(ax, evidence, experiment, ground, title):
         ax.plot(speed, cost, "o", color=controller.color, alpha=0.35, markersize=5, markeredgewidth=0)
         curve = fit_cost(speed, cost)
         x = np.linspace(speed.min(), speed.max(), 101) if curve else []
-        line(ax, x, curve(x) if curve else [], controller.name, dots=False, **look(controller))
+        line(ax, x, curve(x) if curve else [], label_of(controller, seeds), dots=False, **look(controller))
     name_axes(ax, title, "average speed, m/s", "cost of transport", True)
     ax.set_xlim(0.0, FASTEST_MPS)
 
@@ -119,7 +131,8 @@ def beach_figures(evidence):
         "and clearance are not printed",
         "C: a dot is a successful run, the curve a e^(bx) + cx + d (the paper prints b twice). E: the line is the mean "
         "over feet and successful runs, the caps are the least and the greatest foot of any run. Lines are medians "
-        "over the seeds that have a success.", sheet)
+        "over the seeds that have a success. D: the caps are the 95 % interval of the runs of all seeds; runs that "
+        "fail before the start line do not count.", sheet)
     there = [key for key in BEACH if evidence.seeds("E1", key)]
     sheet = Sheet("Torques of the right legs at about 1 m/s on dry sand (Fig. 2 F)", 2 * len(there), len(there), 2.5)
     for ax, (leg, key) in zip(sheet.axes, [(leg, key) for leg in ("RF", "RH") for key in there]):
@@ -154,7 +167,7 @@ def turn_bars(ax, evidence, experiment, grounds, title, y_label, name, scale=1.0
             heights.append(scale * median(means[~np.isnan(means)]))  # of the seeds that have it
             ends.append(least_and_greatest(
                 scale * np.concatenate([run_values(g, name, successes).ravel() for g in of_seeds])))
-        series.append((controller.name, controller.color, heights, list(zip(*ends)) if with_caps else None))
+        series.append((label_of(controller, seeds), controller.color, heights, list(zip(*ends)) if with_caps else None))
     if series:
         bars(ax, list(grounds.values()), series)
     name_axes(ax, title, "", y_label, True)
@@ -198,8 +211,8 @@ def foam_figures(evidence):
     sheet = Sheet("From hard ground onto memory foam at 0.5 m/s (fig. S8)", 2)
     for controller, seeds in ran(evidence, "E6"):
         lists = next(iter(seeds.values()))[0].lists
-        line(sheet.axes[0], lists["x_m"], 1e3 * lists["depth_m"], controller.name, dots=False, **look(controller))
-        line(sheet.axes[1], lists["x_m"], lists["speed_mps"], controller.name, dots=False, **look(controller))
+        for ax, y in zip(sheet.axes, (1e3 * lists["depth_m"], lists["speed_mps"])):
+            line(ax, lists["x_m"], y, label_of(controller, seeds), dots=False, **look(controller))
     name_axes(sheet.axes[0], "Deepest foot", "distance, m", "mm")
     name_axes(sheet.axes[1], "Speed", "distance, m", "m/s")
     yield Figure("s8", "\"could stably traverse over it with a command at 0.5 m/s\"; no numbers",

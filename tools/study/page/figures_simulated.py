@@ -7,9 +7,9 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 import hidden_state
 from charts import (BLUE, DARK, GREEN, GREY, INK, ORANGE, RED, Sheet, bars, caps, least_and_greatest, line, look,
                     name_axes)
-from controllers import CONTROLLERS, GRID, ORACLES, name_of
+from controllers import CONTROLLERS, GRID, ORACLES
 from evidence import grid_list, grid_medians, mean, median, oracle_ablation, oracle_value, select
-from figures import Figure
+from figures import Figure, label_of
 from rules_oracles import JOINTS
 from terms import values_of
 
@@ -21,6 +21,10 @@ SHADES = LinearSegmentedColormap.from_list(
     "grid", [(1.00, 1.00, 0.85), (0.78, 0.91, 0.71), (0.25, 0.71, 0.77), (0.13, 0.37, 0.66)])
 # Parameters of the ground that vary on soil: their places among all, the labels of their bars.
 VARYING = {1: "flat", 2: "cone", 3: "friction", 4: "inertia", 6: "recr.", 7: "cone ang.", 8: "str. k", 9: "str. b"}
+
+
+def name_with_seeds(evidence, experiment, key):
+    return label_of(CONTROLLERS[key], evidence.seeds(experiment, key))
 
 
 def recovery_figure(run):
@@ -108,7 +112,7 @@ def grid_maps(evidence):
         shared = ScalarMappable(Normalize(low, high), colors)
         for row, (key, values) in enumerate(zip(there, maps)):
             draw_map(sheet.axes[2 * row + column], values, stiffnesses(evidence, key, "sigma_flat_npm3"),
-                     stiffnesses(evidence, key, "sigma_cone_npm3"), shared, digits, f"{name_of(key)}: {title}")
+                     stiffnesses(evidence, key, "sigma_cone_npm3"), shared, digits, f"{name_with_seeds(evidence, 'E7', key)}: {title}")
     return Figure(
         "fig4ad",
         "\"tested 360 times with a randomly sampled velocity command for 4 s\"; rewards, clearances and table S1 are "
@@ -127,8 +131,8 @@ def grid_lines(evidence):
     for ax, ((name, title, scale, _), stiffness) in zip(sheet.axes, charts):
         for key in ran_on_grid(evidence):
             at, values = stiffnesses(evidence, key, stiffness + "_npm3"), visible_cells(evidence, key, name, scale)
-            line(ax, np.unique(at), [mean(values[at == x]) for x in np.unique(at)], name_of(key),
-                 **look(CONTROLLERS[key]))
+            line(ax, np.unique(at), [mean(values[at == x]) for x in np.unique(at)],
+                 name_with_seeds(evidence, "E7", key), **look(CONTROLLERS[key]))
         name_axes(ax, f"Over {stiffness}", f"{stiffness}, MN/m³", title)
     return Figure("fig4_lines", "not printed",
                   "Mean over the other stiffness, without black cells; medians over the seeds.", sheet)
@@ -147,7 +151,7 @@ def stiffness_chart(ax, evidence):
         seeds = evidence.seeds("E8", key)
         bins = [select(groups, "training")[0].lists for groups in seeds.values()]
         x, values = np.log10(1e-6 * bins[0]["bin_sigma_npm3"]), np.array([one["bin_T"] for one in bins])
-        line(ax, x, np.median(values, 0), name_of(key), **look(CONTROLLERS[key]))
+        line(ax, x, np.median(values, 0), name_with_seeds(evidence, "E8", key), **look(CONTROLLERS[key]))
         if len(seeds) > 1:
             caps(ax, x, values.min(0), values.max(0), CONTROLLERS[key].color)
     name_axes(ax, "Ablation of T by stiffness (Fig. 4 F)", "log10 of sigma_flat in MN/m³",
@@ -159,7 +163,8 @@ def attribution_figures(evidence):
     sheet = Sheet("What the oracles' actions depend on (Fig. 4 E, F)", 2)
     groups = {"oracle-h": ("cmd", "h", "e", "T"), "oracle-o": ("cmd", "o", "e", "T")}
     bars(sheet.axes[0], ["cmd", "h or o", "e", "T"], [
-        seed_bars(name_of(key), CONTROLLERS[key].color, [oracle_ablation(evidence, key, name) for name in groups[key]])
+        seed_bars(name_with_seeds(evidence, "E8", key), CONTROLLERS[key].color,
+                  [oracle_ablation(evidence, key, name) for name in groups[key]])
         for key in there])
     name_axes(sheet.axes[0], "Ablation of groups of inputs (Fig. 4 E)", "", "mean |change of an action|", True)
     stiffness_chart(sheet.axes[1], evidence)
@@ -182,7 +187,8 @@ def attribution_figures(evidence):
     name_axes(sheet.axes[0], "Integrated gradients by joint, Oracle(O) (Fig. 4 G)", "", "mean |integrated gradient|",
               True)
     bars(sheet.axes[1], list(VARYING.values()), [
-        seed_bars(name_of(key), CONTROLLERS[key].color, of_parameters(key, "alone")) for key in there])
+        seed_bars(name_with_seeds(evidence, "E8", key), CONTROLLERS[key].color, of_parameters(key, "alone"))
+        for key in there])
     name_axes(sheet.axes[1], "Ablation of each parameter alone (fig. S11)", "", "mean |change of an action|", True)
     yield Figure(
         "fig4g",
@@ -218,5 +224,7 @@ def learning_figure(models):
                 line(ax, 1e-6 * np.array(model["curve"]["transitions"], float),
                      np.array(model["curve"][name], float), controller.name, dots=False, **look(controller))
         name_axes(ax, title, "million transitions", "", True)
+    low, high = sheet.axes[2].get_ylim()
+    sheet.axes[2].set_ylim(low, min(high, 3.0))  # before, a robot can hardly walk
     return Figure("curves", "not printed",
-                  "A line for each seed; the battery is run on the grounds of each training.", sheet)
+                  "A line for each seed; the battery is run on the grounds of each training. Costs end at 3.", sheet)
