@@ -149,7 +149,7 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
 }
 
 // Whether in the first `periods` no joint was past a stop for as long as a policy step. Such a
-// stretch has its ticks in two periods; so many ticks that are not in a row count as well.
+// stretch has its ticks in two periods; as many ticks that are not in a row count as well.
 bool TrialRecorder::stops_brief(std::size_t periods) const {
   float before = 0.0f;
   for (std::size_t i = 0; i < periods; ++i) {

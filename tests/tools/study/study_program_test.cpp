@@ -80,8 +80,9 @@ TEST_F(StudyProgramTest, ThePublishedNetworkIsShownAndHasNoPartInTheVerdicts) {
   ASSERT_EQ(run(common + "--out without"), 0) << error();
   ASSERT_EQ(run(common + "--published published.safetensors --out with"), 0) << error();
   EXPECT_EQ(read("with/claims.csv"), read("without/claims.csv"));
-  EXPECT_EQ(read("without/report.html").find("Authors"), std::string::npos);
-  EXPECT_NE(read("with/report.html").find("Authors"), std::string::npos);
+  const std::string ran = "Run: Ours (1 seed), Env-Rigid (1 seed), Authors' network.";
+  EXPECT_EQ(read("without/report.html").find(ran), std::string::npos);
+  EXPECT_NE(read("with/report.html").find(ran), std::string::npos);
   const auto json = nlohmann::json::parse(read("with/results.json"));
   EXPECT_EQ(json["experiments"]["E5"]["published"].size(), 1u);
   EXPECT_FALSE(json["experiments"]["fairness"].contains("published"));

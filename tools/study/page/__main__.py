@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """/usr/bin/python3 tools/study/page OUT: makes claims.csv, report.html and figures/ from
 OUT/results.json, which sandrunner-study writes before it runs this."""
+import json
 import logging
 import os
 import sys
@@ -21,6 +22,7 @@ def make_page(out):
     import sklearn  # noqa: F401: not only once a picture needs it
 
     import claims
+    import controls
     import evidence
     import report
     from files import write_whole
@@ -32,6 +34,9 @@ def make_page(out):
     judged = claims.judge_all(found)
     (out / "figures").mkdir(exist_ok=True)
     write_whole(out / "claims.csv", claims.claims_csv(judged).encode())
+    control = controls.made_of(found, results)
+    if control:
+        write_whole(out / "control.json", (json.dumps(control, indent=1) + "\n").encode())
     write_whole(out / "report.html", report.report_html(out / "figures", results, found, judged).encode())
     print(f"wrote {out}/report.html")
 

@@ -33,7 +33,7 @@ p, li { max-width: 75ch; }
 h1 { font-size: 26px; } h2 { font-size: 20px; border-top: 2px solid #20262d; padding-top: 10px;
   margin-top: 40px; } h3 { font-size: 16px; }
 img { width: 100%; max-width: 1240px; display: block; margin: 10px 0 4px; }
-.table { overflow-x: auto; }
+.table, .picture { overflow-x: auto; }
 table { border-collapse: collapse; margin: 10px 0; font-size: 13px; }
 th, td { border: 1px solid #c9ced4; padding: 3px 7px; text-align: left; vertical-align: top; }
 th { background: #eef0f3; }
@@ -41,11 +41,12 @@ summary { font-weight: bold; margin: 10px 0; cursor: pointer; }
 code { overflow-wrap: anywhere; }
 p.note { font-size: 13px; color: #4a525b; margin: 2px 0; }
 .key { display: inline-block; width: 11px; height: 11px; margin-right: 6px; }
-.faint { color: #6b737c; } .agrees { color: #0a6b35; font-weight: bold; }
+.size { color: #8a5a00; font-weight: bold; } .faint { color: #6b737c; } .agrees { color: #0a6b35; font-weight: bold; }
 .contradicts { color: #b01c1c; font-weight: bold; } .unknown, .untestable { color: #6b737c; }
 .claims td:nth-child(2) { width: 24%; } .claims td:nth-child(3) { width: 20%; }
 @media (max-width: 900px) { body { display: block; }
-  nav { position: static; height: auto; } main { padding: 8px; } }
+  nav { position: static; height: auto; } main { padding: 8px; } .picture img { min-width: 760px; }
+  .claims table { min-width: 760px; } }
 @media print { body { font-size: 10px; display: block; } nav { display: none; } main { max-width: none; }
   table { font-size: 9px; } tr, img { break-inside: avoid; } h2, h3 { break-after: avoid; } }
 """
@@ -57,8 +58,35 @@ project. Each claim of the paper has a rule that was written down before any oth
 Ours was evaluated, and a verdict that follows from the rule. A negative result is a result.</p>
 """
 
+CONTROLS = """
+<p>Two policies that were not trained for this study run in E1 to E6 as if they were Ours. They have
+no part in a verdict. The authors published a network of their controller; whether it is the one
+that ran on their beach is not known. What it does on our sand tells whether our sand is right. It
+sees its inputs in scales of its own, so it can't run in the grid. The shipped policy is this
+project's, of a longer training on more kinds of ground. <code>tools/study/controls</code> has their
+figures, and no weights of the authors.</p>
+"""
+
 VERDICTS = """
 <p>A table for each section of the paper; click its name. CLAIMS.md has the rules.</p>
+"""
+
+SURE = """
+<p>The verdicts are judged all at once, and nothing is corrected for their number. An interval of 95
+% lets one comparison in 40 pass by chance, so one or two of those that agree may be chance. The
+unit that counts is the training: a verdict on one seed says so. All controllers and commands share
+the starts 0, 1, 2 ... and the beaches of these runs. So comparisons of two controllers are of pairs,
+but 128 runs at eight commands are not 128 independent ones, and the intervals of success are rather
+too narrow. The table has the verdicts that change if each tolerance of a term ("about", "share",
+"excess", "above by m") is half or twice as large. Thresholds that a row states itself are not
+varied.</p>
+"""
+
+REPAIRS = """
+<p>Rules that broke down where a controller has no successful run, or that measured something else
+than their row says, were repaired after the first comparison had been seen. No repair makes a rule
+easier in order to agree. The verdicts of the old rules are those of the first models, trained at
+f1d1f19 and 90f56e4.</p>
 """
 
 FAIRNESS = """
@@ -74,7 +102,10 @@ BEACH = """
 deterministic simulator would answer that all runs succeed or none, so each run has a beach of its
 own, the same for all controllers. Average and top are the greatest of runs 0 to 4, as many as the
 paper has, over all commands, of successful runs: no contact of base or thigh and no joint beyond
-its limit. With several seeds: median [least, greatest].</p>
+its limit for as long as a policy step of 10 ms, so that a log of the drives would show it. As in
+the paper, a run that fails before the start line does not count. Strict: all runs, and no joint
+beyond its limit in any tick of 0.25 ms. With several seeds: median [least, greatest]. In round
+brackets: the 95 % interval of the runs of the first seed.</p>
 """
 
 NO_RECOVERY = """

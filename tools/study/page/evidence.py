@@ -32,7 +32,7 @@ class Value:
     every controller."""
     value: float
     runs: np.ndarray = field(default_factory=lambda: np.array([]))
-    succeeded: bool = True  # False: it has no successful run, and `value` is the worst that there is
+    succeeded: bool = True  # False: it has no successful run; `value` is the worst that there is
 
 
 def median(values):

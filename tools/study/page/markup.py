@@ -27,7 +27,7 @@ def table(heads, rows):
 def picture(path, alternative):
     """A PNG file as part of the page."""
     data = base64.b64encode(path.read_bytes()).decode()
-    return f'<img alt="{escaped(alternative)}" src="data:image/png;base64,{data}">\n'
+    return f'<div class="picture"><img alt="{escaped(alternative)}" src="data:image/png;base64,{data}"></div>\n'
 
 
 def named(controller):

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """report.html, chapter by chapter."""
+import subprocess
+from pathlib import Path
+
 import chapters
 import figures
 import figures_simulated
 import pictures
+import controls
 import tables
+import verdicts
 from controllers import CONTROLLERS
 from markup import escaped, picture
 
@@ -20,6 +25,9 @@ class Page:
 
     def add(self, html):
         self.html += html
+
+    def fold(self, title, html):
+        self.add(f"<details><summary>{escaped(title)}</summary>\n{html}</details>\n")
 
     def section(self, title, short=""):
         """`short`: its name in the list of contents; without one, the title up to a colon."""
@@ -85,7 +93,7 @@ def add_grid(page):
     page.add(chapters.GRID)
     page.figure(figures_simulated.grid_maps(page.evidence))
     page.figure(figures_simulated.grid_lines(page.evidence))
-    page.add(tables.grid_table(page.evidence))
+    page.fold("Numbers of the grid", tables.grid_table(page.evidence))
     page.notes("", chapters.GRID_TABLE)
 
 
@@ -93,8 +101,8 @@ def add_experiments(page):
     evidence = page.evidence
     if page.experiment("E1"):
         page.add(chapters.BEACH)
-        page.add(tables.beach_table(evidence))
         page.figures(figures.beach_figures(evidence))
+        page.add(tables.beach_table(evidence))
     if page.experiment("E2"):
         add_recovery(page)
     if page.experiment("E3"):
@@ -111,7 +119,7 @@ def add_experiments(page):
     if page.experiment("E8", "Robots and states: see the table"):
         page.add(chapters.ATTRIBUTION)
         page.figures(figures_simulated.attribution_figures(evidence))
-        page.add(tables.attribution_tables(evidence))
+        page.fold("Numbers of the attribution", tables.attribution_tables(evidence))
     if evidence.seeds("E1", "ours"):
         page.section("E9: Estimator (section S4)", "E9: Estimator")
         page.figures(figures.estimator_figures(evidence))
@@ -124,30 +132,55 @@ def add_experiments(page):
         page.add(f'<p class="note" id="not-run">Not run: {escaped(", ".join(page.not_run))}.</p>\n')
 
 
+def commit_date(build):
+    """", of 2026-11-30": the date of the commit, which a copy without its history does not know."""
+    words = build.split()
+    commit = words[1].partition("-")[0] if len(words) > 1 else ""
+    try:
+        found = subprocess.run(["git", "-C", str(Path(__file__).parent), "show", "-s", "--format=%cs", commit],
+                               capture_output=True, text=True, check=False)
+    except OSError:
+        return ""
+    return f", of {found.stdout.strip()}" if commit and found.returncode == 0 else ""
+
+
 def report_html(folder, results, evidence, judged):
     """The page; its pictures are written to `folder`."""
     page = Page(folder, results, evidence)
+    all_controls = controls.read_all()
     page.section("Dry sand at a glance")
     page.figure(figures.summary_figure(evidence))
-    page.add(tables.verdict_counts(judged))
+    page.add(verdicts.verdict_counts(judged))
     page.section(chapters.TITLES["fairness"])
     page.add(chapters.FAIRNESS + tables.fairness_table(evidence))
     add_experiments(page)
+    if all_controls:
+        page.section("Controls: the authors' network and the shipped policy", "Controls")
+        page.add(chapters.CONTROLS + verdicts.control_table(all_controls) + verdicts.control_words(all_controls, judged))
     page.section("Verdicts")
-    page.add(chapters.VERDICTS + tables.verdict_tables(judged))
+    page.add(chapters.VERDICTS + verdicts.verdict_tables(judged, all_controls))
+    page.section("How sure are the verdicts?")
+    page.add(chapters.SURE)
+    page.fold("Verdicts with half and with twice the tolerances", verdicts.sensitivity_table(evidence, judged))
+    page.section("Repaired rules")
+    page.add(chapters.REPAIRS)
+    page.fold("Each repair, with the verdict of the old rule", verdicts.repair_table(judged))
     page.section("Is the ground right?")
     page.add(chapters.GROUND)
     page.figure(figures_simulated.ball_figure(results["ground"]["ball"]))
-    page.add(tables.anchor_table(results["ground"]["anchors"]) + chapters.GROUND_RESULT)
+    page.fold("All experiments", tables.anchor_table(results["ground"]["anchors"]))
+    page.add(chapters.GROUND_RESULT)
     page.section("Learning curves")
     page.figure(figures_simulated.learning_figure(results["models"]))
     page.section("Methods")
     page.add(chapters.METHODS.format(runs=results["runs"]) + chapters.TRAININGS)
-    page.add(tables.origin_table(results["models"]) + tables.settings_table(results["models"]))
+    page.fold("Where each model comes from", tables.origin_table(results["models"]))
+    page.fold("Settings that differ from the trainer's", tables.settings_table(results["models"]))
     page.section("What a simulation cannot show")
     longest = max(model["length"] for model in results["models"].values())
     page.add(chapters.LIMITS.format(longest=1e-6 * longest))
-    top = (chapters.INTRODUCTION + f'<p class="note">Made by sandrunner-study {escaped(results["build"])}:<br>'
+    top = (chapters.INTRODUCTION + verdicts.sentences(evidence, judged, all_controls, results["models"]) +
+           f'<p class="note">Made by sandrunner-study {escaped(results["build"])}{commit_date(results["build"])}:<br>'
            f'<code>{escaped(results["command"])}</code></p>\n')
     links = "".join(f'<li><a href="#s{i}">{escaped(title)}</a></li>\n' for i, title in enumerate(page.contents, 1))
     return chapters.DOCUMENT.format(style=chapters.STYLE, top=top, contents=links, body=page.html)

@@ -76,7 +76,7 @@ rule("33", "E3", "ours")(lambda case: top_speed_on(case, "vinyl"))
 
 @rule("35", "E3", "ours env-rigid")
 def comparable_speeds(case):
-    offs, none = [], []  # a controller without a success has no speed, which is not a comparable one
+    offs, none = [], []  # without a success there is no speed to compare
     for ground in HARDER:
         for v in COMMANDS[:6]:
             a, b = (median(case.speed(c, ground, v)) for c in ("ours", "env-rigid"))

@@ -38,7 +38,7 @@ class FiguresOfRuns(unittest.TestCase):
         self.assertTrue(math.isnan(mean_value([], "success").value))
 
     def test_success_is_what_a_log_shows_of_the_runs_that_begin_and_strictly_of_all(self):
-        # Kept; past a stop for a tick; for a step; before the line for a step; fell there; only slow.
+        # Kept; past a stop for a tick, a step, a step before the line; fell there; only slow.
         runs = {"reached": [1, 1, 1, 1, 0, 0], "limits_kept": [1, 0, 0, 0, 0, 0], "stops_brief": [1, 1, 0, 0, 0, 0],
                 "failed_before_track": [0, 0, 0, 1, 1, 0]}
         raw = {"scenario": "", "command": 1.0, "runs": runs, "lists": {}}
