@@ -39,7 +39,8 @@ inline Vec3<S> cross(const Vec3<S>& a, const Vec3<S>& b) noexcept {
 }
 /// a x b + c
 template <typename S>
-[[gnu::always_inline]] inline Vec3<S> cross_add(const Vec3<S>& a, const Vec3<S>& b, const Vec3<S>& c) noexcept {
+[[gnu::always_inline]] inline Vec3<S> cross_add(const Vec3<S>& a, const Vec3<S>& b,
+                                                const Vec3<S>& c) noexcept {
   return {fma(a.y, b.z, fma(-a.z, b.y, c.x)), fma(a.z, b.x, fma(-a.x, b.z, c.y)),
           fma(a.x, b.y, fma(-a.y, b.x, c.z))};
 }
