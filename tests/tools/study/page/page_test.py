@@ -108,6 +108,7 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(html.count("<p>"), 5)
         self.assertIn("Ours succeeds in 100.0 [100.0, 100.0] % (strict: 100.0 [100.0, 100.0] %) of its runs", html)
         self.assertIn("Env-Rigid in 0, Env-Quasistatic in 100", html)
+        self.assertIn("94.2 (89 to 97) % of its runs and reaches 2.999 m/s, where", html)
         self.assertIn("1 to 1 trainings each, of 60 to 60 million", html)
 
     def test_each_repair_is_of_a_claim_and_has_the_verdict_of_the_old_rule(self):
