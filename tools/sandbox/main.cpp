@@ -147,9 +147,9 @@ int run(int argc, char** argv) {
       {"hello", view_hello(scene, kNote)},
       {"sandbox",
        page_json(config, arguments->run, native_hash(config, policy.runner, arguments->run))}};
-  append_gzip(data.emplace_back("setup").text, to_bytes(setup));
+  append_gzip(data.emplace_back(PageData{"setup"}).text, to_bytes(setup));
   for (const char* name : {"relaxed", "exact"}) {
-    append_base64(data.emplace_back(name).text,
+    append_base64(data.emplace_back(PageData{name}).text,
                   embedded_sandbox_file(fmt::format("{}.wasm.gz", name)));
   }
   const std::string html = page_with(data);

@@ -55,7 +55,7 @@ std::string page_of(const RunRecord& record, std::string_view curve) {
   append_rows(data[1].text, page_fields(), record.rows);
   append_rows(data[2].text, kFootprintFields, footprints);
   append_rows(data[3].text, kViewTileFields, view_tiles(record.scene, record.rows, kMostTiles));
-  if (!curve.empty()) append_gzip(data.emplace_back("curve-data").text, curve);
+  if (!curve.empty()) append_gzip(data.emplace_back(PageData{"curve-data"}).text, curve);
   return page_with(data);
 }
 
