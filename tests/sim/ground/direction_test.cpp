@@ -49,7 +49,7 @@ TEST(DirectionTest, AFootAtRestStandsAsWithout) {
 }
 
 TEST(DirectionTest, AFootThatIsPushedSidewaysSinksDeeper) {
-  double depth_m[2];
+  double depth_m[2] = {};
   for (const bool direction : {false, true}) {
     GroundParameters ground;
     ground.direction = direction;

@@ -133,7 +133,7 @@ TEST(FlatFeetTest, ASoleThatRisesAlongItsMotionIsBorneBetter) {
   GroundParameters ground;
   ground.direction = true;
   ground.added_mass = ground.inertial_drag = false;
-  double force_n[2];
+  double force_n[2] = {};
   for (const bool toes_up : {false, true}) {
     Bench bench(ground, robot_on_soles());
     RigidState<double>& x = bench.state.rigid;

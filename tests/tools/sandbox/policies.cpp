@@ -7,9 +7,10 @@
 #include "policy/safetensors.h"
 #include "tests/policy/random_perceptron.h"
 
-int main(int, char** argv) {
-  using namespace sandrunner;
-  const std::string folder = argv[1];
+namespace sandrunner {
+namespace {
+
+void write_policies(const std::string& folder) {
   PolicyFile tcn = random_policy_file(1, {EncoderKind::kTcn, {}});
   PerceptronFile perceptron = random_perceptron(
       "command, angular_velocity, gravity, joint_position, joint_velocity, last_action, phase "
@@ -22,3 +23,8 @@ int main(int, char** argv) {
   const std::string path = folder + "/perceptron.safetensors";
   write_safetensors(path, encode_perceptron(path, perceptron));
 }
+
+}  // namespace
+}  // namespace sandrunner
+
+int main(int, char** argv) { sandrunner::write_policies(argv[1]); }
