@@ -23,7 +23,7 @@ namespace sandrunner::sim {
 /// Place and motion of a foot's deepest point. x, y: along the ground (Shape), on level ground in
 /// the world, m; z: its depth below the surface, along the normal, m; v = dz/dt and vx, vy in m/s;
 /// pressed: how deep that surface has been pressed below the undisturbed one before, m; tilt_x,
-/// tilt_y: by how much a sole rises along x and y over the ground.
+/// tilt_y: slope of a flat sole over the ground, which rises along x and y; of other feet 0.
 template <typename S>
 struct FootMotion {
   S x{}, y{}, z{}, v{}, vx{}, vy{}, pressed{}, tilt_x{}, tilt_y{};

@@ -24,6 +24,8 @@ inline constexpr int kNumPoints = 3 * kNumLegs + kNumBaseCorners;
 inline constexpr int kNumFurtherPatches = (kMaxFootPatches - 1) * kNumLegs;
 inline constexpr int kMaxPoints = kNumPoints + kNumFurtherPatches;
 static_assert(Footprints::kMost == kNumLegs + kNumFurtherPatches);
+/// Numbers of feet and their patches, patch by patch: below kNumLegs the first of each leg.
+constexpr int patch_number(int leg, int patch) noexcept { return patch * kNumLegs + leg; }
 
 /// All that one robot's step carries over to the next.
 template <typename S>
@@ -37,7 +39,8 @@ struct RobotState {
   std::array<std::array<S, 3>, kNumFurtherPatches> further_impulse{};
 
   FootContact<S>& contact(int leg, int patch) noexcept {
-    return patch == 0 ? feet[leg] : further_feet[(patch - 1) * kNumLegs + leg];
+    const int i = patch_number(leg, patch);
+    return i < kNumLegs ? feet[i] : further_feet[i - kNumLegs];
   }
   const FootContact<S>& contact(int leg, int patch) const noexcept {
     return const_cast<RobotState&>(*this).contact(leg, patch);
@@ -106,9 +109,12 @@ class RobotStepper {
     FootForce<S> force;
     S depth{};
   };
-  /// Its index, patch by patch, from the slot of its point.
+  /// Its patch_number() from the slot of its point, and back.
   static constexpr int patch_of(int slot) noexcept {
     return slot < kNumLegs ? slot : slot - kNumPoints + kNumLegs;
+  }
+  static constexpr int slot_of(int number) noexcept {
+    return number < kNumLegs ? number : number - kNumLegs + kNumPoints;
   }
   using Columns = std::array<Vec3<S>, 3>;  // of a leg's Jacobian, body components
   /// Maps an impulse along e (body components) at r_base (from the base origin) to the base and the

@@ -99,6 +99,7 @@ inline void RobotStepper<S>::add_foot(const RobotModel<S>& model, const FootProf
                                       const Terrain<S>& terrain, S dt, int l, int patch,
                                       RobotState<S>& x, StepReport<S>& report) noexcept {
   const S zero = S(0.0), one = S(1.0);
+  const int number = patch_number(l, patch), slot = slot_of(number);
   const LegPose<S>& pose = dynamics_.leg(l);
   const Vec3<S> centre_hip = foot_in_hip(model, foot, l, patch);
   const Vec3<S> centre_base = hip_to_base(model.legs[l], pose, centre_hip);
@@ -117,8 +118,7 @@ inline void RobotStepper<S>::add_foot(const RobotModel<S>& model, const FootProf
   S heaped = zero;  // of the present surface over the undisturbed one
   if (!prints_.are_none()) {
     heaped = select(ground.footprints > zero,
-                    prints_.height_under(patch * kNumLegs + l, contact.active, centre.x, centre.y),
-                    zero);
+                    prints_.height_under(number, contact.active, centre.x, centre.y), zero);
     penetration = penetration + heaped;
   }
   const Columns columns = dynamics_.leg_jacobian(
@@ -142,13 +142,12 @@ inline void RobotStepper<S>::add_foot(const RobotModel<S>& model, const FootProf
     motion.tilt_x = -(dot(frame.t1, up) * inverse);
     motion.tilt_y = -(dot(frame.t2, up) * inverse);
   }
-  const int slot = patch == 0 ? l : kNumPoints + (patch - 1) * kNumLegs + l;
-  auto& [force, depth] = patches_[patch_of(slot)];
+  auto& [force, depth] = patches_[number];
   depth = penetration;
   force = foot_force(ground, foot, motion, rate_, contact);
   if (foot.patches > 1) force = share_of(force, S(1.0 / foot.patches));
   if (!prints_.are_none()) {
-    prints_.follow(patch * kNumLegs + l, contact.active * ground.footprints, centre.x, centre.y,
+    prints_.follow(number, contact.active * ground.footprints, centre.x, centre.y,
                    penetration - heaped, foot.radius * S(std::sqrt(1.0 / foot.patches)),
                    foot.shape == FootShape::kDisc, ground.repose);
   }

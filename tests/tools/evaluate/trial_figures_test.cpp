@@ -26,6 +26,16 @@ class TrialFiguresTest : public testing::Test {
     command_.vx_mps = 1.5;
   }
 
+  /// A fresh run over the track at 1 m/s; ticks past a stop in the period of each number.
+  template <typename Stops>
+  void walk(const Stops& ticks_past_stop) {
+    recorder_ = {};
+    for (int i = 0; i < 650; ++i) {
+      sums_.ticks_past_stop = ticks_past_stop(i);
+      period(1.0f);
+    }
+  }
+
   /// One period at this speed; all feet down for a quarter of a second, then up for as long.
   void period(float vx, float vy = 0.0f, float yaw_rate = 0.0f) {
     sim::RobotState<float> state;
@@ -127,32 +137,20 @@ TEST_F(TrialFiguresTest, FallBehindTheTrackIsNoFailureOfTheTrack) {
 }
 
 TEST_F(TrialFiguresTest, StopCountsUpToTheEndOfTheTrack) {
-  for (int i = 0; i < 650; ++i) {
-    sums_.ticks_past_stop = i == 640 ? 4.0f : 0.0f;
-    period(1.0f);
-  }
+  walk([](int i) { return i == 640 ? 4.0f : 0.0f; });
   EXPECT_TRUE(figures().track_limits_kept);
   EXPECT_NEAR(figures().past_stop_share, 4.0 / (650.0 * kTicksPerPolicyStep), 1e-9);
-  TrialRecorder fresh;
-  recorder_ = fresh;
-  for (int i = 0; i < 650; ++i) {
-    sums_.ticks_past_stop = i == 500 ? 1.0f : 0.0f;
-    period(1.0f);
-  }
+  walk([](int i) { return i == 500 ? 1.0f : 0.0f; });
   EXPECT_TRUE(figures().track_done);
   EXPECT_FALSE(figures().track_limits_kept);
   EXPECT_TRUE(figures().track_stops_brief);
 }
 
 TEST_F(TrialFiguresTest, StopOfAPolicyStepIsNotBriefWhereverItBegins) {
-  for (const auto& [first, second, brief] :
-       {std::tuple{40, 0, false}, {15, 25, false}, {15, 24, true}}) {
-    TrialRecorder fresh;
-    recorder_ = fresh;
-    for (int i = 0; i < 650; ++i) {
-      sums_.ticks_past_stop = static_cast<float>(i == 500 ? first : i == 501 ? second : 0);
-      period(1.0f);
-    }
+  const std::tuple<float, float, bool> cases[] = {
+      {40.0f, 0.0f, false}, {15.0f, 25.0f, false}, {15.0f, 24.0f, true}};
+  for (const auto& [first, second, brief] : cases) {
+    walk([begin = first, end = second](int i) { return i == 500 ? begin : i == 501 ? end : 0.0f; });
     EXPECT_EQ(figures().track_stops_brief, brief) << first << " " << second;
     EXPECT_FALSE(figures().failed_before_track);
   }
@@ -164,12 +162,7 @@ TEST_F(TrialFiguresTest, FailureBeforeTheStartLineIsAFallOrAStopThere) {
   EXPECT_FALSE(figures(false).failed_before_track);  // only slow
   for (int i = 90; i < 110; ++i) period(1.0f);
   EXPECT_FALSE(figures(true).failed_before_track);
-  TrialRecorder fresh;
-  recorder_ = fresh;
-  for (int i = 0; i < 650; ++i) {
-    sums_.ticks_past_stop = i == 50 ? 40.0f : 0.0f;
-    period(1.0f);
-  }
+  walk([](int i) { return i == 50 ? 40.0f : 0.0f; });
   EXPECT_TRUE(figures().track_done);
   EXPECT_TRUE(figures().failed_before_track);
 }

@@ -55,7 +55,8 @@ INTRODUCTION = """
 <p>The experiments of Choi et al., "Learning quadrupedal locomotion on deformable terrain",
 Science Robotics 8 (2023), repeated in simulation with controllers that were trained by this
 project. Each claim of the paper has a rule that was written down before any other controller than
-Ours was evaluated, or that was repaired in the open, and a verdict that follows from it. A negative result is a result.</p>
+Ours was evaluated, or that was repaired in the open, and a verdict that follows from it. A negative
+result is a result.</p>
 """
 
 CONTROLS = """

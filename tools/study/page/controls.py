@@ -34,14 +34,22 @@ def read_all():
     return {path.stem: Control(**json.loads(path.read_text())) for path in sorted(FOLDER.glob("*.json"))}
 
 
+def judged_as_ours(evidence):
+    """The evidence with the policy of --published in the place of Ours."""
+    measured = {}
+    for experiment, controllers in evidence.measured.items():
+        measured[experiment] = {c: seeds for c, seeds in controllers.items() if c != "ours"}
+        if "published" in controllers:
+            measured[experiment]["ours"] = {1: controllers["published"][0]}
+    return Evidence(measured, None, competent=("ours",))
+
+
 def made_of(evidence, results):
     """What a file of `controls/` holds, of the policy of --published; None without it, or without
     its runs on the beach."""
     if not evidence.seeds("E1", "published"):
         return None
-    as_ours = Evidence({experiment: {**{c: s for c, s in controllers.items() if c != "ours"},
-                                     **({"ours": {1: controllers["published"][0]}} if "published" in controllers else {})}
-                        for experiment, controllers in evidence.measured.items()}, None, competent=("ours",))
+    as_ours = judged_as_ours(evidence)
     rules = {}
     for claim in claims.read_claims(claims.CLAIMS_FILE.read_text()):
         rule = claims.RULES.get(claim.id)
