@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "sim/step/robot_step.h"
 
@@ -22,12 +23,11 @@ struct TouchdownWatch {
 
   /// Whether the foot has touched down since the last call for this leg.
   bool touched_down(const RobotState<float>& state, int leg) {
-    const bool was_in_air = in_air[leg];
-    in_air[leg] = true;
+    bool touches = false;
     for (int patch = 0; patch < kMaxFootPatches; ++patch) {
-      if (state.contact(leg, patch).active != 0.0f) in_air[leg] = false;
+      touches = touches || state.contact(leg, patch).active != 0.0f;
     }
-    return was_in_air && !in_air[leg];
+    return std::exchange(in_air[leg], !touches) && touches;
   }
 };
 
