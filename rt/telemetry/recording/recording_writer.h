@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 
-#include "estimator/odometry.h"
 #include "rt/core/robot_description.h"
-#include "rt/core/slower_rate.h"
 #include "rt/loop/tick_record.h"
-#include "rt/telemetry/diagnostics.h"
 #include "rt/telemetry/mcap/mcap_writer.h"
+#include "rt/telemetry/recording/run_messages.h"
 
 namespace sandrunner {
-
-/// Ticks in a message of a recording, and in a batch that the recorder takes.
-inline constexpr std::size_t kTicksPerMessage = 40;
 
 /// What a recording says about the run besides its ticks; with them, it is enough for a replay.
 struct RecordingInfo {
@@ -39,9 +34,8 @@ inline Mode start_mode_of(const RecordingInfo& info) {
   return info.start_mode == "walk" ? Mode::kWalk : Mode::kPassive;
 }
 
-/// Turns ticks into an MCAP file: our own records bit for bit, events and, for the usual tools,
-/// ROS 2 topics at the rate of the policy, diagnostics once a second. Compresses and writes in the
-/// thread that calls it.
+/// Turns ticks into an MCAP file: the messages of all topics of a run (run_messages.h), our own
+/// records bit for bit. Compresses and writes in the thread that calls it.
 class RecordingWriter {
  public:
   /// Throws InputError if the file cannot be written.
@@ -57,7 +51,9 @@ class RecordingWriter {
   /// is before it in the file was lost.
   void write_state(std::uint64_t next_tick, const std::string& state);
   /// What an operator did before `tick` to the robot or its ground.
-  void write_event(std::uint64_t tick, const std::string& kind, const std::string& text);
+  void write_event(std::uint64_t tick, const std::string& kind, const std::string& text) {
+    messages_.add_event(tick, kind, text);
+  }
   /// Finishes the file. Throws InputError.
   void close() { file_.close(); }
 
@@ -65,28 +61,14 @@ class RecordingWriter {
 
  private:
   void write_batch(std::span<const TickRecord> ticks);
-  void write_events(const TickRecord& tick);
-  std::uint64_t time_ns(std::uint64_t tick) const noexcept;
 
-  const std::int64_t start_time_ns_;
-  const RobotDescription robot_;
   McapWriter file_;
-  struct Channels {
-    std::uint16_t ticks = 0, states = 0, events = 0, joint_states = 0, imu = 0, odometry = 0,
-                  transforms = 0, diagnostics = 0;
-  } channels_;
-  Odometry odometry_;
-  Diagnostics diagnostics_;
-  SlowerRate policy_rate_{kPolicyHz}, diagnostics_rate_{1};
+  std::array<std::uint16_t, kNumRunTopics> channels_{};  // by RunTopic
+  RunMessages messages_;
   std::uint64_t bytes_at_state_ = 0;  // of the file, when the last state was written
-  std::uint64_t batches_ = 0, states_ = 0, events_ = 0, last_flush_tick_ = 0;
-  bool in_the_middle_, has_last_ = false;
-  std::uint64_t last_mode_ = 0, last_faults_ = 0, last_warnings_ = 0, last_request_ = 0;
+  std::uint64_t last_flush_tick_ = 0;
 };
 
-inline constexpr const char* kTicksTopic = "/sandrunner/ticks";
-inline constexpr const char* kStatesTopic = "/sandrunner/states";
-inline constexpr const char* kEventsTopic = "/sandrunner/events";
 /// Attachments and metadata of a recording.
 inline constexpr const char* kConfigAttachment = "config.toml";
 inline constexpr const char* kPolicyAttachment = "policy.safetensors";
