@@ -145,7 +145,7 @@ int run(const Options& options) {
   if (isatty(STDERR_FILENO) != 0) rig.sinks.push_back(&progress);
   recording.add_to(rig.sinks);
   if (dds) rig.sinks.push_back(&*dds);
-  if (view) rig.sinks.push_back(&view->feed());
+  if (view) rig.sinks.insert(rig.sinks.end(), {&view->feed(), &view->topics()});
   SystemClock clock;
   signals.run_begins();
   RunResult result = options.clock == RunClock::kRealtime

@@ -10,7 +10,7 @@ namespace sandrunner {
 LiveView::LiveView(const RunScene& scene, const ProcessConfig& config, RunClock clock,
                    const std::atomic<int>& interrupts, Operators& operators,
                    sim::Simulator* simulator)
-    : feed_(scene) {
+    : feed_(scene), topics_(scene.robot) {
   if (clock == RunClock::kLockstep) pace_.emplace(interrupts);
   if (pace_ && simulator) {
     control_.emplace(*simulator, config.simulator.terrain, config.effective,
@@ -20,7 +20,8 @@ LiveView::LiveView(const RunScene& scene, const ProcessConfig& config, RunClock 
                   ViewServer::Parts{.feed = feed_,
                                     .pace = pace_ ? &*pace_ : nullptr,
                                     .desk = config.view_drive ? operators.desk() : nullptr,
-                                    .control = control_ ? &*control_ : nullptr});
+                                    .control = control_ ? &*control_ : nullptr,
+                                    .topics = &topics_});
   to_standard_error(fmt::format("sandrunner: look at {}\n", server_->url()));
 }
 

@@ -9,6 +9,7 @@
 #include "rt/run/operators.h"
 #include "rt/run/run.h"
 #include "rt/run/simulator_control.h"
+#include "rt/telemetry/view/live_topics.h"
 #include "rt/telemetry/view/view_feed.h"
 #include "rt/telemetry/view/view_pace.h"
 #include "rt/telemetry/view/view_server.h"
@@ -27,9 +28,11 @@ class LiveView final : public BetweenTicks {
   /// The view acts between ticks: the run is in lockstep.
   bool has_pace() const noexcept { return pace_.has_value(); }
   ViewFeed& feed() noexcept { return feed_; }
+  LiveTopics& topics() noexcept { return topics_; }
 
  private:
   ViewFeed feed_;
+  LiveTopics topics_;
   std::optional<ViewPace> pace_;
   std::optional<SimulatorControl> control_;
   std::optional<ViewServer> server_;

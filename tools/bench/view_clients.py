@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/bench/view_clients.py [--rounds N] [--seconds S] [SANDRUNNER]: what clients of --view cost a run in real time.
+"""tools/bench/view_clients.py [--rounds N] [--seconds S] [--foxglove] [SANDRUNNER]: what clients of --view cost a
+run in real time.
 
 Runs the robot in real time, alternately without a client and with four: two that read, one that is stopped (SIGSTOP)
-and one that reads a byte a second. Prints a line for each run and the medians. Exit code 1: the clients have a measurable
-effect. That is one of these: more ticks skipped or records dropped than without, start lateness (p99, p99.9) or tick (p99)
-longer by more than 5 %, more than 2 % of a core per client for the server's thread, 16 MB more memory. Run it on an idle
-computer. The clients stand for those on other computers: they run on any processor but the last, which the control thread
-has."""
+and one that reads a byte a second. With --foxglove they subscribe to all topics as Foxglove does; else they are pages.
+Prints a line for each run and the medians. Exit code 1: the clients have a measurable effect. That is one of these: more
+ticks skipped or records dropped than without, start lateness (p99, p99.9) or tick (p99) longer by more than 5 %, more
+than 2 % of a core per client for the server's thread, 16 MB more memory. Run it on an idle computer. The clients stand
+for those on other computers: they run on any processor but the last, which the control thread has."""
 
 import argparse
 import json
@@ -22,6 +23,7 @@ import sys
 import tempfile
 import time
 
+TOPICS = 10  # channels of Foxglove at most
 KINDS = ["reads", "reads", "stopped", "drips"]
 COLUMNS = ["skipped", "dropped", "late p99, us", "late p99.9, us", "tick p99, us", "server, % of a core", "RSS, MB"]
 SLOWER = 1.05
@@ -34,11 +36,12 @@ def frame(opcode, content=b""):
     return bytes([0x80 | opcode, 0x80 | len(content), 0, 0, 0, 0]) + content
 
 
-def be_a_client(kind, port):
+def be_a_client(kind, port, foxglove):
     """Looks at the run until it is killed or the server ends."""
     here = f"127.0.0.1:{port}"
     server = socket.create_connection(("127.0.0.1", port))
-    server.sendall(f"GET /live HTTP/1.1\r\nHost: {here}\r\nOrigin: http://{here}\r\nUpgrade: websocket\r\n"
+    target, line = ("/", "Sec-WebSocket-Protocol: foxglove.sdk.v1") if foxglove else ("/live", f"Origin: http://{here}")
+    server.sendall(f"GET {target} HTTP/1.1\r\nHost: {here}\r\n{line}\r\nUpgrade: websocket\r\n"
                    "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
                    "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n".encode())
     answer = b""
@@ -46,7 +49,10 @@ def be_a_client(kind, port):
         answer += server.recv(4096)
     if not answer.startswith(b"HTTP/1.1 101 "):
         raise SystemExit(f"view_clients.py: the server answers {answer[:40]}, expected 101")
-    server.sendall(frame(1, b'{"say":"hello","key":""}'))
+    said = [b'{"say":"hello","key":""}'] if not foxglove else [
+        b'{"op":"subscribe","subscriptions":[{"id":%d,"channelId":%d}]}' % (i, i) for i in range(TOPICS)]
+    for message in said:
+        server.sendall(frame(1, message))
     if kind == "stopped":
         os.kill(os.getpid(), signal.SIGSTOP)
     alive = time.monotonic()
@@ -58,13 +64,13 @@ def be_a_client(kind, port):
             server.sendall(frame(10))
 
 
-def begin_client(kind, port):
+def begin_client(kind, port, foxglove):
     pid = os.fork()
     if pid == 0:
         if len(processors := os.sched_getaffinity(0)) > 1:
             os.sched_setaffinity(0, processors - {max(processors)})
         try:
-            be_a_client(kind, port)
+            be_a_client(kind, port, foxglove)
         except OSError:
             pass  # the server has ended
         finally:
@@ -81,7 +87,7 @@ def server_seconds(pid):
     raise SystemExit("view_clients.py: found no thread 'view-server'")
 
 
-def measure(program, seconds, kinds):
+def measure(program, seconds, kinds, foxglove):
     """One run with these clients; its figures in the order of COLUMNS."""
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.Popen([program, "--view", "--set", "view.port=0", "--clock", "realtime", "--start", "walk",
@@ -95,7 +101,7 @@ def measure(program, seconds, kinds):
                 if not (line := run.stderr.readline()):
                     raise SystemExit(f"view_clients.py: {program} ended: {said}")
                 said += line
-            clients = [begin_client(kind, int(address[1])) for kind in kinds]
+            clients = [begin_client(kind, int(address[1]), foxglove) for kind in kinds]
             while not run.stdout.readline().startswith("wrote "):
                 if run.poll() is not None:
                     raise SystemExit(f"view_clients.py: {program} ended with {run.returncode}")
@@ -122,12 +128,13 @@ def main():
     parser.add_argument("program", nargs="?", default="build/release/bin/sandrunner", metavar="SANDRUNNER")
     parser.add_argument("--rounds", type=int, default=5, metavar="N")
     parser.add_argument("--seconds", type=float, default=30, metavar="S")
+    parser.add_argument("--foxglove", action="store_true")
     arguments = parser.parse_args()
     print(" " * 12 + "".join(f"  {column}" for column in COLUMNS))
     runs = {"no client": [], "four": []}
     for _ in range(arguments.rounds):
         for name, kinds in (("no client", []), ("four", KINDS)):
-            runs[name].append(measure(arguments.program, arguments.seconds, kinds))
+            runs[name].append(measure(arguments.program, arguments.seconds, kinds, arguments.foxglove))
             print(line(name, runs[name][-1]), flush=True)
     without, with_four = ([statistics.median(column) for column in zip(*runs[name])] for name in runs)
     print("medians\n" + line("no client", without) + "\n" + line("four", with_four))

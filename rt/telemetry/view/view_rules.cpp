@@ -22,6 +22,36 @@ bool is_this_computer(std::string_view host) noexcept {
   });
 }
 
+// The same bytes under both names.
+constexpr std::string_view kFoxglove[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
+
+// Of a list with commas.
+bool offers(std::string_view list, std::string_view name) noexcept {
+  while (!list.empty()) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    std::string_view item = list.substr(0, comma);
+    while (item.starts_with(' ')) item.remove_prefix(1);
+    while (item.ends_with(' ')) item.remove_suffix(1);
+    if (item == name) return true;
+    list.remove_prefix(std::min(comma + 1, list.size()));
+  }
+  return false;
+}
+
+constexpr std::string_view kHttp = "http://";
+
+ViewVerdict judge_foxglove(const ViewRequest& request) noexcept {
+  const std::string_view origin = request.origin;
+  const bool here = origin.starts_with(kHttp) && is_this_computer(origin.substr(kHttp.size()));
+  if (!here && !origin.empty() && origin != "file://" && origin != "https://app.foxglove.dev") {
+    return {.status = 403, .reason = "Origin is not Foxglove\n"};
+  }
+  for (const std::string_view name : kFoxglove) {
+    if (offers(request.protocols, name)) return {.status = 101, .protocol = name};
+  }
+  return {.status = 404, .reason = "no such protocol\n"};
+}
+
 }  // namespace
 
 ViewVerdict judge(const ViewRequest& request) noexcept {
@@ -30,10 +60,10 @@ ViewVerdict judge(const ViewRequest& request) noexcept {
   }
   if (request.method != "GET") return {.status = 405, .reason = "only GET\n"};
   if (request.websocket) {
+    if (request.target == "/" && request.topics) return judge_foxglove(request);
     if (request.target != "/live") return {.status = 404, .reason = "no such name\n"};
-    constexpr std::string_view kScheme = "http://";
-    const bool own = request.origin.starts_with(kScheme) &&
-                     request.origin.substr(kScheme.size()) == request.host;
+    const bool own =
+        request.origin.starts_with(kHttp) && request.origin.substr(kHttp.size()) == request.host;
     if (!own) return {.status = 403, .reason = "Origin is not this server\n"};
     return {.status = 101};
   }

@@ -15,7 +15,7 @@ inline constexpr std::size_t kViewHeaderBytes = 8192;   ///< of a request, at mo
 inline constexpr std::size_t kViewMessageBytes = 4096;  ///< of a message of a page, at most
 inline constexpr int kViewMessagesPerSecond = 200;      ///< of a page, at most
 inline constexpr int kViewSockets = 32;                 ///< at one time
-inline constexpr int kViewPages = 8;                    ///< at one time
+inline constexpr int kViewPages = 8;                    ///< and sessions of Foxglove, at one time
 inline constexpr std::chrono::seconds kViewHeaderTime{5};
 
 /// Headers of every answer: nothing but this server's own files is loaded or run, nobody else may
@@ -34,20 +34,25 @@ inline constexpr std::array<std::array<std::string_view, 2>, 6> kViewHeaders = {
 /// What a request's header says.
 struct ViewRequest {
   std::string_view method, target, host, origin = {};
-  bool websocket = false;  ///< asks for an upgrade
+  bool websocket = false;           ///< asks for an upgrade
+  std::string_view protocols = {};  ///< that it offers to speak then
+  bool topics = false;              ///< this server has topics for Foxglove
 };
 
 /// The answer to a request.
 struct ViewVerdict {
-  int status = 0;                ///< of HTTP; 101: a page's live connection
+  int status = 0;                ///< of HTTP; 101: a live connection
   std::string_view reason = {};  ///< for the client that was refused
   std::string_view file = {};    ///< status 200: embedded file to send
   std::string_view type = {};    ///< of its content
+  /// Status 101: empty for a page, or the name of Foxglove's protocol to answer with.
+  std::string_view protocol = {};
 };
 
 /// Host is this computer under any port (tunnels end on others), or a page that was loaded from
-/// another name could read along (DNS rebinding); a live connection comes from this server's own
-/// page; GET of three names.
+/// another name could read along (DNS rebinding); GET of three names. A page's live connection
+/// comes from this server's own page. Foxglove's, which only shows, comes from a program of this
+/// computer (no origin, or that of a file), from a page of this computer, or from Foxglove's own.
 ViewVerdict judge(const ViewRequest& request) noexcept;
 
 /// 128 random bits as 32 hexadecimal digits.

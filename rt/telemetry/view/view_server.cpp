@@ -23,7 +23,8 @@
 
 #include "rt/base/errors.h"
 #include "rt/telemetry/view/embedded.h"
-#include "rt/telemetry/view/view_orders.h"
+#include "rt/telemetry/view/foxglove_session.h"
+#include "rt/telemetry/view/page_session.h"
 #include "rt/telemetry/view/view_rules.h"
 
 namespace sandrunner {
@@ -38,16 +39,14 @@ using Error = beast::error_code;
 using Steady = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kSendEvery{16};
-constexpr int kStateEvery = 6;  // of these: 10 times a second, so that silence means something
-constexpr int kSendBuffer = 64 << 10;    // the kernel hoards no more for a page that does not read
-constexpr std::size_t kMostAnswers = 4;  // waiting for a page; then it is not listened to
+constexpr int kSendBuffer = 64 << 10;  // the kernel hoards no more for a page that does not read
 constexpr std::chrono::seconds kHandshakeTime{5}, kIdleTime{60};
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-class Page;
+class Connection;
 
-// A connection that another client may need the place of: a request that is not answered, or a page
+// A socket that another client may need the place of: a request that is not answered, or a page
 // that has not said hello.
 class Guest {
  public:
@@ -63,7 +62,7 @@ struct Hub {
   std::string key, run;
   int sockets = 0;
   std::uint64_t pages_so_far = 0;
-  std::vector<Page*> pages;  // that have said hello
+  std::vector<Connection*> seated;  // pages that have said hello, and Foxglove
   std::vector<Guest*> guests;
 };
 
@@ -80,19 +79,21 @@ class Place {
   Hub* hub_;
 };
 
-// A page that is open somewhere. One message is being written; what comes next is asked of the
-// feed when that is done.
-class Page : public Guest, public std::enable_shared_from_this<Page> {
+// A client that stays. One message is being written; what comes next is asked of its session when
+// that is done.
+class Connection : public Guest, public std::enable_shared_from_this<Connection> {
  public:
-  Page(Hub& hub, beast::tcp_stream stream, Place place)
-      : hub_(hub), place_(std::move(place)), socket_(std::move(stream)) {
+  Connection(Hub& hub, beast::tcp_stream stream, Place place, std::unique_ptr<ViewSession> session)
+      : hub_(hub),
+        place_(std::move(place)),
+        session_(std::move(session)),
+        socket_(std::move(stream)) {
     hub_.guests.push_back(this);
   }
-  ~Page() override { forget(); }
-  Page(const Page&) = delete;
-  Page& operator=(const Page&) = delete;
+  ~Connection() override { forget(); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
-  bool has_key() const noexcept { return has_key_; }
   // At once: one that does not read its end would keep the place.
   void leave() override {
     closing_ = true;
@@ -101,42 +102,45 @@ class Page : public Guest, public std::enable_shared_from_this<Page> {
     beast::get_lowest_layer(socket_).close();
   }
 
-  void begin(const http::request<http::empty_body>& request) {
+  // `protocol`: to answer with; empty: none.
+  void begin(const http::request<http::empty_body>& request, std::string_view protocol) {
     socket_.set_option(websocket::stream_base::timeout{kHandshakeTime, kIdleTime, true});
+    if (!protocol.empty()) {
+      socket_.set_option(
+          websocket::stream_base::decorator([protocol](websocket::response_type& response) {
+            response.set(http::field::sec_websocket_protocol,
+                         beast::string_view(protocol.data(), protocol.size()));
+          }));
+    }
     socket_.read_message_max(kViewMessageBytes);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](Error error) {
-      if (!error) self->read();
+      if (!error) self->go_on();
     });
   }
 
-  // Writes what there is, if nothing is being written. `state`: empty, or what is due.
-  void send(const std::string& state = {}) {
-    if (!state.empty()) state_ = state;
-    if (!greeted_ || !message_.empty() || closing_) return;
-    if (!answers_.empty()) {
-      message_ = std::move(answers_.front());
-      answers_.pop_front();
-      socket_.text(true);
-    } else if (message_ = hub_.parts.feed.next(in_feed_); !message_.empty()) {
-      socket_.binary(true);
-    } else if (!state_.empty()) {
-      message_ = std::exchange(state_, {});
-      socket_.text(true);
-    } else {
-      return;
-    }
-    socket_.async_write(asio::buffer(message_), [self = shared_from_this()](Error error, auto) {
-      self->message_.clear();
-      if (error) return;
-      self->read();
-      self->send();
-    });
+  // Writes what there is, if nothing is being written.
+  void send() {
+    if (!seated_ || !message_.bytes.empty() || closing_) return;
+    message_ = session_->next();
+    if (message_.bytes.empty()) return;
+    socket_.text(message_.text);
+    socket_.async_write(asio::buffer(message_.bytes),
+                        [self = shared_from_this()](Error error, auto) {
+                          self->message_ = {};
+                          if (!error) self->go_on();
+                        });
   }
 
  private:
+  void go_on() {
+    if (!take_seat()) return close(websocket::close_code::try_again_later, "too many pages");
+    send();
+    read();
+  }
+
   void read() {
-    if (reading_ || closing_ || answers_.size() >= kMostAnswers) return;
+    if (reading_ || closing_ || !session_->listens()) return;
     reading_ = true;
     socket_.async_read(buffer_, [self = shared_from_this()](Error error, auto) {
       self->reading_ = false;
@@ -149,56 +153,33 @@ class Page : public Guest, public std::enable_shared_from_this<Page> {
     if (!rate_.allows(Steady::now())) {
       return close(websocket::close_code::policy_error, "too many messages");
     }
-    const PageMessage message = parse_page_message(
-        {static_cast<const char*>(buffer_.data().data()), buffer_.data().size()});
+    const auto goodbye =
+        session_->take({static_cast<const char*>(buffer_.data().data()), buffer_.data().size()});
     buffer_.consume(buffer_.size());
-    if (const auto* hello = std::get_if<PageHello>(&message); hello && !greeted_) {
-      has_key_ = same_key(hello->key, hub_.key);
-      if (!take_place()) return close(websocket::close_code::try_again_later, "too many pages");
-      greet(*hello);
-    } else if (!greeted_) {
-      return close(websocket::close_code::policy_error, "expected hello first");
-    } else {
-      follow(message);
-    }
-    send();
-    read();
+    if (goodbye) return close(static_cast<websocket::close_code>(goodbye->code), goodbye->why);
+    go_on();
   }
 
-  void follow(const PageMessage& message) {
-    ViewOrders::Outcome outcome = orders_.follow(message, has_key_);
-    if (!outcome.answer.empty()) answers_.push_back(std::move(outcome.answer));
-    if (outcome.changed) state_ = view_state(hub_.parts);
-  }
-
-  // One of the places of pages. Who has the key gets that of the oldest page without.
-  bool take_place() {
-    if (hub_.pages.size() >= kViewPages) {
+  // One of the seats, as soon as the session claims one. Who has the key gets that of the oldest
+  // client without. False: none is left.
+  bool take_seat() {
+    const ViewSession::Claim claim = session_->claim();
+    if (seated_ || claim == ViewSession::Claim::kNone) return true;
+    if (hub_.seated.size() >= kViewPages) {
       const auto stranger =
-          std::ranges::find_if(hub_.pages, [](const Page* page) { return !page->has_key(); });
-      if (!has_key_ || stranger == hub_.pages.end()) return false;
+          std::ranges::find(hub_.seated, ViewSession::Claim::kLooks,
+                            [](const Connection* other) { return other->session_->claim(); });
+      if (claim == ViewSession::Claim::kLooks || stranger == hub_.seated.end()) return false;
       (*stranger)->leave();
     }
     std::erase(hub_.guests, static_cast<Guest*>(this));
-    hub_.pages.push_back(this);
+    hub_.seated.push_back(this);
+    seated_ = true;
     return true;
   }
 
-  void greet(const PageHello& hello) {
-    greeted_ = true;
-    in_feed_ = hub_.parts.feed.join();
-    answers_.push_back(fmt::format(
-        R"({{"say":"hello","run":"{}","key":{},"pace":{},"drive":{},"recorded":{},"hello":{}}})",
-        hub_.run, has_key_, hub_.parts.pace != nullptr, hub_.parts.desk != nullptr,
-        hub_.parts.recorded, hub_.parts.feed.hello()));
-    if (!hello.key.empty() && !has_key_) {
-      answers_.push_back(view_refusal("the key is not this run's"));
-    }
-    send(view_state(hub_.parts));
-  }
-
   void forget() {
-    std::erase(hub_.pages, this);
+    std::erase(hub_.seated, this);
     std::erase(hub_.guests, static_cast<Guest*>(this));
   }
 
@@ -209,17 +190,15 @@ class Page : public Guest, public std::enable_shared_from_this<Page> {
 
   Hub& hub_;
   std::optional<Place> place_;
-  ViewOrders orders_{hub_.parts, ++hub_.pages_so_far};
+  const std::unique_ptr<ViewSession> session_;
   websocket::stream<beast::tcp_stream, false> socket_;  // without compression, which is never asked
   beast::flat_buffer buffer_{2 * kViewMessageBytes};
   MessageRate rate_;
-  ViewFeed::Place in_feed_;
-  bool greeted_ = false, has_key_ = false, reading_ = false, closing_ = false;
-  std::deque<std::string> answers_;
-  std::string state_, message_;  // the latter: being written
+  bool seated_ = false, reading_ = false, closing_ = false;
+  ViewSession::Outgoing message_;  // being written
 };
 
-// A request, until it is answered or a page.
+// A request, until it is answered or a connection that stays.
 class Visitor : public Guest, public std::enable_shared_from_this<Visitor> {
  public:
   Visitor(Hub& hub, Tcp::socket socket)
@@ -249,14 +228,19 @@ class Visitor : public Guest, public std::enable_shared_from_this<Visitor> {
   void answer() {
     const auto& request = parser_->get();
     const std::string method(request.method_string());
-    const ViewVerdict verdict = judge({.method = method,
-                                       .target = view_of(request.target()),
-                                       .host = view_of(request[http::field::host]),
-                                       .origin = view_of(request[http::field::origin]),
-                                       .websocket = websocket::is_upgrade(request)});
+    const ViewVerdict verdict =
+        judge({.method = method,
+               .target = view_of(request.target()),
+               .host = view_of(request[http::field::host]),
+               .origin = view_of(request[http::field::origin]),
+               .websocket = websocket::is_upgrade(request),
+               .protocols = view_of(request[http::field::sec_websocket_protocol]),
+               .topics = hub_.parts.topics != nullptr});
     if (verdict.status == 101) {
       stream_.expires_never();
-      std::make_shared<Page>(hub_, std::move(stream_), std::move(*place_))->begin(request);
+      std::make_shared<Connection>(hub_, std::move(stream_), std::move(*place_),
+                                   session_for(verdict))
+          ->begin(request, verdict.protocol);
       return;
     }
     response_.version(11);
@@ -278,6 +262,13 @@ class Visitor : public Guest, public std::enable_shared_from_this<Visitor> {
     });
   }
 
+  std::unique_ptr<ViewSession> session_for(const ViewVerdict& verdict) {
+    if (verdict.protocol.empty()) {
+      return std::make_unique<PageSession>(hub_.parts, hub_.key, hub_.run, ++hub_.pages_so_far);
+    }
+    return std::make_unique<FoxgloveSession>(*hub_.parts.topics, hub_.run);
+  }
+
   Hub& hub_;
   std::optional<Place> place_;
   beast::tcp_stream stream_;
@@ -294,7 +285,7 @@ class ViewServer::Implementation {
       : hub_{.parts = parts,
              .key = make_view_key(),
              .run = make_view_key(),
-             .pages = {},
+             .seated = {},
              .guests = {}},
         io_(1),
         timer_(io_) {
@@ -359,9 +350,7 @@ class ViewServer::Implementation {
     timer_.expires_after(kSendEvery);
     timer_.async_wait([this](Error error) {
       if (error) return;
-      const bool state = ++ticks_ % kStateEvery == 0 && !hub_.pages.empty();
-      const std::string text = state ? view_state(hub_.parts) : std::string();
-      for (Page* const page : std::vector(hub_.pages)) page->send(text);
+      for (Connection* const client : std::vector(hub_.seated)) client->send();
       for (Tcp::acceptor* const acceptor : std::exchange(refused_, {})) accept(*acceptor);
       tick();
     });
@@ -372,7 +361,6 @@ class ViewServer::Implementation {
   std::vector<Tcp::acceptor> acceptors_;
   std::vector<Tcp::acceptor*> refused_;  // that accept again at the next tick
   asio::steady_timer timer_;
-  std::uint64_t ticks_ = 0;
   int port_ = 0;
   std::thread thread_;
 };

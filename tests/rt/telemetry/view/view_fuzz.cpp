@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Anything that a visitor may send to the server of --view: as a message of a page, and as the
-// lines of a request.
+// Anything that a visitor may send to the server of --view: as a message of a page or of Foxglove,
+// and as the lines of a request.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <variant>
 
+#include "rt/telemetry/view/foxglove_session.h"
 #include "rt/telemetry/view/view_messages.h"
 #include "rt/telemetry/view/view_rules.h"
 
@@ -50,18 +52,42 @@ void judge_lines(std::string_view text) {
   const auto [target, host, origin, method] = lines;
   for (const bool websocket : {false, true}) {
     for (const std::string_view by : {std::string_view("GET"), method}) {
-      const ViewVerdict verdict = judge({by, target, host, origin, websocket});
+      const ViewVerdict verdict = judge({by, target, host, origin, websocket, method, true});
       const bool good = verdict.status == 200 || verdict.status == 101;
       must(good || verdict.status == 403 || verdict.status == 404 || verdict.status == 405);
       must(good == verdict.reason.empty());
       if (!good) continue;
       must(by == "GET" && websocket == (verdict.status == 101) && !host.empty());
       must(host.find_first_of("/@ ") == std::string_view::npos);
-      if (websocket) must(origin.starts_with("http://") && origin.substr(7) == host);
+      if (websocket && verdict.protocol.empty()) {
+        must(origin.starts_with("http://") && origin.substr(7) == host);
+      }
+      must(verdict.protocol.empty() || method.find(verdict.protocol) != std::string_view::npos);
       if (!websocket) must(!verdict.file.empty() && !verdict.type.empty());
     }
   }
   must(same_key(target, host) == (target == host));
+}
+
+/// Each line said to a session of Foxglove, while a robot walks.
+void tell_foxglove(std::string_view text) {
+  LiveTopics topics{RobotDescription()};
+  topics.begin(0);
+  FoxgloveSession session(topics, "run");
+  TickRecord tick{};
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    must(!session.take(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    topics.add(tick);
+    tick.input.sensors.tick += kTicksPerPolicyStep;
+    for (;;) {
+      const ViewSession::Outgoing out = session.next();
+      if (out.bytes.empty()) break;
+      must(out.text ? out.bytes.front() == '{' : out.bytes.front() == 1 || out.bytes.front() == 2);
+    }
+    must(session.listens());
+  }
 }
 
 }  // namespace
@@ -72,5 +98,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   std::visit(sandrunner::WithinBounds(), sandrunner::parse_page_message(text));
   sandrunner::judge_lines(text);
+  sandrunner::tell_foxglove(text);
   return 0;
 }

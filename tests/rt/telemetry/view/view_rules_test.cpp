@@ -48,6 +48,31 @@ TEST(ViewRulesTest, OnlyTheServersOwnPageGetsALiveConnection) {
   EXPECT_EQ(live("http://127.0.0.1:8765", "/"), 404);
 }
 
+TEST(ViewRulesTest, FoxgloveComesFromThisComputerOrFromItsOwnPage) {
+  const auto verdict = [](std::string_view origin, std::string_view protocols = "foxglove.sdk.v1",
+                          bool topics = true) {
+    return judge({"GET", "/", "127.0.0.1:8765", origin, true, protocols, topics});
+  };
+  for (const char* origin : {"", "file://", "https://app.foxglove.dev", "http://localhost:8080",
+                             "http://127.0.0.1", "http://[::1]:9"}) {
+    EXPECT_EQ(verdict(origin).status, 101) << origin;
+  }
+  for (const char* origin :
+       {"null", "https://evil.example", "https://app.foxglove.dev.evil.example",
+        "https://app.foxglove.dev:444", "http://app.foxglove.dev", "https://localhost",
+        "http://localhost.evil.example", "file:///home/me/page.html", "https://foxglove.dev"}) {
+    EXPECT_EQ(verdict(origin).status, 403) << origin;
+  }
+  EXPECT_EQ(verdict("", "foxglove.websocket.v1").protocol, "foxglove.websocket.v1");
+  EXPECT_EQ(verdict("", " a ,foxglove.websocket.v1 , foxglove.sdk.v1").protocol, "foxglove.sdk.v1");
+  for (const char* protocols : {"", ",", "foxglove", "foxglove.sdk.v10", "foxglove.sdk.v1x, b"}) {
+    EXPECT_EQ(verdict("", protocols).status, 404) << protocols;
+  }
+  EXPECT_EQ(verdict("", "foxglove.sdk.v1", false).status, 404);
+  EXPECT_EQ(judge({"GET", "/", "evil.example", "", true, "foxglove.sdk.v1", true}).status, 403);
+  EXPECT_EQ(judge({"POST", "/", "localhost", "", true, "foxglove.sdk.v1", true}).status, 405);
+}
+
 TEST(ViewRulesTest, AKeyHas128BitsAndIsAnotherOneEveryTime) {
   const std::string key = make_view_key();
   EXPECT_EQ(key.size(), 32u);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <future>
@@ -254,6 +255,64 @@ TEST_F(ViewServerTest, APageIsOneOfTheOperators) {
   EXPECT_EQ(counts.accepted, 1u);
   EXPECT_EQ(counts.absurd, 1u);
   EXPECT_EQ(counts.other_publisher, 2u);
+}
+
+struct FoxgloveTest : ViewServerTest {
+  FoxgloveTest() {
+    topics.begin(kExampleStart_ns);
+    const std::string url = its_server.url();
+    its_port = std::stoi(url.substr(url.find(':', 6) + 1));
+    its_key = url.substr(url.find("#key=") + 5);
+  }
+  std::unique_ptr<WebPage> foxglove(const std::string& protocols = "foxglove.sdk.v1",
+                                    const std::string& lines = "") {
+    return std::make_unique<WebPage>(its_port, "/",
+                                     "Sec-WebSocket-Protocol: " + protocols + "\r\n" + lines);
+  }
+
+  LiveTopics topics{example_robot()};
+  ViewServer its_server{0, {.feed = feed, .topics = &topics}};
+  int its_port = 0;
+  std::string its_key;
+};
+
+TEST_F(FoxgloveTest, ItIsAnsweredInItsProtocolAndGetsWhatItSubscribesTo) {
+  for (const std::string protocol : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) {
+    const auto page = foxglove("x, " + protocol, "Origin: https://app.foxglove.dev\r\n");
+    EXPECT_NE(page->answer.find("Sec-WebSocket-Protocol: " + protocol + "\r\n"), std::string::npos);
+    EXPECT_EQ(Json::parse(page->hear().text).at("op"), "serverInfo");
+    const Json channels = Json::parse(page->hear().text).at("channels");
+    EXPECT_EQ(page->hear().text[0], 2);  // time
+    const auto robot = std::ranges::find(channels, "/robot_description",
+                                         [](const Json& channel) { return channel.at("topic"); });
+    page->say(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":)" +
+              robot->at("id").dump() + "}]}");
+    const Message message = page->hear();
+    EXPECT_EQ(message.kind, 2);
+    EXPECT_EQ(message.text.substr(13), topics.said_once(RunTopic::kRobotDescription)->cdr);
+  }
+}
+
+TEST_F(FoxgloveTest, OthersAreRefusedAndSoIsARunWithoutTopics) {
+  const auto begins = [](const std::string& answer) { return answer.substr(0, 13); };
+  EXPECT_EQ(begins(foxglove("mqtt")->answer), "HTTP/1.1 404 ");
+  EXPECT_EQ(begins(foxglove("foxglove.sdk.v1", "Origin: https://evil.example\r\n")->answer),
+            "HTTP/1.1 403 ");
+  EXPECT_EQ(begins(WebPage(port, "/", "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n").answer),
+            "HTTP/1.1 404 ");
+}
+
+TEST_F(FoxgloveTest, ItsPlacesAreThoseOfPagesWithoutTheKey) {
+  std::vector<std::unique_ptr<WebPage>> sessions;
+  for (int i = 0; i < kViewPages; ++i) {
+    sessions.push_back(foxglove());
+    EXPECT_EQ(Json::parse(sessions.back()->hear().text).at("op"), "serverInfo");
+  }
+  EXPECT_EQ(foxglove()->close_code(), 1013);
+  WebPage page(its_port);
+  page.say(hello(its_key));
+  EXPECT_EQ(page.hear("hello").at("key"), true);
+  EXPECT_EQ(sessions.front()->close_code(), -1);  // the oldest went
 }
 
 TEST_F(ViewServerTest, APortThatIsTakenIsSaidInOneLine) {

@@ -85,13 +85,15 @@ struct Message {
   std::string text;
 };
 
-/// A page that has been let in.
+/// A live connection: of a page that has been let in.
 class WebPage : public Client {
  public:
-  explicit WebPage(int port) : Client(port) {
-    const std::string host = "127.0.0.1:" + std::to_string(port);
-    send("GET /live HTTP/1.1\r\nHost: " + host + "\r\nOrigin: http://" + host +
-         "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+  explicit WebPage(int port)
+      : WebPage(port, "/live", "Origin: http://127.0.0.1:" + std::to_string(port) + "\r\n") {}
+  /// `lines`: of the request's header.
+  WebPage(int port, const std::string& target, const std::string& lines) : Client(port) {
+    send("GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) + "\r\n" + lines +
+         "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
     answer = until("\r\n\r\n");
   }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rt/telemetry/view/view_orders.h"
+#include "rt/telemetry/view/view_session.h"
+
+namespace sandrunner {
+
+/// A page of ours: it says hello first, then it is sent frames and, ten times a second, the state,
+/// so that silence means something.
+class PageSession final : public ViewSession {
+ public:
+  /// `parts` must outlive the session. `key`, `run`: of this process. `page`: its number among the
+  /// pages of the server.
+  PageSession(const ViewServer::Parts& parts, std::string key, std::string run, std::uint64_t page);
+
+  std::optional<Goodbye> take(std::string_view text) override;
+  Outgoing next() override;
+  Claim claim() const override { return claim_; }
+  bool listens() const override { return answers_.size() < kMostAnswers; }
+
+ private:
+  void greet(const PageHello& hello);
+
+  const ViewServer::Parts& parts_;
+  const std::string key_, run_;
+  ViewOrders orders_;
+  Claim claim_ = Claim::kNone;
+  ViewFeed::Place in_feed_;
+  std::deque<std::string> answers_;
+  std::chrono::steady_clock::time_point state_due_{};
+};
+
+}  // namespace sandrunner
