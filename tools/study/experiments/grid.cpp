@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// E7, Fig. 4 A to D: rewards and clearances over a grid of stiffnesses. Two groups on "grid":
+// E7, Fig. 4 A to D: rewards and clearances over a grid of stiffnesses. Three groups on "grid":
 //   cells: lists, a value for each cell: sigma_flat_npm3, sigma_cone_npm3, static_depth_m, success,
 //     reward, clearance_m (nan where the success is not above kLeastSuccess)
 //   robots: a run is a robot, which has the same start and command in each cell: reward and
 //     success, means over the cells; slope_flat_m, slope_cone_m, of its clearance
+//   terms: lists, one value each: the terms of the reward (train::reward_term_names), means over
+//     cells and robots
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 
 #include "tools/study/experiments/experiments.h"
 #include "tools/study/simulated/grid_run.h"
@@ -81,6 +84,17 @@ RunGroup robots_group(const std::vector<GridCell>& cells, const Cells& runs) {
   return group;
 }
 
+RunGroup terms_group(const Cells& runs) {
+  RunGroup group{kGround, "terms", 0.0, {}, {}};
+  const std::vector<std::string> names = train::reward_term_names();
+  for (std::size_t term = 0; term < names.size(); ++term) {
+    group.lists[names[term]] = {mean_over(runs.size(), [&](std::size_t c) {
+      return mean_over(runs[c].size(), [&](std::size_t i) { return runs[c][i].reward_terms[term]; });
+    })};
+  }
+  return group;
+}
+
 }  // namespace
 
 Measured run_grid(Lab& lab, const Model& model) {
@@ -91,7 +105,7 @@ Measured run_grid(Lab& lab, const Model& model) {
   for (const GridCell& cell : cells) {
     runs.push_back(run_cell(model.network, cell, settings.grid_runs, lab.robot(), pool));
   }
-  return {{cells_group(cells, runs, lab.robot()), robots_group(cells, runs)}};
+  return {{cells_group(cells, runs, lab.robot()), robots_group(cells, runs), terms_group(runs)}};
 }
 
 }  // namespace sandrunner::study

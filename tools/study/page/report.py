@@ -95,6 +95,7 @@ def add_grid(page):
     page.figure(figures_simulated.grid_lines(page.evidence))
     page.fold("Numbers of the grid", tables.grid_table(page.evidence))
     page.notes("", chapters.GRID_TABLE)
+    page.fold("Reward of the grid by term", tables.reward_terms_table(page.evidence))
 
 
 def add_experiments(page):

@@ -7,8 +7,8 @@ import numpy as np
 import hidden_state
 import paper
 from controllers import BEACH, CONTROLLERS, GRID, ORACLES, TRAINED, name_of
-from evidence import (NAN, Value, greatest_of_first_five, grid_figure, grid_list, mean, mean_value, oracle_ablation,
-                      oracle_value, run_values, select, soft_and_stiff, success_rate)
+from evidence import (NAN, Value, greatest_of_first_five, grid_figure, grid_list, mean, mean_value, median,
+                      oracle_ablation, oracle_value, run_values, select, soft_and_stiff, success_rate)
 from markup import NOT_RUN, escaped, named, table
 from rules_oracles import JOINTS
 from terms import mean_interval, printed, rate_interval, ratio
@@ -144,6 +144,23 @@ def grid_table(evidence):
     return controller_table(evidence, "E7", GRID, [
         "controller", "seeds", "mean reward", "worst cell", "softest quarter", "stiffest quarter", "success, %",
         "worst cell, %", "clearance, mm", "mm a decade of sigma_flat", "mm a decade of sigma_cone"], cells)
+
+
+def reward_terms_table(evidence):
+    """The mean reward of a step by term, of those that matter; medians over the seeds."""
+    ran = [key for key in GRID if evidence.seeds("E7", key)]
+    reward, terms = {}, {}  # by controller; by term, then by controller
+    for key in ran:
+        reward[key] = median(grid_figure(evidence, key, "reward"))
+        seeds = [select(groups, "grid", "terms")[0].lists for groups in evidence.seeds("E7", key).values()]
+        for name in seeds[0]:
+            terms.setdefault(name, {})[key] = median([lists[name][0] for lists in seeds])
+    rows = [[name.partition("_")[0], name.partition("_")[2].replace("_", " "), *(f"{of[key]:.2f}" for key in ran)]
+            for name, of in terms.items() if max(map(abs, of.values())) >= 0.005]
+    rows.append(["", "given back by the floor of the penalties",
+                 *(f"{reward[key] - sum(of[key] for of in terms.values()):.2f}" for key in ran)])
+    rows.append(["", "all", *(f"{reward[key]:.2f}" for key in ran)])
+    return table(["", "term", *(name_of(key) for key in ran)], rows)
 
 
 def states_table(evidence):

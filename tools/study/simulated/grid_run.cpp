@@ -16,6 +16,7 @@ constexpr std::uint64_t kSeed = 7;  // of starts and commands
 struct RobotSums {
   bool fell = false;
   double reward = 0.0;
+  std::array<double, train::kRewardTerms> terms{};
   ClearanceSums clearance;
 };
 
@@ -116,14 +117,17 @@ std::vector<GridRobot> run_cell(const train::TaskNetwork& network, const GridCel
       if (one.fell) continue;
       add_feet(s, env, robot.model.foot_radius_m, one.clearance);
       one.reward += s.rollout.reward(0, env);
+      const auto& terms = s.details.terms[static_cast<std::size_t>(env)];
+      for (std::size_t i = 0; i < terms.size(); ++i) one.terms[i] += terms[i];
       one.fell = s.rollout.end(0, env) == learner::End::kTerminated;
     }
   });
   std::vector<GridRobot> result;
   for (int i = 0; i < robots; ++i) {
     const RobotSums& one = sums[static_cast<std::size_t>(i)];
-    result.push_back({one.fell, one.reward / (run.task.reward.scale * kSteps),
+    result.push_back({one.fell, one.reward / (run.task.reward.scale * kSteps), one.terms,
                       one.fell ? kNan : one.clearance.clearance_m()});
+    for (double& term : result.back().reward_terms) term /= kSteps;
   }
   return result;
 }

@@ -7,6 +7,7 @@
 
 #include "tools/study/simulated/plain_task.h"
 #include "tools/study/simulated/task_run.h"
+#include "tools/train/task/reward.h"
 
 namespace sandrunner::study {
 
@@ -19,6 +20,9 @@ std::vector<GridCell> grid_cells(int each_way);
 struct GridRobot {
   bool fell = false;
   double reward = 0.0;  ///< mean of a step, in the units of training.toml; none after a fall
+  /// Likewise, of each of train::reward_term_names(). Their sum is less than the reward where the
+  /// floor of the penalties holds, and a diverged robot's last step has none.
+  std::array<double, train::kRewardTerms> reward_terms{};
   /// Mean height of the feet above the mean depth of their stances, m; nan if it fell or had no
   /// stance.
   double clearance_m = 0.0;

@@ -15,6 +15,8 @@ void run_on_task(const train::TaskNetwork& network, const TaskRun& run, const si
   train::Task task(run.task, robot, {run.envs, run.block_envs}, run.seed);
   task.set_curriculum({run.task.command.speed_max_mps, 1.0}, kTrainingDone_transitions, 1.0);
   task.restart(run.seed);  // draws again, with the curricula open
+  train::StepDetails details(run.envs);
+  task.watch(&details);
   learner::Rollout rollout({run.envs, 1, train::Task::privileged_size(), kInsightSize, 0},
                            network.layout.memory());
   learner::Weights<float> weights(network.layout);
@@ -37,7 +39,7 @@ void run_on_task(const train::TaskNetwork& network, const TaskRun& run, const si
                   rollout.insight(0).middleCols(first, envs), &rollout.reset(0, first),
                   memory.middleCols(first, envs), rollout.action(0).middleCols(first, envs));
       task.step(block, 0, rollout);
-      observe({step, first, envs, rollout, pass.actor_input(), pass.encoding(), task});
+      observe({step, first, envs, rollout, pass.actor_input(), pass.encoding(), details, task});
       for (int env = first; env < first + envs; ++env)
         rollout.reset(0, env) = rollout.reset(1, env);
       rollout.observation(0).middleCols(first, envs) =

@@ -36,6 +36,7 @@ struct TaskStep {
   /// Of the block, an environment a column: what the actor saw (BlockPass::actor_input), and the
   /// encoding.
   learner::ConstMatrixRef<float> actor_input, encoding;
+  const train::StepDetails& details;  ///< of all environments
   const train::Task& task;  ///< after the step
 };
 /// Called by several threads, with one block by one of them.

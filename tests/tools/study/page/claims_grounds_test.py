@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Verdicts of the claims about recovery, turns and other grounds, on made-up measurements."""
+import math
 import unittest
 
 from controllers import COMMANDS
@@ -37,6 +38,11 @@ class GroundVerdicts(unittest.TestCase):
         for alive, time_s, text in ((14, 0.9, "agrees"), (14, 1.5, "can't tell"), (14, 2.1, "contradicts"),
                                     (7, 0.5, "contradicts")):
             self.expect("6", text, E2_ours=recovery(alive, time_s))
+        half_never, none_meet = recovery(14, 0.9), recovery(14, 0.9)
+        half_never[0].runs["recovery_s"][:9] = math.nan
+        none_meet[0].runs["met"][:] = 0.0
+        self.expect("6", "contradicts", E2_ours=half_never)
+        self.expect("6", "can't tell (no run met the strip)", E2_ours=none_meet)
         for ratio, text in ((1.3, "agrees"), (1.1, "can't tell"), (0.9, "contradicts")):
             self.expect("7", text, E2_ours=recovery(swing_ratio=ratio))
 

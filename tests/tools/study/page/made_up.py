@@ -89,7 +89,9 @@ def grid(fails=False):
                                           "reward": np.full(100, 0.0 if fails else 4.0)}),
             Group("grid", "robots", runs={name: np.full(16, np.nan if fails and "slope" in name else value)
                                           for name, value in (("reward", 0.0 if fails else 4.0), ("slope_flat_m", -0.02),
-                                                              ("slope_cone_m", -0.02))})]
+                                                              ("slope_cone_m", -0.02))}),
+            Group("grid", "terms", lists={name: np.array([value]) for name, value in (
+                ("reward_velocity", 0.5 if fails else 4.5), ("penalty_fall", -0.75), ("penalty_torque", -0.001))})]
 
 
 def oracle(terrain=0.1, estimate=0.3, bins=(0.1, 0.2), gradients=(0.3, 0.2, 0.1)):

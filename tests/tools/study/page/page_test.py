@@ -47,6 +47,15 @@ class Tables(unittest.TestCase):
         self.assertIn("not printed", html)
         self.assertNotIn("Authors", html)
 
+    def test_the_reward_of_the_grid_is_told_by_the_terms_that_matter(self):
+        html = tables.reward_terms_table(everything(failing=["tcn"]))
+        self.assertIn("<td>reward</td><td>velocity</td><td>4.50</td>", html)
+        self.assertIn("<td>0.50</td>", html)
+        self.assertIn("<td>penalty</td><td>fall</td><td>-0.75</td>", html)
+        self.assertNotIn("torque", html)
+        self.assertIn("<td>given back by the floor of the penalties</td><td>0.25</td>", html)
+        self.assertIn("<td>all</td><td>4.00</td>", html)
+
     def test_the_published_network_has_a_row_without_seeds_and_no_part_in_verdicts(self):
         without = on_the_beach({"ours": {}})
         both = on_the_beach({"ours": {}})
