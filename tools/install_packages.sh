@@ -30,7 +30,7 @@ packages=(
   python3-scipy python3-sklearn python3-matplotlib
 )
 [[ ${1:-all} != @(test|checks) ]] || packages+=(chromium-headless-shell python3-venv spin)
-[[ ${1:-all} != checks ]] || packages+=(clang clang-format-19 clang-tidy libclang-rt-dev)
+[[ ${1:-all} != checks ]] || packages+=(clang clang-format-19 clang-tidy libclang-rt-dev libopenmpi-dev openmpi-bin)
 codename=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
 # WebAssembly, for tools/sandbox. Debian 13 has no clang-16: there it is skipped.
 [[ ${1:-all} != checks || $codename != bookworm ]] ||

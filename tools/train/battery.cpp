@@ -160,12 +160,14 @@ std::vector<Battery::Run> Battery::make_runs(const BatterySettings& settings,
   return runs;
 }
 
-BatteryFigures Battery::run(const std::vector<float>& parameters) {
+BatteryFigures Battery::run(const std::vector<float>& parameters, const learner::Ranks& ranks) {
   weights_.set(parameters.data());
   memory_.setZero();
   std::ranges::fill(sums_, Sums{});
-  pool_.run(static_cast<int>(sums_.size()) / kBlock,
-            [&](int block, int worker) { run_block(block, worker); });
+  const int blocks = static_cast<int>(sums_.size()) / kBlock;
+  const learner::Share own = ranks.share(blocks);
+  pool_.run(own.size(), [&](int i, int worker) { run_block(own.begin + i, worker); });
+  ranks.gather(std::span(sums_), blocks);
   return figures();
 }
 

@@ -75,8 +75,9 @@ class Battery {
   Battery(const Battery&) = delete;
   Battery& operator=(const Battery&) = delete;
 
-  /// Runs the policy with these parameters of the layout. Not from within a task of the pool.
-  BatteryFigures run(const std::vector<float>& parameters);
+  /// Runs the policy with these parameters of the layout; the ranks share the runs. Not from within
+  /// a task of the pool.
+  BatteryFigures run(const std::vector<float>& parameters, const learner::Ranks& ranks = {});
 
   /// After `run`, of each ground: how many of the forward runs, slowest first, did not fall.
   struct Survival {

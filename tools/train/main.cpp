@@ -6,9 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <thread>
 
@@ -16,6 +18,7 @@
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
+#include "tools/train/join_ranks.h"
 #include "tools/train/task/robot_settings.h"
 #include "tools/train/training.h"
 
@@ -150,14 +153,27 @@ int run(const Arguments& a) {
   }
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
-  Training training(config, robot, a.options);
+  const std::unique_ptr<learner::Exchange> exchange = join_ranks();
+  TrainingOptions options = a.options;
+  if (exchange) options.ranks = learner::Ranks(*exchange);
+  Training training(config, robot, options);
   if (!a.from_file.empty()) training.go_on_from(read_policy_file(a.from_file));
   if (a.resume) training.resume();
-  prepare_folder(out, "--out");
+  if (options.ranks.is_first()) prepare_folder(out, "--out");
   if (!a.resume) training.start();
-  fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
-  std::fflush(stdout);
+  if (options.ranks.is_first()) {
+    fmt::print("sandrunner-train --explain says what the lines of progress mean\n");
+    std::fflush(stdout);
+  }
+  const auto begin = std::chrono::steady_clock::now();
   training.run(interrupted);
+  if (!options.ranks.is_first()) return kExitOk;
+  if (exchange) {
+    const std::chrono::duration<double> all = std::chrono::steady_clock::now() - begin;
+    const auto [got_bytes, time_s] = exchange->traffic();
+    fmt::print("{} ranks: each got {:.1f} MB from the others, {:.1f} % of the time with waiting\n",
+               options.ranks.size(), 1e-6 * got_bytes, 100.0 * time_s / all.count());
+  }
   print_end(training, out, a.robot_name, !config.learner.network.wiring.sees_insight());
   return kExitOk;
 }

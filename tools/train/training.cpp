@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -54,6 +55,19 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 
+// What differs from rank to rank, separated by commas.
+std::string all_of(const learner::Ranks& ranks, const std::string& name) {
+  std::vector<Names> names(static_cast<std::size_t>(ranks.size()));
+  const learner::Share own = ranks.share(ranks.size());
+  name.copy(names[static_cast<std::size_t>(own.begin)].data(), Names().size() - 1);
+  ranks.gather(std::span(names), ranks.size());
+  std::vector<std::string> different;
+  for (const Names& one : names) different.emplace_back(one.data());
+  std::ranges::sort(different);
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  return fmt::format("{}", fmt::join(different, ", "));
+}
+
 learner::RolloutShape rollout_shape(const TrainConfig& config) {
   learner::RolloutShape shape;
   shape.envs = config.run.envs;
@@ -80,8 +94,9 @@ Training::Training(const TrainConfig& config, const sim::Robot& robot,
       checkpoint_path_(checkpoint_path(options.out)),
       config_hash_(learner::fnv1a(config.effective, learner::kHashStart ^ options.seed)),
       robot_hash_(hash_of(robot)),
-      builds_(build_commit()),
-      processors_(processor_name()) {
+      builds_(all_of(ranks_, build_commit())),
+      processors_(all_of(ranks_, processor_name())) {
+  learner_.share_with(ranks_);
   if (!config.teacher.empty()) imitate(config.teacher);
   if (config.battery.every_updates > 0) {
     battery_.emplace(config.battery, config.task, config.learner.block_envs, robot,
@@ -110,11 +125,13 @@ void Training::resume() {
   checkpoint.get("run.origin", origin.data(), origin.size());
   origin_ = origin.data();
   if (checkpoint.config_hash != config_hash_) {
-    to_standard_error(
-        fmt::format("{}: run.transitions is larger than before: settling and late penalties follow "
-                    "the new length from here on. The weights will differ from those of a training "
-                    "of this length from the start.\n",
-                    checkpoint_path_));
+    if (ranks_.is_first()) {
+      to_standard_error(fmt::format(
+          "{}: run.transitions is larger than before: settling and late penalties follow the new "
+          "length from here on. The weights will differ from those of a training of this length "
+          "from the start.\n",
+          checkpoint_path_));
+    }
     origin_ += fmt::format(", made longer at {} transitions", learner_.transitions());
   }
   // All builds and processors that had a part in the weights.
@@ -184,16 +201,21 @@ void Training::restore(const learner::Checkpoint& checkpoint) {
 }
 
 void Training::save() {
+  const double core_s = core_seconds();
+  const Snapshot now = snapshot();
+  saved_at_s_ = wall_seconds();
+  fallbacks_ = 0;
   learner::Checkpoint checkpoint;
   learner_.save(checkpoint);
   task_.save(checkpoint);
+  checkpoint.gather(ranks_, learner_.blocks());
+  if (!ranks_.is_first()) return;
   gate_.save(checkpoint);
   progress_.save(checkpoint);
   checkpoint.put("battery.figures", &figures_, 1);
   checkpoint.put("battery.best", &best_, 1);
   checkpoint.put("battery.best_parameters", best_parameters_.data(), best_parameters_.size());
-  const double cpu_s = cpu_before_s_ + cpu_seconds();
-  checkpoint.put("run.cpu_seconds", &cpu_s, 1);
+  checkpoint.put("run.cpu_seconds", &core_s, 1);
   checkpoint.put("run.robot", &robot_hash_, 1);
   for (const auto& [section, text] :
        {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_},
@@ -208,7 +230,6 @@ void Training::save() {
   checkpoint.put("run.config", config_.effective.data(), config_.effective.size());
   checkpoint.config_hash = config_hash_;
   learner::save_checkpoint(checkpoint, checkpoint_path_);
-  const Snapshot now = snapshot();
   write_policy_file(options_.out + "/policy.safetensors",
                     policy_file(policy_spec(now), learner_.averaged()));
   if (!best_is_written_) {
@@ -227,12 +248,14 @@ void Training::save() {
                             config_.task.command.speed_start_mps));
     });
   }
-  saved_at_s_ = wall_seconds();
-  fallbacks_ = 0;
 }
 
+double Training::core_seconds() const { return cpu_before_s_ + ranks_.sum(cpu_seconds()); }
+
 void Training::step_window() {
-  pool_.run(learner_.blocks(), [&](int block, int worker) {
+  const learner::Share own = learner_.own_blocks();
+  pool_.run(own.size(), [&](int i, int worker) {
+    const int block = own.begin + i;
     for (int t = 0; t < config_.window; ++t) {
       learner_.act_block(block, t, worker);
       task_.step(block, t, learner_.rollout());
@@ -245,7 +268,7 @@ void Training::run(const std::atomic<bool>& interrupted) {
   const double start_s = wall_seconds();
   const auto transitions = [&] { return static_cast<double>(learner_.transitions()); };
   const double before = transitions(), all = config_.run.transitions;
-  while (transitions() < all && !interrupted) {
+  while (transitions() < all && !ranks_.any(interrupted)) {
     const double t0_s = wall_seconds();
     settle();
     step_window();
@@ -263,15 +286,17 @@ void Training::run(const std::atomic<bool>& interrupted) {
       run_battery();
     }
     gate_.advance(done);
+    task_.gather_window(ranks_);
     const WindowStats window = task_.end_window(done, gate_.late());
     const ProgressRow row = make_row(window, update, t1_s - t0_s, t2_s - t0_s);
     progress_.add(row);
     const double rate = (done - before) / (t2_s - start_s);
-    if (learner_.updates() % 10 == 1 || done >= all) {
+    if (ranks_.is_first() && (learner_.updates() % 10 == 1 || done >= all)) {
       fmt::print("{}\n", Progress::line(row, (all - done) / rate));
       std::fflush(stdout);
     }
-    if (t2_s - saved_at_s_ > config_.run.checkpoint_interval_s) save();
+    const bool is_due = t2_s - saved_at_s_ > config_.run.checkpoint_interval_s;
+    if (ranks_.any(is_due && ranks_.is_first())) save();
   }
   if (transitions() > before) save();
 }
@@ -290,7 +315,7 @@ std::string Training::verdict() const {
 // Measures the averaged policy; keeps it if it is the best so far.
 void Training::run_battery() {
   const double before_s = cpu_seconds();
-  figures_ = battery_->run(learner_.averaged());
+  figures_ = battery_->run(learner_.averaged(), ranks_);
   battery_cpu_s_ += cpu_seconds() - before_s;
   gate_.judge(figures_);
   if (best_parameters_.empty() || score(figures_) > score(best_.battery)) {
@@ -307,7 +332,7 @@ double Training::score(const BatteryFigures& figures) const {
 
 Snapshot Training::snapshot() const {
   return {.transitions = static_cast<double>(learner_.transitions()),
-          .core_hours = (cpu_before_s_ + cpu_seconds()) / 3600.0,
+          .core_hours = core_seconds() / 3600.0,
           .command_speed_mps = task_.curriculum().speed_mps,
           .battery = figures_};
 }
@@ -334,8 +359,10 @@ void Training::fall_back() {
     throw std::runtime_error(fmt::format(
         "no finite update from {} on, with smaller and smaller learning rates", checkpoint_path_));
   }
-  to_standard_error(fmt::format("update {} is not finite: back to {}, slower\n", learner_.updates(),
-                                checkpoint_path_));
+  if (ranks_.is_first()) {
+    to_standard_error(fmt::format("update {} is not finite: back to {}, slower\n",
+                                  learner_.updates(), checkpoint_path_));
+  }
   restore(learner::load_checkpoint(checkpoint_path_));
   // The same steps would end in the same bits.
   for (int i = 0; i < fallbacks_; ++i) learner_.halve_learning_rate();
@@ -346,7 +373,7 @@ ProgressRow Training::make_row(const WindowStats& window, const learner::UpdateS
   ProgressRow r;
   r.iteration = static_cast<double>(learner_.updates());
   r.transitions = static_cast<double>(learner_.transitions());
-  r.core_hours = (cpu_before_s_ + cpu_seconds()) / 3600.0;
+  r.core_hours = core_seconds() / 3600.0;
   r.transitions_per_s = config_.run.envs * config_.window / total_s;
   r.simulation_share = simulation_s / total_s;
   r.window = window;

@@ -23,6 +23,7 @@ struct TrainingOptions {
   std::string out;  ///< folder for checkpoint.bin, policies, curve.csv, curve.html
   int threads = 1;
   std::uint64_t seed = 1;  ///< of weights and environments
+  learner::Ranks ranks;    ///< that share the work; the first one writes the files
 };
 
 /// When a policy was taken from a training, and what was measured of it.
@@ -61,6 +62,7 @@ class Training {
 
  private:
   void imitate(const std::string& teacher_file);
+  double core_seconds() const;
   void save();
   void restore(const learner::Checkpoint& checkpoint);
   void require_same_settings(const learner::Checkpoint& checkpoint) const;
@@ -78,6 +80,7 @@ class Training {
   TrainConfig config_;
   sim::Robot robot_;
   TrainingOptions options_;
+  const learner::Ranks& ranks_ = options_.ranks;
   WorkerPool pool_;
   Task task_;
   learner::Learner learner_;

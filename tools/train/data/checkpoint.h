@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
+
+#include "tools/train/data/ranks.h"
 
 namespace sandrunner::learner {
 
@@ -22,7 +25,8 @@ struct Checkpoint {
   std::string architecture;  ///< sizes that the state belongs to, readable
   std::uint64_t config_hash = 0;
   std::map<std::string, std::vector<char>> sections;
-  std::string source;  ///< file it was read from, for messages
+  std::string source;                ///< file it was read from, for messages
+  std::vector<std::string> of_envs;  ///< sections put by put_envs
 
   template <typename T>
   void put(const std::string& name, const T* values, std::size_t count) {
@@ -30,6 +34,17 @@ struct Checkpoint {
     std::vector<char>& bytes = sections[name];
     bytes.resize(count * sizeof(T));
     if (count > 0) std::memcpy(bytes.data(), values, bytes.size());
+  }
+
+  /// Likewise, of as many values for each environment.
+  template <typename T>
+  void put_envs(const std::string& name, const T* values, std::size_t count) {
+    put(name, values, count);
+    of_envs.push_back(name);
+  }
+  /// Gets what the other ranks have put of the environments of their blocks.
+  void gather(const Ranks& ranks, int blocks) {
+    for (const std::string& name : of_envs) ranks.gather(std::span(sections[name]), blocks);
   }
 
   /// Throws InputError if the section is missing or is not `count` values long.

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "policy/wiring.h"
@@ -33,6 +34,10 @@ class VectorField {
   VectorField(int rows, int envs, int steps) : envs_(envs), data_(rows, envs * steps) {
     data_.setZero();
   }
+  /// All of it: step by step, in each the environments.
+  std::span<std::byte> bytes() {
+    return std::as_writable_bytes(std::span(data_.data(), static_cast<std::size_t>(data_.size())));
+  }
   auto operator()(int t) { return data_.middleCols(t * envs_, envs_); }
   auto operator()(int t) const { return data_.middleCols(t * envs_, envs_); }
 
@@ -47,6 +52,8 @@ class ValueField {
  public:
   ValueField(int envs, int steps)
       : envs_(envs), data_(static_cast<std::size_t>(envs) * static_cast<std::size_t>(steps)) {}
+  /// All of it: step by step, in each the environments.
+  std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(data_)); }
   T& operator()(int t, int env) { return data_[index(t, env)]; }
   const T& operator()(int t, int env) const { return data_[index(t, env)]; }
 
@@ -125,6 +132,17 @@ struct BasicRollout {
   // Written by compute_gae.
   ValueField<Scalar> advantage;
   ValueField<Scalar> value_target;
+
+  /// Calls visit(bytes of a field, its steps) for each field that an update needs of a window that
+  /// has been valued, or that the next window begins with.
+  template <typename Visit>
+  void for_each_learnt(const Visit& visit) {
+    const auto each = [&](int steps, auto&... fields) { (visit(fields.bytes(), steps), ...); };
+    each(shape.steps + 1, observation, privileged, estimate_target, insight, reset, value);
+    each(shape.steps, action, mean, symmetric_mean, teacher_mean, teacher_encoding, log_prob,
+         advantage, value_target);
+    each(1, initial_memory);
+  }
 };
 
 using Rollout = BasicRollout<float>;

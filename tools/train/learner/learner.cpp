@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -187,6 +188,32 @@ void Learner::value_timeouts(int first_env, int worker) {
   }
 }
 
+// The other ranks' blocks of the rollout, as one message: block by block, in each the fields.
+void Learner::share_rollout() {
+  if (ranks_.size() == 1) return;
+  const auto envs = static_cast<std::size_t>(rollout_.shape.envs);
+  std::size_t bytes = 0;
+  rollout_.for_each_learnt([&](std::span<std::byte> field, int) { bytes += field.size(); });
+  std::vector<std::byte> packed(bytes);
+  const auto copy = [&](int block, bool pack) {
+    std::byte* at = packed.data() + bytes / static_cast<std::size_t>(blocks()) * block;
+    rollout_.for_each_learnt([&](std::span<std::byte> field, int steps) {
+      const std::size_t of_step = field.size() / static_cast<std::size_t>(steps);
+      const std::size_t of_block = of_step / envs * config_.block_envs;
+      for (int t = 0; t < steps; ++t, at += of_block) {
+        std::byte* const here = field.data() + t * of_step + block * of_block;
+        std::memcpy(pack ? at : here, pack ? here : at, of_block);
+      }
+    });
+  };
+  const Share own = own_blocks();
+  pool_.run(own.size(), [&](int i, int) { copy(own.begin + i, true); });
+  ranks_.gather(std::span(packed), blocks());
+  pool_.run(blocks(), [&](int block, int) {
+    if (block < own.begin || block >= own.end) copy(block, false);
+  });
+}
+
 void Learner::compute_advantages(UpdateStats& stats) {
   struct Sums {
     double advantage = 0.0;
@@ -194,13 +221,18 @@ void Learner::compute_advantages(UpdateStats& stats) {
     double target = 0.0;
     double target_square = 0.0;
   };
-  std::vector<Sums> sums(static_cast<std::size_t>(blocks()));
-  pool_.run(blocks(), [&](int block, int worker) {
-    const int first = block * config_.block_envs;
+  const Share own = own_blocks();
+  pool_.run(own.size(), [&](int i, int worker) {
+    const int first = (own.begin + i) * config_.block_envs;
     acting_[static_cast<std::size_t>(worker)].evaluate(weights_, rollout_, rollout_.shape.steps,
                                                        first);
     value_timeouts(first, worker);
     compute_gae(rollout_, first, config_.block_envs, config_.gamma, config_.lambda);
+  });
+  share_rollout();
+  std::vector<Sums> sums(static_cast<std::size_t>(blocks()));
+  pool_.run(blocks(), [&](int block, int) {
+    const int first = block * config_.block_envs;
     Sums& sum = sums[static_cast<std::size_t>(block)];
     for (int t = 0; t < rollout_.shape.steps; ++t) {
       for (int env = first; env < first + config_.block_envs; ++env) {
@@ -246,14 +278,11 @@ double Learner::reduce_gradients(int count) {
   const std::size_t size = parameters_.size();
   const std::size_t ranges = (size + kRange - 1) / kRange;
   std::vector<double> squares(ranges, 0.0);
+  ranks_.add_up(gradients_, count, pool_);
   pool_.run(static_cast<int>(ranges), [&](int range, int) {
     const std::size_t begin = static_cast<std::size_t>(range) * kRange;
     const std::size_t end = std::min(size, begin + kRange);
-    std::vector<float>& sum = gradients_.front();
-    for (int i = 1; i < count; ++i) {
-      const std::vector<float>& gradient = gradients_[static_cast<std::size_t>(i)];
-      for (std::size_t k = begin; k < end; ++k) sum[k] += gradient[k];
-    }
+    const std::vector<float>& sum = gradients_.front();
     double square = 0.0;
     for (std::size_t k = begin; k < end; ++k) {
       square += static_cast<double>(sum[k]) * static_cast<double>(sum[k]);
@@ -267,13 +296,15 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   const int samples = count * config_.block_envs * rollout_.shape.steps;
   std::vector<LossSums> sums(static_cast<std::size_t>(count));
   weights_.set(parameters_.data());
-  pool_.run(count, [&](int i, int worker) {
-    const auto slot = static_cast<std::size_t>(i);
+  const Share own = ranks_.share(count);
+  pool_.run(own.size(), [&](int i, int worker) {
+    const auto slot = static_cast<std::size_t>(own.begin + i);
     std::fill(gradients_[slot].begin(), gradients_[slot].end(), 0.0f);
     sums[slot] = learning_[static_cast<std::size_t>(worker)].loss_and_gradient(
-        weights_, rollout_, blocks[i] * config_.block_envs, config_.loss, advantage_scale_, samples,
-        gradients_[slot].data());
+        weights_, rollout_, blocks[slot] * config_.block_envs, config_.loss, advantage_scale_,
+        samples, gradients_[slot].data());
   });
+  ranks_.gather(std::span(sums), count);
   LossSums total;
   for (const LossSums& sum : sums) total.add(sum);
   const double norm = reduce_gradients(count);

@@ -11,6 +11,7 @@
 
 #include "rt/base/worker_pool.h"
 #include "tools/train/data/checkpoint.h"
+#include "tools/train/data/ranks.h"
 #include "tools/train/data/rollout.h"
 #include "tools/train/data/symmetry.h"
 #include "tools/train/learner/adam.h"
@@ -78,7 +79,7 @@ struct UpdateStats {
 ///   });
 ///   const UpdateStats stats = learner.update();   // also carries step `steps` over to step 0
 ///
-/// Same seed, config and data: same weights, bit for bit, for any number of threads.
+/// Same seed, config and data: same weights, bit for bit, for any number of threads and ranks.
 class Learner {
  public:
   /// `pool` must outlive the learner. Throws InputError for sizes and constants that cannot work.
@@ -87,6 +88,11 @@ class Learner {
   Learner(const LearnerConfig& config, const RolloutShape& shape, std::uint64_t seed,
           WorkerPool& pool, std::optional<Symmetry> symmetry = std::nullopt,
           const Kernels<float>& kernels = best_kernels<float>());
+
+  /// Before the first window: the ranks share the blocks. Each has to call act_block for those of
+  /// own_blocks(), for all steps, before update(), which gets the others.
+  void share_with(const Ranks& ranks) { ranks_ = ranks; }
+  Share own_blocks() const { return ranks_.share(blocks()); }
 
   Rollout& rollout() { return rollout_; }
   const LearnerConfig& config() const { return config_; }
@@ -101,8 +107,9 @@ class Learner {
   /// may live on in the memories.
   UpdateStats update();
 
-  /// Writes and reads everything that the next window depends on, except the environments. Only
-  /// between update() and the next act_block. `load` throws InputError if the checkpoint belongs to
+  /// Writes and reads everything that the next window depends on, except the environments; of what
+  /// is of environments (Checkpoint::put_envs), only that of own_blocks(). Only between update()
+  /// and the next act_block. `load` throws InputError if the checkpoint belongs to
   /// other sizes.
   void save(Checkpoint& checkpoint) const;
   void load(const Checkpoint& checkpoint);
@@ -164,6 +171,7 @@ class Learner {
   void ask_teacher(int block, int t, int worker);
   void act_in_mirror(int block, int t, int worker);
   void value_timeouts(int first_env, int worker);
+  void share_rollout();
   void compute_advantages(UpdateStats& stats);
   std::vector<int> shuffled_blocks(int epoch) const;
   bool learn_minibatch(const int* blocks, int count, UpdateStats& stats);
@@ -173,6 +181,7 @@ class Learner {
   LearnerConfig config_;
   ParameterLayout layout_;
   WorkerPool& pool_;
+  Ranks ranks_;
   std::optional<Symmetry> symmetry_;
   Rollout rollout_;
   Counters counters_;

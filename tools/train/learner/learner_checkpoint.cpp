@@ -37,16 +37,16 @@ void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.put("learner.averaged", averaged_.data(), averaged_.size());
   checkpoint.put("learner.adam_m", adam_.m.data(), adam_.m.size());
   checkpoint.put("learner.adam_v", adam_.v.data(), adam_.v.size());
-  checkpoint.put("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
-  checkpoint.put("learner.mirror_memory", mirror_memory_.data(),
-                 static_cast<std::size_t>(mirror_memory_.size()));
+  checkpoint.put_envs("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
+  checkpoint.put_envs("learner.mirror_memory", mirror_memory_.data(),
+                      static_cast<std::size_t>(mirror_memory_.size()));
   if (teacher_) {
     checkpoint.put("learner.teacher", &teacher_->hash, 1);
-    checkpoint.put("learner.teacher_memory", teacher_->memory.data(),
-                   static_cast<std::size_t>(teacher_->memory.size()));
+    checkpoint.put_envs("learner.teacher_memory", teacher_->memory.data(),
+                        static_cast<std::size_t>(teacher_->memory.size()));
   }
-  checkpoint.put("learner.asymmetry", asymmetry_.data(),
-                 static_cast<std::size_t>(asymmetry_.size()));
+  checkpoint.put_envs("learner.asymmetry", asymmetry_.data(),
+                      static_cast<std::size_t>(asymmetry_.size()));
   checkpoint.put("learner.reset", &rollout_.reset(0, 0),
                  static_cast<std::size_t>(rollout_.shape.envs));
   const auto put_first_step = [&](const std::string& name, const auto& field) {

@@ -240,10 +240,10 @@ void Task::advance_curriculum(const WindowStats& w) {
 }
 
 void Task::save(learner::Checkpoint& checkpoint) const {
-  checkpoint.put("task.envs", envs_.data(), envs_.size());
+  checkpoint.put_envs("task.envs", envs_.data(), envs_.size());
   std::vector<sim::BatchRobot<float>> robots;
   for (int env = 0; env < batch_.size(); ++env) robots.push_back(batch_.robot(env));
-  checkpoint.put("task.robots", robots.data(), robots.size());
+  checkpoint.put_envs("task.robots", robots.data(), robots.size());
   checkpoint.put("task.curriculum", &curriculum_, 1);
   checkpoint.put("task.schedule", &schedule_, 1);
 }

@@ -118,6 +118,10 @@ class Task {
   /// bits of the rollout do not depend on it.
   void watch(StepDetails* details) { details_ = details; }
 
+  /// Before end_window: gets the sums of the other ranks' blocks.
+  void gather_window(const learner::Ranks& ranks) {
+    ranks.gather(std::span(sums_), static_cast<int>(sums_.size()));
+  }
   /// Means over the window just done; clears its sums and advances the curricula and the
   /// schedule of the reward. `transitions`: since the start of the training; `late`: share of the
   /// late penalties from now on, 0 to 1.

@@ -16,6 +16,7 @@
 #include "rt/base/errors.h"
 #include "rt/core/processor.h"
 #include "rt/core/state_hash.h"
+#include "tests/tools/train/data/thread_ranks.h"
 #include "toy_task.h"
 
 namespace sandrunner::learner {
@@ -61,6 +62,24 @@ TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfThreads) {
   EXPECT_NE(one.learner.parameters(), other_seed.learner.parameters());
   EXPECT_EQ(one.learner.updates(), 6u);
   EXPECT_EQ(one.learner.transitions(), 6u * 64u * 8u);
+}
+
+TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfRanks) {
+  Training alone(1, 4);
+  alone.run(6);
+  Checkpoint expected;
+  alone.learner.save(expected);
+  for (const int size : {2, 3, 5}) {
+    run_ranks(size, [&](const Ranks& ranks, int) {
+      Training shared(2, 4);
+      shared.learner.share_with(ranks);
+      shared.run(6);
+      Checkpoint checkpoint;
+      shared.learner.save(checkpoint);
+      checkpoint.gather(ranks, shared.learner.blocks());
+      EXPECT_EQ(checkpoint.sections, expected.sections);
+    });
+  }
 }
 
 TEST(LearnerTest, SameSeedGivesTheSameWeightsWithAvx2AndAvx512) {

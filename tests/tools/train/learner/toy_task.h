@@ -45,11 +45,14 @@ class ToyTask {
     }
   }
 
-  /// Acts a whole window; returns the mean reward. The learner's `update` comes next.
+  /// Acts a whole window; returns the mean reward, of a learner that is alone. The learner's
+  /// `update` comes next.
   double run_window() {
     Rollout& rollout = learner_.rollout();
     const int block_envs = learner_.config().block_envs;
-    pool_.run(learner_.blocks(), [&](int block, int worker) {
+    const Share own = learner_.own_blocks();
+    pool_.run(own.size(), [&](int i, int worker) {
+      const int block = own.begin + i;
       for (int t = 0; t < rollout.shape.steps; ++t) {
         learner_.act_block(block, t, worker);
         for (int env = block * block_envs; env < (block + 1) * block_envs; ++env) {

@@ -2,9 +2,7 @@
 // The weights in which a short training ends: the built-in settings, but for those below.
 #include <gtest/gtest.h>
 
-#include "policy/policy_file.h"
-#include "tests/support/child_process.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/tools/train/program/train_command.h"
 #include "tools/train/data/checkpoint.h"
 
 namespace sandrunner {
@@ -31,13 +29,14 @@ const std::vector<std::string> kSettings = {
 // the training itself records another.
 constexpr std::uint64_t kWeights = 0x1f90ea82e84bef4d;
 
-std::uint64_t weights_after_training(const std::string& threads) {
+// `program`: its words before the settings.
+std::uint64_t weights_after_training(std::vector<std::string> program, const std::string& threads) {
   const TemporaryFolder work;
   const std::string folder = work.path("run");
-  std::vector<std::string> words = {SANDRUNNER_TRAIN_PROGRAM, "--out", folder, "--threads",
-                                    threads};
-  for (const std::string& setting : kSettings) words.insert(words.end(), {"--set", setting});
-  EXPECT_EQ(run_process(words).code, 0);
+  program.insert(program.end(), {"--out", folder, "--threads", threads});
+  for (const std::string& setting : kSettings) program.insert(program.end(), {"--set", setting});
+  const Ended ended = run_process(program);
+  EXPECT_EQ(ended.code, 0) << ended;
   PolicyFile policy = read_policy_file(folder + "/policy.safetensors");
   std::uint64_t hash = learner::kHashStart;
   for (const NamedTensor& tensor : tensors_of(policy.parameters)) {
@@ -48,11 +47,21 @@ std::uint64_t weights_after_training(const std::string& threads) {
 }
 
 TEST(GoldenTrainingTest, EndsInTheRecordedWeights) {
-  EXPECT_EQ(weights_after_training("2"), kWeights);
+  EXPECT_EQ(weights_after_training({SANDRUNNER_TRAIN_PROGRAM}, "2"), kWeights);
 }
 
 TEST(GoldenTrainingTest, DoesWithAnotherNumberOfThreadsToo) {
-  EXPECT_EQ(weights_after_training("1"), kWeights);
+  EXPECT_EQ(weights_after_training({SANDRUNNER_TRAIN_PROGRAM}, "1"), kWeights);
+}
+
+TEST(GoldenTrainingTest, DoesWithAnyNumberOfRanksToo) {
+  if (!has_mpi()) GTEST_SKIP() << kNoMpi;
+  for (const int ranks : {1, 2, 4}) {
+    for (const char* threads : {"1", "2"}) {
+      EXPECT_EQ(weights_after_training(with_ranks(ranks), threads), kWeights)
+          << ranks << " ranks, " << threads << " threads";
+    }
+  }
 }
 
 }  // namespace
