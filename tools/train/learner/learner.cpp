@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -18,6 +19,7 @@
 namespace sandrunner::learner {
 namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLearningRateUp = 1.2;
 constexpr double kLearningRateDown = 1.3;
 constexpr int kChunkColumns = 256;     // activations of the heads that stay in a 1 MiB cache
@@ -62,6 +64,7 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       layout_(config.network, shape.privileged),
       pool_(pool),
       symmetry_(std::move(symmetry)),
+      has_mirror_(symmetry_ && config.loss.symmetry_weight > 0.0),
       rollout_(shape, layout_.memory()),
       parameters_(initial_parameters(layout_, seed, config.action_std_start)),
       weights_(layout_),
@@ -70,7 +73,7 @@ Learner::Learner(const LearnerConfig& config, const RolloutShape& shape, std::ui
       memory_(Matrix<float>::Zero(layout_.memory(), shape.envs)),
       mirror_memory_(memory_),
       asymmetry_(Matrix<float>::Zero(kActionSize, shape.envs)) {
-  if (!symmetry_) config_.loss.symmetry_weight = 0.0;
+  if (!has_mirror_) config_.loss.symmetry_weight = 0.0;
   counters_.seed = seed;
   counters_.learning_rate = config.learning_rate_start;
   const int chunk_steps = std::clamp(kChunkColumns / config.block_envs, 1, shape.steps);
@@ -89,7 +92,7 @@ void Learner::act_block(int block, int t, int worker) {
   const int end = first + config_.block_envs;
   acting_[static_cast<std::size_t>(worker)].act(weights_, rollout_, t, first,
                                                 memory_.middleCols(first, config_.block_envs));
-  if (symmetry_) act_in_mirror(block, t, worker);
+  if (has_mirror_) act_in_mirror(block, t, worker);
   if (teacher_) ask_teacher(block, t, worker);
 
   const std::uint64_t step = counters_.steps + static_cast<std::uint64_t>(t);
@@ -319,7 +322,7 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
     stats.estimate_rms[k] += total.estimate_square[k] / total.samples;
   }
   stats.kl += kl;
-  if (symmetry_) stats.asymmetry += 2.0 * total.asymmetry / total.samples / kActionSize;
+  stats.asymmetry += has_mirror_ ? 2.0 * total.asymmetry / total.samples / kActionSize : kNan;
   stats.imitation_rms += total.imitation / total.samples;
   stats.encoding_rms += total.encoding / total.samples;
 

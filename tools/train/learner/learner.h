@@ -60,7 +60,9 @@ struct UpdateStats {
   double explained_variance = 0.0;  ///< 1 - var(target - value) / var(target), before the update
   double learning_rate = 0.0;       ///< after the update
   double action_std = 0.0;          ///< geometric mean, after the update
-  double asymmetry = 0.0;      ///< rms of mean less symmetric mean, in deviations of the action
+  /// Rms of mean less symmetric mean, in deviations of the action; nan if nothing pulls them
+  /// together.
+  double asymmetry = 0.0;
   double imitation_rms = 0.0;  ///< of mean less the teacher's, in network units
   double encoding_rms = 0.0;   ///< of encoding less the teacher's
 };
@@ -145,9 +147,9 @@ class Learner {
   /// The most noise that actions have from the next update on, even if that is less than
   /// `action_std_min`.
   void set_action_std_most(double action_std) { action_std_most_ = action_std; }
-  /// Weight of the pull towards symmetry from now on; without effect if there is no symmetry.
+  /// Weight of the pull towards symmetry from now on; without effect if there was none at first.
   void set_symmetry_weight(double weight) {
-    if (symmetry_) config_.loss.symmetry_weight = weight;
+    if (has_mirror_) config_.loss.symmetry_weight = weight;
   }
 
  private:
@@ -183,6 +185,7 @@ class Learner {
   WorkerPool& pool_;
   Ranks ranks_;
   std::optional<Symmetry> symmetry_;
+  bool has_mirror_;  // the policy is also asked what it answers in the mirror
   Rollout rollout_;
   Counters counters_;
   std::vector<float> parameters_;
