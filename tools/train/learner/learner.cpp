@@ -203,6 +203,7 @@ void Learner::share_rollout() {
     rollout_.for_each_learnt([&](std::span<std::byte> field, int steps) {
       const std::size_t of_step = field.size() / static_cast<std::size_t>(steps);
       const std::size_t of_block = of_step / envs * config_.block_envs;
+      if (of_block == 0) return;  // a field without rows
       for (int t = 0; t < steps; ++t, at += of_block) {
         std::byte* const here = field.data() + t * of_step + block * of_block;
         std::memcpy(pack ? at : here, pack ? here : at, of_block);
