@@ -343,14 +343,14 @@ void McapWriter::close() {
                                                         {kMcapChunkIndex, chunk_indexes_},
                                                         {kMcapAttachmentIndex, attachment_indexes_},
                                                         {kMcapMetadataIndex, metadata_indexes_}};
-  for (const auto& [opcode, records] : groups) {
-    if (records.empty()) continue;
-    put_record(offsets, kMcapSummaryOffset, [&, opcode = opcode, &records = records] {
-      put(offsets, opcode);
+  for (const auto& group : groups) {
+    if (group.second.empty()) continue;
+    put_record(offsets, kMcapSummaryOffset, [&] {
+      put(offsets, group.first);
       put(offsets, bytes_written_ + out_.size());
-      put(offsets, static_cast<std::uint64_t>(records.size()));
+      put(offsets, static_cast<std::uint64_t>(group.second.size()));
     });
-    put_bytes(out_, records.data(), records.size());
+    put_bytes(out_, group.second.data(), group.second.size());
   }
   const std::uint64_t offsets_start = bytes_written_ + out_.size();
   put_bytes(out_, offsets.data(), offsets.size());
