@@ -43,9 +43,21 @@ std::string warning(const std::string& what) {
   return Json{{"op", "status"}, {"level", 1}, {"message", what}}.dump();
 }
 
-std::optional<std::uint32_t> id_of(const Json& json) {
-  if (!json.is_number_unsigned()) return std::nullopt;
-  const auto id = json.get<std::uint64_t>();
+// Null: it is no object, or has no such key.
+const Json* member_of(const Json& json, const char* key) {
+  if (!json.is_object()) return nullptr;
+  const auto found = json.find(key);
+  return found == json.end() ? nullptr : &*found;
+}
+
+// Empty: it is none.
+std::string text_of(const Json* json) {
+  return json && json->is_string() ? json->get<std::string>() : std::string();
+}
+
+std::optional<std::uint32_t> id_of(const Json* json) {
+  if (!json || !json->is_number_unsigned()) return std::nullopt;
+  const auto id = json->get<std::uint64_t>();
   if (id > std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
   return static_cast<std::uint32_t>(id);
 }
@@ -69,17 +81,17 @@ FoxgloveSession::~FoxgloveSession() {
 }
 
 std::optional<ViewSession::Goodbye> FoxgloveSession::take(std::string_view text) {
+  // Values are looked at where they are: a copy of deeply nested ones would need as deep a stack.
   const Json json = Json::parse(text, nullptr, false);
-  const auto member = [&](const char* key) {
-    const auto found = json.find(key);
-    return found == json.end() ? Json() : *found;
-  };
-  const Json op = json.is_object() ? member("op") : Json();
+  const std::string op = text_of(member_of(json, "op"));
   std::string wrong;
   const auto each = [&](const char* key, auto&& follow) {
-    const Json list = member(key);
-    if (!list.is_array()) wrong = fmt::format("{}: expected an array", key);
-    for (const Json& item : list.is_array() ? list : Json::array()) {
+    const Json* const list = member_of(json, key);
+    if (!list || !list->is_array()) {
+      wrong = fmt::format("{}: expected an array", key);
+      return;
+    }
+    for (const Json& item : *list) {
       if (const std::string amiss = follow(item); wrong.empty()) wrong = amiss;
     }
   };
@@ -95,11 +107,8 @@ std::optional<ViewSession::Goodbye> FoxgloveSession::take(std::string_view text)
 }
 
 std::string FoxgloveSession::subscribe(const nlohmann::json& wish) {
-  const auto member = [&](const char* key) {
-    const auto found = wish.is_object() ? wish.find(key) : wish.end();
-    return wish.is_object() && found != wish.end() ? id_of(*found) : std::nullopt;
-  };
-  const std::optional<Id> id = member("id"), channel = member("channelId");
+  const std::optional<Id> id = id_of(member_of(wish, "id"));
+  const std::optional<Id> channel = id_of(member_of(wish, "channelId"));
   if (!id || !channel) return "subscriptions: expected numbers id and channelId in each";
   if (*channel >= kNumRunTopics || *channel == index_of(RunTopic::kStates)) {
     return fmt::format("channelId: {} was not advertised", *channel);
@@ -114,7 +123,7 @@ std::string FoxgloveSession::subscribe(const nlohmann::json& wish) {
 }
 
 std::string FoxgloveSession::unsubscribe(const nlohmann::json& json) {
-  const std::optional<Id> id = id_of(json);
+  const std::optional<Id> id = id_of(&json);
   const auto found = id ? std::ranges::find(ids_, id) : ids_.end();
   if (found == ids_.end()) return "subscriptionIds: expected numbers of subscriptions";
   const auto channel = static_cast<std::size_t>(found - ids_.begin());

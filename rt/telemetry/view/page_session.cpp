@@ -10,7 +10,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr std::chrono::milliseconds kStateEvery{100};
+constexpr std::chrono::milliseconds kStateEvery{90};  // asked every 16 ms
 constexpr std::uint16_t kPolicyError = 1008;
 
 }  // namespace

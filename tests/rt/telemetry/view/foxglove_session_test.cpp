@@ -141,6 +141,8 @@ TEST_F(FoxgloveSessionTest, WhatItDoesNotUnderstandIsAnsweredInOneWarning) {
                            R"({"op":"setParameters","parameters":[]})"}) {
     EXPECT_EQ(answer(text), kOnlyShows) << text;
   }
+  const std::string deep = std::string(2000, '[') + std::string(2000, ']');
+  EXPECT_EQ(answer(R"({"op":)" + deep + "}"), kOnlyShows);
   EXPECT_EQ(answer(R"({"op":"subscribe"})"), "subscriptions: expected an array");
   EXPECT_EQ(answer(R"({"op":"unsubscribe","subscriptionIds":{"a":1}})"),
             "subscriptionIds: expected an array");
