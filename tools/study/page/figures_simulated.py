@@ -110,9 +110,8 @@ def grid_maps(evidence):
         colors = SHADES.reversed() if name == "reward" else SHADES
         low, high = least_and_greatest(np.concatenate(maps))
         shared = ScalarMappable(Normalize(low, high), colors)
-        if there:
-            sheet.figure.colorbar(shared, ax=sheet.axes[column::2], location="bottom", label=title, fraction=0.02,
-                                  aspect=50)
+        sheet.figure.colorbar(shared, ax=sheet.axes[column::2], location="bottom", label=title, fraction=0.02,
+                              aspect=50)
         for row, (key, values) in enumerate(zip(there, maps)):
             draw_map(sheet.axes[2 * row + column], values, stiffnesses(evidence, key, "sigma_flat_npm3"),
                      stiffnesses(evidence, key, "sigma_cone_npm3"), shared, digits, f"{name_with_seeds(evidence, 'E7', key)}: {title}")

@@ -95,7 +95,9 @@ def add_grid(page):
     page.figure(figures_simulated.grid_lines(page.evidence))
     page.fold("Numbers of the grid", tables.grid_table(page.evidence))
     page.notes("", chapters.GRID_TABLE)
-    page.fold("Reward of the grid by term", tables.reward_terms_table(page.evidence))
+    by_term = tables.reward_terms_table(page.evidence)
+    if by_term:
+        page.fold("Reward of the grid by term", by_term)
 
 
 def add_experiments(page):

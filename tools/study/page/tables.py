@@ -26,6 +26,10 @@ PARAMETERS = (("rigid", "1 on hard ground, else 0"),
               ("stroke damping", "(b_h - 2 N s/m) / 2 N s/m"))
 
 
+# What the terms of the reward leave: the penalties end at a floor, and a diverged robot has none.
+FLOOR = "given back by the floor of the penalties"
+
+
 def controller_table(evidence, experiment, keys, heads, cells):
     """A row for each controller: its name, then `cells(key, its groups by seed)`."""
     rows = []
@@ -147,19 +151,26 @@ def grid_table(evidence):
 
 
 def reward_terms_table(evidence):
-    """The mean reward of a step by term, of those that matter; medians over the seeds."""
+    """The mean reward of a step by term, of those that matter; medians over the seeds. Empty if the
+    terms were not kept."""
+    parts = {}  # by name, then by controller
+    for key in GRID:
+        for groups in evidence.seeds("E7", key).values():
+            kept = select(groups, "grid", "terms")
+            if not kept:
+                return ""
+            of_seed = {name: values[0] for name, values in kept[0].lists.items()}
+            whole = mean_value(select(groups, "grid", "robots"), "reward").value
+            of_seed[FLOOR], of_seed["all"] = whole - sum(of_seed.values()), whole
+            for name, value in of_seed.items():
+                parts.setdefault(name, {}).setdefault(key, []).append(value)
     ran = [key for key in GRID if evidence.seeds("E7", key)]
-    reward, terms = {}, {}  # by controller; by term, then by controller
-    for key in ran:
-        reward[key] = median(grid_figure(evidence, key, "reward"))
-        seeds = [select(groups, "grid", "terms")[0].lists for groups in evidence.seeds("E7", key).values()]
-        for name in seeds[0]:
-            terms.setdefault(name, {})[key] = median([lists[name][0] for lists in seeds])
-    rows = [[name.partition("_")[0], name.partition("_")[2].replace("_", " "), *(f"{of[key]:.2f}" for key in ran)]
-            for name, of in terms.items() if max(map(abs, of.values())) >= 0.005]
-    rows.append(["", "given back by the floor of the penalties",
-                 *(f"{reward[key] - sum(of[key] for of in terms.values()):.2f}" for key in ran)])
-    rows.append(["", "all", *(f"{reward[key]:.2f}" for key in ran)])
+    rows = []
+    for name in [*(name for name in parts if name not in (FLOOR, "all")), FLOOR, "all"]:
+        values = [median(parts[name][key]) for key in ran]
+        kind, _, term = name.rpartition("_") if name in (FLOOR, "all") else name.partition("_")
+        if name in (FLOOR, "all") or max(map(abs, values)) >= 0.005:
+            rows.append([kind, term.replace("_", " "), *(f"{value:.2f}" for value in values)])
     return table(["", "term", *(name_of(key) for key in ran)], rows)
 
 
