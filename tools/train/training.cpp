@@ -55,17 +55,22 @@ std::uint64_t hash_of(const sim::Robot& robot) {
   return learner::fnv1a(bytes(robot.nominal_height_m), hash);
 }
 
-// What differs from rank to rank, separated by commas.
+// Adds a name to a list with commas, unless it is there.
+void add_name(std::string& list, std::string_view name) {
+  if (fmt::format(", {}, ", list).find(fmt::format(", {}, ", name)) != std::string::npos) return;
+  list += list.empty() ? "" : ", ";
+  list += name;
+}
+
+// Those of all ranks.
 std::string all_of(const learner::Ranks& ranks, const std::string& name) {
   std::vector<Names> names(static_cast<std::size_t>(ranks.size()));
   const learner::Share own = ranks.share(ranks.size());
   name.copy(names[static_cast<std::size_t>(own.begin)].data(), Names().size() - 1);
   ranks.gather(std::span(names), ranks.size());
-  std::vector<std::string> different;
-  for (const Names& one : names) different.emplace_back(one.data());
-  std::ranges::sort(different);
-  different.erase(std::unique(different.begin(), different.end()), different.end());
-  return fmt::format("{}", fmt::join(different, ", "));
+  std::string list;
+  for (const Names& one : names) add_name(list, one.data());
+  return list;
 }
 
 learner::RolloutShape rollout_shape(const TrainConfig& config) {
@@ -139,9 +144,14 @@ void Training::resume() {
        {std::pair{"run.builds", &builds_}, std::pair{"run.processors", &processors_}}) {
     Names names{};
     checkpoint.get(section, names.data(), names.size());
-    const std::string before = names.data();
-    const bool known = (", " + before + ", ").find(", " + *now + ", ") != std::string::npos;
-    *now = known ? before : before + ", " + *now;
+    std::string list = names.data();
+    std::string_view rest = *now;
+    while (!rest.empty()) {
+      const std::size_t comma = std::min(rest.find(", "), rest.size());
+      add_name(list, rest.substr(0, comma));
+      rest.remove_prefix(std::min(comma + 2, rest.size()));
+    }
+    *now = list;
   }
 }
 
@@ -250,6 +260,18 @@ void Training::save() {
   }
 }
 
+// Each rank reads the files itself.
+void Training::require_same_state() const {
+  const std::vector<float>& parameters = learner_.parameters();
+  const std::string_view bytes(reinterpret_cast<const char*>(parameters.data()),
+                               sizeof(float) * parameters.size());
+  if (ranks_.agree(learner::fnv1a(bytes, config_hash_ ^ learner_.transitions()))) return;
+  throw InputError(
+      fmt::format("{}: found another state on another rank, expected the same settings and the "
+                  "same file on all",
+                  checkpoint_path_));
+}
+
 double Training::core_seconds() const { return cpu_before_s_ + ranks_.sum(cpu_seconds()); }
 
 void Training::step_window() {
@@ -266,6 +288,7 @@ void Training::step_window() {
 void Training::run(const std::atomic<bool>& interrupted) {
   saved_at_s_ = wall_seconds();
   const double start_s = wall_seconds();
+  require_same_state();
   const auto transitions = [&] { return static_cast<double>(learner_.transitions()); };
   const double before = transitions(), all = config_.run.transitions;
   while (transitions() < all && !ranks_.any(interrupted)) {
@@ -318,8 +341,9 @@ void Training::run_battery() {
   figures_ = battery_->run(learner_.averaged(), ranks_);
   battery_cpu_s_ += cpu_seconds() - before_s;
   gate_.judge(figures_);
+  const Snapshot now = snapshot();
   if (best_parameters_.empty() || score(figures_) > score(best_.battery)) {
-    best_ = snapshot();
+    best_ = now;
     best_parameters_ = learner_.averaged();
     best_is_written_ = false;
   }
@@ -364,6 +388,7 @@ void Training::fall_back() {
                                   learner_.updates(), checkpoint_path_));
   }
   restore(learner::load_checkpoint(checkpoint_path_));
+  require_same_state();
   // The same steps would end in the same bits.
   for (int i = 0; i < fallbacks_; ++i) learner_.halve_learning_rate();
 }

@@ -63,6 +63,7 @@ class Training {
  private:
   void imitate(const std::string& teacher_file);
   double core_seconds() const;
+  void require_same_state() const;
   void save();
   void restore(const learner::Checkpoint& checkpoint);
   void require_same_settings(const learner::Checkpoint& checkpoint) const;

@@ -2,7 +2,10 @@
 #include "tools/train/data/ranks.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+
+#include "rt/base/errors.h"
 
 namespace sandrunner::learner {
 
@@ -13,6 +16,9 @@ Share Ranks::share_of(int rank, int count) const {
 
 // Bytes of each rank's share.
 std::vector<int> Ranks::parts_of(int count, std::size_t bytes_each) const {
+  if (static_cast<std::size_t>(count) * bytes_each > std::numeric_limits<int>::max()) {
+    throw InputError("run.envs: too many for several ranks, which would exchange 2 GiB at once");
+  }
   std::vector<int> parts;
   for (int r = 0; r < size(); ++r) {
     parts.push_back(share_of(r, count).size() * static_cast<int>(bytes_each));
@@ -51,13 +57,20 @@ void Ranks::add_up(std::vector<std::vector<float>>& addends, int count, WorkerPo
   pool.run((mine.size() + kRange - 1) / kRange, [&](int range, int) {
     const int begin = mine.begin + range * kRange, end = std::min(begin + kRange, mine.end);
     for (int i = 1; i < count; ++i) {
-      const float* const addend = exchange_
-                                      ? got.data() + std::ptrdiff_t{i} * mine.size() - mine.begin
-                                      : addends[static_cast<std::size_t>(i)].data();
-      for (int k = begin; k < end; ++k) sum[static_cast<std::size_t>(k)] += addend[k];
+      const float* addend = exchange_
+                                ? got.data() + std::ptrdiff_t{i} * mine.size() + begin - mine.begin
+                                : addends[static_cast<std::size_t>(i)].data() + begin;
+      for (int k = begin; k < end; ++k) sum[static_cast<std::size_t>(k)] += *addend++;
     }
   });
   gather(std::span(sum), whole);
+}
+
+bool Ranks::agree(std::uint64_t here) const {
+  std::vector<std::uint64_t> values(static_cast<std::size_t>(size()));
+  values[static_cast<std::size_t>(rank())] = here;
+  gather(std::span(values), size());
+  return std::ranges::all_of(values, [&](std::uint64_t there) { return there == here; });
 }
 
 bool Ranks::any(bool here) const { return sum(here ? 1.0 : 0.0) > 0.0; }

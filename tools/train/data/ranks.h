@@ -41,7 +41,8 @@ struct Share {
   int size() const { return end - begin; }
 };
 
-/// What the parts of a training do with the other ranks. A copy is for the same ranks.
+/// What the parts of a training do with the other ranks. A copy is for the same ranks. Throws
+/// InputError if all ranks together would exchange 2 GiB at once, which MPI cannot.
 class Ranks {
  public:
   Ranks() = default;  ///< one alone
@@ -68,6 +69,8 @@ class Ranks {
   /// Whether it holds for one of them.
   bool any(bool here) const;
   double sum(double here) const;
+  /// Whether all have the same.
+  bool agree(std::uint64_t here) const;
 
  private:
   int rank() const { return exchange_ ? exchange_->rank() : 0; }

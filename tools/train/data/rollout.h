@@ -138,7 +138,7 @@ struct BasicRollout {
   template <typename Visit>
   void for_each_learnt(const Visit& visit) {
     const auto each = [&](int steps, auto&... fields) { (visit(fields.bytes(), steps), ...); };
-    each(shape.steps + 1, observation, privileged, estimate_target, insight, reset, value);
+    each(shape.steps + 1, observation, privileged, estimate_target, insight, reset);
     each(shape.steps, action, mean, symmetric_mean, teacher_mean, teacher_encoding, log_prob,
          advantage, value_target);
     each(1, initial_memory);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "rt/base/errors.h"
 #include "tests/tools/train/data/thread_ranks.h"
 
 namespace sandrunner::learner {
@@ -85,6 +86,10 @@ TEST(RanksTest, WhatHoldsForOneIsKnownToAll) {
     EXPECT_FALSE(ranks.any(false));
     EXPECT_TRUE(ranks.any(rank == 2));
     EXPECT_EQ(ranks.sum(1.0 + rank), 6.0);
+    EXPECT_TRUE(ranks.agree(7));
+    EXPECT_FALSE(ranks.agree(rank == 1 ? 8 : 7));
+    std::vector<std::byte> none;
+    EXPECT_THROW(ranks.gather_bytes({none.data(), std::size_t{1} << 31}, 2), InputError);
     EXPECT_EQ(ranks.is_first(), rank == 0);
   });
   EXPECT_TRUE(Ranks().any(true));

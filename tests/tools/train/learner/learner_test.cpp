@@ -28,6 +28,12 @@ LearnerConfig small_config() {
   config.block_envs = 8;
   return config;
 }
+/// The policy is also pulled towards its mirror image.
+LearnerConfig with_mirror() {
+  LearnerConfig config = small_config();
+  config.loss.symmetry_weight = 0.1;
+  return config;
+}
 const RolloutShape kSmallShape{64, 8, kToyPrivileged};
 
 /// A training on the toy task, whose symmetry it knows.
@@ -52,10 +58,10 @@ struct Training {
 };
 
 TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfThreads) {
-  Training one(1, 4);
-  Training again(1, 4);
-  Training three(3, 4);
-  Training other_seed(1, 5);
+  Training one(1, 4, with_mirror());
+  Training again(1, 4, with_mirror());
+  Training three(3, 4, with_mirror());
+  Training other_seed(1, 5, with_mirror());
   for (Training* training : {&one, &again, &three, &other_seed}) training->run(6);
   EXPECT_EQ(one.learner.parameters(), again.learner.parameters());
   EXPECT_EQ(one.learner.parameters(), three.learner.parameters());
@@ -65,13 +71,13 @@ TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfThreads) {
 }
 
 TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfRanks) {
-  Training alone(1, 4);
+  Training alone(1, 4, with_mirror());
   alone.run(6);
   Checkpoint expected;
   alone.learner.save(expected);
   for (const int size : {2, 3, 5}) {
     run_ranks(size, [&](const Ranks& ranks, int) {
-      Training shared(2, 4);
+      Training shared(2, 4, with_mirror());
       shared.learner.share_with(ranks);
       shared.run(6);
       Checkpoint checkpoint;
@@ -84,8 +90,8 @@ TEST(LearnerTest, SameSeedGivesTheSameWeightsForAnyNumberOfRanks) {
 
 TEST(LearnerTest, SameSeedGivesTheSameWeightsWithAvx2AndAvx512) {
   if (!has_avx512()) GTEST_SKIP() << "this processor has no AVX-512";
-  Training x8(1, 4, small_config(), kernels_x8());
-  Training x16(2, 4, small_config(), kernels_x16());
+  Training x8(1, 4, with_mirror(), kernels_x8());
+  Training x16(2, 4, with_mirror(), kernels_x16());
   for (Training* training : {&x8, &x16}) training->run(6);
   EXPECT_EQ(x8.learner.parameters(), x16.learner.parameters());
 }
@@ -103,10 +109,10 @@ TEST(LearnerTest, WeightsAreThoseWrittenDownFromBothCompilers) {
 TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
   const std::string path =
       (std::filesystem::path(testing::TempDir()) / "learner_resume.bin").string();
-  Training whole(1, 4);
+  Training whole(1, 4, with_mirror());
   whole.run(7);
   {
-    Training first(2, 4);
+    Training first(2, 4, with_mirror());
     first.run(2);
     Checkpoint checkpoint;
     first.learner.save(checkpoint);
@@ -115,7 +121,7 @@ TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
     first.run(1);  // lost with the kill
   }
   for (const int windows : {4, 1}) {
-    Training next(1, 77);  // the seed, too, comes from the checkpoint
+    Training next(1, 77, with_mirror());  // the seed, too, comes from the checkpoint
     const Checkpoint loaded = load_checkpoint(path);
     next.learner.load(loaded);
     loaded.get("task", next.task.states.data(), next.task.states.size());
@@ -146,8 +152,7 @@ TEST(LearnerTest, SymmetryWeightPullsTheAnswersToBothImagesTogether) {
 }
 
 TEST(LearnerTest, AnswersArePulledByWhatHasLongDifferedInTheMirror) {
-  LearnerConfig config = small_config();
-  config.loss.symmetry_weight = 0.1;
+  LearnerConfig config = with_mirror();
   Training now(1, 4, config);
   config.symmetry_steps = 10;
   Training lately(1, 4, config);
