@@ -302,7 +302,8 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   weights_.set(parameters_.data());
   const Share own = ranks_.share(count);
   pool_.run(own.size(), [&](int i, int worker) {
-    const auto slot = static_cast<std::size_t>(own.begin + i);
+    const int place = own.begin + i;
+    const auto slot = static_cast<std::size_t>(place);
     std::fill(gradients_[slot].begin(), gradients_[slot].end(), 0.0f);
     sums[slot] = learning_[static_cast<std::size_t>(worker)].loss_and_gradient(
         weights_, rollout_, blocks[slot] * config_.block_envs, config_.loss, advantage_scale_,

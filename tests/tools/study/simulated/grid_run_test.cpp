@@ -48,8 +48,9 @@ TEST(ClearanceTest, AStanceThatLastsCountsAndAFootAboveTheGroundHasNone) {
 TEST(SlopesTest, AreThoseOfAPlaneAlsoWithGaps) {
   std::vector<double> a, b, y;
   for (int i = 0; i < 12; ++i) {
-    a.push_back(i % 3);
-    b.push_back(i / 3 + 0.2 * (i % 3));
+    const int column = i % 3, row = i / 3;
+    a.push_back(column);
+    b.push_back(row + 0.2 * column);
     y.push_back(i == 5 ? kNan : 7.0 - 0.3 * a.back() + 0.1 * b.back());
   }
   const Slopes slopes = fit_slopes(a, b, y);
