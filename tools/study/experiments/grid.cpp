@@ -89,7 +89,8 @@ RunGroup terms_group(const Cells& runs) {
   const std::vector<std::string> names = train::reward_term_names();
   for (std::size_t term = 0; term < names.size(); ++term) {
     group.lists[names[term]] = {mean_over(runs.size(), [&](std::size_t c) {
-      return mean_over(runs[c].size(), [&](std::size_t i) { return runs[c][i].reward_terms[term]; });
+      return mean_over(runs[c].size(),
+                       [&](std::size_t i) { return runs[c][i].reward_terms[term]; });
     })};
   }
   return group;

@@ -37,7 +37,7 @@ struct TaskStep {
   /// encoding.
   learner::ConstMatrixRef<float> actor_input, encoding;
   const train::StepDetails& details;  ///< of all environments
-  const train::Task& task;  ///< after the step
+  const train::Task& task;            ///< after the step
 };
 /// Called by several threads, with one block by one of them.
 using TaskObserver = std::function<void(const TaskStep& step)>;
