@@ -29,7 +29,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingInfo& i
       messages_(info.robot, info.start_time_ns, info.first_tick,
                 [this](const RunMessages::Message& message) {
                   file_.write_message({
-                      .channel_id = channels_[static_cast<std::size_t>(message.topic)],
+                      .channel_id = channels_[index_of(message.topic)],
                       .sequence = static_cast<std::uint32_t>(message.sequence),
                       .log_time_ns = message.time_ns,
                       .publish_time_ns = message.time_ns,

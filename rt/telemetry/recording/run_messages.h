@@ -34,14 +34,15 @@ enum class RunTopic : std::uint8_t {
   kFixedTransforms,
 };
 inline constexpr std::size_t kNumRunTopics = 10;
-using RunTopics = std::bitset<kNumRunTopics>;
+using RunTopics = std::bitset<kNumRunTopics>;  ///< by index_of
+constexpr std::size_t index_of(RunTopic topic) noexcept { return static_cast<std::size_t>(topic); }
 
 struct RunTopicInfo {
   const char* name;             ///< "/joint_states"
   const char* schema;           ///< "sensor_msgs/msg/JointState"
   const char* schema_encoding;  ///< "ros2msg", or "omgidl" for our own
   std::string schema_text;      ///< its definition and those of its parts
-  /// Said once, before all others: in ROS 2, readers that come later get it too.
+  /// Has one message, before all others: in ROS 2, readers that come later get it too.
   bool once = false;
 };
 
@@ -68,7 +69,7 @@ class RunMessages {
   RunMessages(const RobotDescription& robot, std::int64_t start_time_ns, std::uint64_t first_tick,
               Sink sink);
 
-  /// What is said once. Before all else.
+  /// The messages of topics that have `once`. Call it first.
   void begin();
   /// Up to kTicksPerMessage ticks, in order, as a message of `kTicks`.
   void add_batch(std::span<const TickRecord> ticks);
@@ -86,7 +87,7 @@ class RunMessages {
   }
 
  private:
-  bool wants(RunTopic topic) const noexcept { return wanted_[static_cast<std::size_t>(topic)]; }
+  bool wants(RunTopic topic) const noexcept { return wanted_[index_of(topic)]; }
   void add_events(const TickRecord& tick);
   // `content()`: a CdrWriter; made only if the topic is wanted.
   template <typename Content>

@@ -22,8 +22,6 @@ void append(std::string& bytes, T number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-std::size_t index_of(RunTopic topic) noexcept { return static_cast<std::size_t>(topic); }
-
 std::string advertisement() {
   Json channels = Json::array();
   for (std::size_t i = 0; i < kNumRunTopics; ++i) {

@@ -41,9 +41,9 @@ class FoxgloveSession final : public ViewSession {
   LiveTopics& topics_;
   std::array<std::optional<Id>, kNumRunTopics> ids_;  // by RunTopic
   RunTopics subscribed_;
-  RunTopics owed_;  // said once, and not sent yet
+  RunTopics owed_;  // topics with one message, which is not sent yet
   std::uint64_t place_, said_ns_ = 0;
-  std::shared_ptr<const LiveTopics::Message> held_;  // until its time is said
+  std::shared_ptr<const LiveTopics::Message> held_;  // until its time is sent
   std::deque<std::string> answers_;
 };
 

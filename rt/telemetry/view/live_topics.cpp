@@ -13,7 +13,7 @@ void LiveTopics::begin(std::int64_t start_ns) {
         Message{message.topic,
                 message.time_ns,
                 {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
-    if (run_topics()[static_cast<std::size_t>(message.topic)].once) {
+    if (run_topics()[index_of(message.topic)].once) {
       said_once_.push_back(std::move(kept));
       return;
     }
@@ -30,7 +30,7 @@ void LiveTopics::begin(std::int64_t start_ns) {
 void LiveTopics::add(const TickRecord& tick) {
   const std::lock_guard lock(mutex_);
   time_ns_ = messages_->time_ns(tick.input.sensors.tick);
-  if (readers_[static_cast<std::size_t>(RunTopic::kTicks)] > 0) {
+  if (readers_[index_of(RunTopic::kTicks)] > 0) {
     batch_.push_back(tick);
     if (batch_.size() == kTicksPerMessage) send_batch();
   }
@@ -54,13 +54,13 @@ void LiveTopics::send_batch() {
 
 void LiveTopics::subscribe(RunTopic topic) {
   const std::lock_guard lock(mutex_);
-  ++readers_[static_cast<std::size_t>(topic)];
+  ++readers_[index_of(topic)];
   follow_readers();
 }
 
 void LiveTopics::unsubscribe(RunTopic topic) {
   const std::lock_guard lock(mutex_);
-  if (--readers_[static_cast<std::size_t>(topic)] == 0 && topic == RunTopic::kTicks) batch_.clear();
+  if (--readers_[index_of(topic)] == 0 && topic == RunTopic::kTicks) batch_.clear();
   follow_readers();
 }
 
@@ -83,7 +83,7 @@ std::shared_ptr<const LiveTopics::Message> LiveTopics::next(std::uint64_t& place
   if (place < begin) place = end_ - 1;  // behind: with the newest
   while (place < end_) {
     const auto& message = queue_[place++ - begin];
-    if (topics[static_cast<std::size_t>(message->topic)]) return message;
+    if (topics[index_of(message->topic)]) return message;
   }
   return nullptr;
 }

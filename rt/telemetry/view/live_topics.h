@@ -17,7 +17,7 @@ namespace sandrunner {
 
 /// The topics of a run while it goes on, from the thread of its ticks to the one that serves
 /// Foxglove. Only topics with a subscriber are encoded. As with ViewFeed, a reader that falls
-/// behind continues with the newest message, and nobody waits for it.
+/// behind continues with the newest message, and delays nothing.
 class LiveTopics final : public TickSink {
  public:
   struct Message {
@@ -45,7 +45,7 @@ class LiveTopics final : public TickSink {
   /// The next message from number `place` on of a topic that is in `topics`; `place` moves behind
   /// it. Null: there is none yet.
   std::shared_ptr<const Message> next(std::uint64_t& place, const RunTopics& topics) const;
-  /// The message of a topic that is said once. Null: the run has not begun.
+  /// The message of a topic that has one. Null: the run has not begun.
   std::shared_ptr<const Message> said_once(RunTopic topic) const;
   /// Of the latest tick, since 1970; 0: the run has not begun.
   std::uint64_t time_ns() const;

@@ -62,12 +62,12 @@ void judge_lines(std::string_view text) {
       if (websocket && verdict.protocol.empty()) {
         must(origin.starts_with("http://") && origin.substr(7) == host);
       }
+      if (!websocket) must(!verdict.file.empty() && !verdict.type.empty());
       if (verdict.protocol.empty()) continue;
       must(websocket && method.find(verdict.protocol) != std::string_view::npos);
       must(origin.empty() || origin == "file://" || origin == "https://app.foxglove.dev" ||
            origin.starts_with("http://127.0.0.1") || origin.starts_with("http://localhost") ||
            origin.starts_with("http://[::1]"));
-      if (!websocket) must(!verdict.file.empty() && !verdict.type.empty());
     }
   }
   must(same_key(target, host) == (target == host));
