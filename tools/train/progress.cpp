@@ -260,7 +260,9 @@ std::string Progress::page_json(const std::string& title) const {
   std::vector<std::string> names = reward_term_names();
   for (const Series& series : all) names.push_back(series.name);
   for (const std::string& name : names) {
-    if (!drawn.contains(name)) add(name, "", line("", name));
+    const std::vector<double>& values = values_of(all, name);
+    const bool measured = std::ranges::any_of(values, [](double v) { return std::isfinite(v); });
+    if (measured && !drawn.contains(name)) add(name, "", line("", name));
   }
   return fmt::format(R"({{"title":{},"x_label":"{}","x":{},"every":{},"charts":[{}]}})",
                      nlohmann::json(title).dump(), kAbscissa, json_list(millions(rows_), every),
