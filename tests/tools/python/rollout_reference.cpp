@@ -57,7 +57,7 @@ bool run(const char* path, int envs, int steps, std::uint64_t seed,
   WorkerPool pool(2);
   Task task(config.task, robot, {envs, config.learner.block_envs}, seed);
   learner::Learner learner(config.learner, {envs, config.window, Task::privileged_size()}, seed,
-                           pool, Task::symmetry());
+                           pool, Task::symmetry(robot));
   set_shipped_policy(config.task, learner);
   learner::Rollout& r = learner.rollout();
   pool.run(learner.blocks(), [&](int block, int) { task.observe(block, 0, r); });

@@ -83,7 +83,9 @@ void Task::observe(int block, int t, learner::Rollout& rollout) {
   for (int i = 0; i < block_envs_; ++i) observe_env(block * block_envs_ + i, t, rollout);
 }
 
-learner::Symmetry Task::symmetry() {
+learner::Symmetry Task::symmetry(const sim::Robot& robot) {
+  // The HAA of a robot whose left and right axes are opposite has the same angle in the mirror.
+  const auto haa = static_cast<float>(-robot.model.legs[0].sign[0] * robot.model.legs[1].sign[0]);
   learner::Symmetry s;
   const auto add = [](learner::Reflection& to, std::initializer_list<float> signs) {
     for (const float sign : signs) {
@@ -102,18 +104,18 @@ learner::Symmetry Task::symmetry() {
       }
     }
   };
-  add(s.observation, {1, -1, -1});      // command vx, vy, wz
-  add(s.observation, {1, -1, 1});       // gravity
-  add(s.observation, {-1, 1, -1});      // angular velocity
-  add_legs(s.observation, {-1, 1, 1});  // joint positions less nominal, and velocities
-  add_legs(s.observation, {-1, 1, 1});
+  add(s.observation, {1, -1, -1});       // command vx, vy, wz
+  add(s.observation, {1, -1, 1});        // gravity
+  add(s.observation, {-1, 1, -1});       // angular velocity
+  add_legs(s.observation, {haa, 1, 1});  // joint positions less nominal, and velocities
+  add_legs(s.observation, {haa, 1, 1});
   for (int i = 0; i < kTerrainSize; ++i) add(s.insight, {1});
   add(s.insight, {1, 1, -1, 1});  // body height, velocity
   add_legs(s.insight, {1});       // foot heights
   add_legs(s.insight, {1});       // loaded feet
   // Modes of the legs: pronk and bound are their own images, pace and trot begin with the other
   // side.
-  for (const float side : {1.0f, 1.0f, -1.0f, -1.0f}) add(s.action, {-side, side, side});
+  for (const float side : {1.0f, 1.0f, -1.0f, -1.0f}) add(s.action, {haa * side, side, side});
   return s;
 }
 

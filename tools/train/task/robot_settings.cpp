@@ -14,6 +14,7 @@ namespace {
 // Raibo's mass and nominal height, for which the figures below are known to be good.
 constexpr double kMass_kg = 26.817, kHeight_m = 0.4725;
 constexpr double kKneeMargin_rad = 0.124;  // from a knee's stop to where it is penalised
+constexpr double kSamePose_rad = 0.01;     // between left and right
 
 }  // namespace
 
@@ -66,21 +67,29 @@ void check_robot(const TaskConfig& config, const sim::Robot& robot) {
   };
   at_most("policy.kp_nmprad", config.policy.kp_nmprad, robot.kp_limit_nmprad);
   at_most("policy.kd_nmsprad", config.policy.kd_nmsprad, robot.kd_limit_nmsprad);
-  if (robot.nominal_rad[0] != 0.0) {
-    throw InputError(fmt::format(
-        "robot '{}': pose.nominal_rad has an HAA of {}, expected 0 for a training: left "
-        "and right are mirror images",
-        robot.description.name, robot.nominal_rad[0]));
-  }
+  const auto refuse = [&](int joint, const char* found, int other, const char* expected) {
+    throw InputError(fmt::format("robot '{}': joint '{}' {} '{}', expected {} for a training",
+                                 robot.description.name, robot.description.joint_names[joint],
+                                 found, robot.description.joint_names[other], expected));
+  };
+  // HAA may turn the other way on the right: it has the same gain in all modes, so that they span
+  // the same answers whatever its signs.
+  const auto sign = [&](int joint) {
+    return robot.model.legs[joint / kJointsPerLeg].sign[joint % kJointsPerLeg];
+  };
   for (int j = kJointsPerLeg; j < kNumJoints; ++j) {
-    const int first = j % kJointsPerLeg;  // of the left front leg
-    if (robot.model.legs[j / kJointsPerLeg].sign[first] == robot.model.legs[0].sign[first])
+    const bool haa = j % kJointsPerLeg == 0;
+    const int other = j % (haa ? 2 * kJointsPerLeg : kJointsPerLeg);
+    if (sign(j) == sign(other)) continue;
+    refuse(j, "turns the other way than", other,
+           "the same axis (what a network answers is mixed over the legs)");
+  }
+  for (const int right : {3, 4, 5, 9, 10, 11}) {
+    const int left = right - kJointsPerLeg;
+    const double image = right % kJointsPerLeg == 0 ? -sign(left) * sign(right) : 1.0;
+    if (std::abs(robot.nominal_rad[right] - image * robot.nominal_rad[left]) < kSamePose_rad)
       continue;
-    throw InputError(fmt::format(
-        "robot '{}': joint '{}' turns the other way than '{}', expected the same axis for a "
-        "training: what its network answers is mixed over the legs",
-        robot.description.name, robot.description.joint_names[j],
-        robot.description.joint_names[first]));
+    refuse(right, "does not mirror, in pose.nominal_rad,", left, "that");
   }
 }
 

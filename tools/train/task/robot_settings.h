@@ -17,7 +17,8 @@ namespace sandrunner::train {
 std::string robot_settings(const sim::Robot& robot);
 
 /// Throws InputError for a robot that cannot be trained with these settings: gains beyond its
-/// limits; a nominal pose that is not its own mirror image.
+/// limits; joints that turn differently, but for HAA on the right; a nominal pose that is not its
+/// own mirror image.
 void check_robot(const TaskConfig& config, const sim::Robot& robot);
 
 /// The settings of a training of `robot`, from the weakest layer up: training.toml, what is derived

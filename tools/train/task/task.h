@@ -92,8 +92,9 @@ class Task {
 
   static constexpr int privileged_size() { return kPrivileged; }
   const InputScales& scales() const { return scales_; }
-  /// Left and right exchanged: the robot and its task are the same in the mirror.
-  static learner::Symmetry symmetry();
+  /// Left and right exchanged: a robot that check_robot accepts, and its task, are the same in the
+  /// mirror.
+  static learner::Symmetry symmetry(const sim::Robot& robot);
 
   /// Writes observation(t), privileged(t), estimate_target(t) and, if the rollout has rows for it,
   /// insight(t) of a block.

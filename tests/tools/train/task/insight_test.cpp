@@ -62,7 +62,7 @@ TEST(InsightTest, ATrialShowsTheGroundThatItGives) {
 // Left and right exchanged: in the mirror the body moves to the other side and the legs change
 // places.
 TEST(InsightTest, ReflectionTurnsSidewaysVelocityAndExchangesLegs) {
-  const learner::Reflection reflection = Task::symmetry().insight;
+  const learner::Reflection reflection = Task::symmetry(sim::load_raibo()).insight;
   Eigen::Matrix<float, kInsightSize, 1> insight;
   for (int i = 0; i < kInsightSize; ++i) insight(i) = static_cast<float>(i + 1);
   std::array<float, kInsightSize> scratch;

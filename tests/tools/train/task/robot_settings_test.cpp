@@ -47,6 +47,10 @@ TEST(RobotSettingsTest, ARobotThatStandsAskewIsNotTrained) {
   EXPECT_NO_THROW(check_robot(config, robot));
   robot.nominal_rad[0] = 0.1;
   EXPECT_THROW(check_robot(config, robot), InputError);
+  robot.nominal_rad[3] = -0.1;
+  EXPECT_NO_THROW(check_robot(config, robot));
+  robot.nominal_rad[11] += 0.1;
+  EXPECT_THROW(check_robot(config, robot), InputError);
 }
 
 TEST(RobotSettingsTest, LegsThatTurnDifferentWaysAreNotTrained) {
@@ -56,6 +60,17 @@ TEST(RobotSettingsTest, LegsThatTurnDifferentWaysAreNotTrained) {
   EXPECT_NO_THROW(check_robot(config, robot));
   robot.model.legs[1].sign[1] = -1.0;
   EXPECT_THROW(check_robot(config, robot), InputError);
+}
+
+TEST(RobotSettingsTest, AbductionMayTurnTheOtherWayOnTheRight) {
+  sim::Robot robot = sim::load_raibo();
+  const TaskConfig config = settings_of(robot);
+  robot.model.legs[1].sign[0] = -1.0;
+  EXPECT_THROW(check_robot(config, robot), InputError);
+  robot.model.legs[3].sign[0] = -1.0;
+  EXPECT_NO_THROW(check_robot(config, robot));
+  robot.nominal_rad[0] = robot.nominal_rad[3] = 0.1;
+  EXPECT_NO_THROW(check_robot(config, robot));
 }
 
 TEST(RobotSettingsTest, StopsMayBeMoreThanATurnAway) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "estimator/observation.h"
 #include "rt/core/processor.h"
@@ -25,10 +26,10 @@ std::array<T, kSize> reflected(const Reflection& reflection, const std::array<T,
   return image;
 }
 
-// Mirror image of a state: left for right, y for -y.
-sim::RobotState<float> mirror_image(const sim::RobotState<float>& from) {
+// Mirror image of a state: left for right, y for -y; `haa`: sign of HAA in the mirror.
+sim::RobotState<float> mirror_image(const sim::RobotState<float>& from, float haa) {
   const Reflection joints{{3, 4, 5, 0, 1, 2, 9, 10, 11, 6, 7, 8},
-                          {-1, 1, 1, -1, 1, 1, -1, 1, 1, -1, 1, 1}};
+                          {haa, 1, 1, haa, 1, 1, haa, 1, 1, haa, 1, 1}};
   sim::RobotState<float> to = from;
   sim::RigidState<float>& x = to.rigid;
   x.q = reflected(joints, from.rigid.q);
@@ -55,19 +56,22 @@ std::array<float, kObservationSize> observed(const InputScales& scales,
   return observation;
 }
 
-class SymmetryTest : public testing::TestWithParam<sim::GroundKind> {};
+// The ground, and which way the HAA of the right legs turns.
+class SymmetryTest : public testing::TestWithParam<std::tuple<sim::GroundKind, double>> {};
 
 TEST_P(SymmetryTest, RobotInTheMirrorMovesLikeTheMirrorImage) {
   flush_denormals_to_zero();
-  const sim::Robot robot = sim::load_raibo();
+  const auto [kind, right_haa] = GetParam();
+  sim::Robot robot = sim::load_raibo();
+  for (const int leg : {1, 3}) robot.model.legs[leg].sign[0] = right_haa;
   sim::TerrainDescription description;
   description.patches.resize(1);
-  description.patches[0].ground.kind = GetParam();
+  description.patches[0].ground.kind = kind;
   const sim::FootProfile<double> foot = sim::make_foot_profile(description, robot.model);
   sim::Batch batch(2, foot, sim::StepSettings{}, sim::BatchWidth::kOne);
   const auto terrain =
       sim::convert_terrain<float>(sim::make_terrain(description, foot, robot.model));
-  const learner::Symmetry symmetry = Task::symmetry();
+  const learner::Symmetry symmetry = Task::symmetry(robot);
   const InputScales scales = make_scales(robot.nominal_rad, 0.48, 6.0);
 
   sim::RobotState<float> state;
@@ -100,7 +104,7 @@ TEST_P(SymmetryTest, RobotInTheMirrorMovesLikeTheMirrorImage) {
     batch.set_drive(i, drive[i]);
   }
   batch.set_state(0, state);
-  batch.set_state(1, mirror_image(state));
+  batch.set_state(1, mirror_image(state, static_cast<float>(-right_haa)));
   float load = 0.0f;
   for (int step = 0; step < 20; ++step) {
     batch.advance(0, kTicksPerPolicyStep);
@@ -118,10 +122,12 @@ TEST_P(SymmetryTest, RobotInTheMirrorMovesLikeTheMirrorImage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Grounds, SymmetryTest,
-                         testing::Values(sim::GroundKind::kGranular, sim::GroundKind::kRigid));
+                         testing::Combine(testing::Values(sim::GroundKind::kGranular,
+                                                          sim::GroundKind::kRigid),
+                                          testing::Values(1.0, -1.0)));
 
 TEST(SymmetryShapeTest, ReflectionsAreTheirOwnInverse) {
-  const learner::Symmetry s = Task::symmetry();
+  const learner::Symmetry s = Task::symmetry(sim::load_raibo());
   EXPECT_EQ(s.observation.index.size(), std::size_t{kObservationSize});
   EXPECT_EQ(s.action.index.size(), std::size_t{kNumJoints});
   EXPECT_EQ(s.insight.index.size(), std::size_t{kInsightSize});
