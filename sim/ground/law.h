@@ -11,10 +11,6 @@
 // To add a law: its file, and its name in GroundKind and Laws (ground.h).
 #pragma once
 
-#include <array>
-#include <bit>
-#include <cstddef>
-
 #include "sim/ground/foot_profile.h"
 #include "sim/lanes/lanes.h"
 
@@ -50,11 +46,9 @@ struct FootContact {
 template <typename S>
 inline FootContact<S> select(const Mask<S>& m, const FootContact<S>& a,
                              const FootContact<S>& b) noexcept {
-  using Fields = std::array<S, sizeof(FootContact<S>) / sizeof(S)>;
-  Fields fields = std::bit_cast<Fields>(b);
-  const Fields other = std::bit_cast<Fields>(a);
-  for (std::size_t i = 0; i < fields.size(); ++i) fields[i] = select(m, other[i], fields[i]);
-  return std::bit_cast<FootContact<S>>(fields);
+  FootContact<S> chosen = b;
+  assign_where<S>(m, a, chosen);
+  return chosen;
 }
 
 /// Forces of the ground on a foot at one step.

@@ -41,17 +41,18 @@ struct Terrain {
       return ground[static_cast<std::size_t>(index)];
     } else {
       if (!any(index > S(0.0))) return ground[0];
-      using Fields = std::array<S, sizeof(Ground<S>) / sizeof(S)>;
-      Fields fields = std::bit_cast<Fields>(ground[0]);
-      for (int i = 1; i < kMaxRegions; ++i) {
+      bool begun = false;
+      for (int i = 0; i < kMaxRegions; ++i) {
         const Mask<S> here = index == S(double(i));
         if (!any(here)) continue;
-        const Fields other = std::bit_cast<Fields>(ground[i]);
-        for (std::size_t f = 0; f < fields.size(); ++f) {
-          fields[f] = select(here, other[f], fields[f]);
+        if (!any(no(here))) return ground[i];
+        if (begun) {
+          assign_where<S>(here, ground[i], scratch);
+        } else {
+          scratch = ground[i];
         }
+        begun = true;
       }
-      scratch = std::bit_cast<Ground<S>>(fields);
       return scratch;
     }
   }

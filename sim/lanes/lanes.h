@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #include "rt/core/fma.h"
@@ -68,6 +70,20 @@ template <typename S>
 using LaneScalar = std::conditional_t<std::is_floating_point_v<S>, S, float>;
 template <typename S>
 using LaneValues = std::array<LaneScalar<S>, sizeof(S) / sizeof(LaneScalar<S>)>;  // NOLINT
+
+/// to = from in the lanes of `m`. T: all of its members are S. One after the other in place:
+/// std::bit_cast of a large T copies it.
+template <typename S, typename T>
+inline void assign_where(const Mask<S>& m, const T& from, T& to) noexcept {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(S) == 0);
+  for (std::size_t at = 0; at < sizeof(T); at += sizeof(S)) {
+    S a, b;
+    std::memcpy(&a, reinterpret_cast<const char*>(&from) + at, sizeof(S));
+    std::memcpy(&b, reinterpret_cast<const char*>(&to) + at, sizeof(S));
+    const S chosen = select(m, a, b);
+    std::memcpy(reinterpret_cast<char*>(&to) + at, &chosen, sizeof(S));
+  }
+}
 
 /// e^x for 0 <= x <= 7: the Taylor series of x/16, squared four times. Relative error below 2e-6 in
 /// float, 1e-14 in double. Own code because libm's bits depend on the machine.

@@ -19,7 +19,8 @@ inline void fma_loop(long loops) noexcept {
   volatile float unknown = 1e-9f;
   const sim::Pack<kLanes> x(static_cast<float>(unknown));
   sim::Pack<kLanes> sum[kPeakRegisters];
-  for (auto& pack : sum) pack = x;
+  // Each from a value of its own: of equal sums a compiler makes one.
+  for (auto& pack : sum) pack = sim::Pack<kLanes>(static_cast<float>(unknown));
   for (; loops > 0; --loops) {
     for (auto& pack : sum) pack = fma(x, x, pack);
   }
