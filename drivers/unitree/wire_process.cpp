@@ -2,6 +2,7 @@
 #include "drivers/unitree/wire_process.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,6 +23,7 @@ constexpr std::int64_t kModeLook_ns = 1'000'000'000;
 // Below the control thread, 80, and above the policy thread, 70.
 constexpr int kPriority = 76, kReceivePriority = 75;
 constexpr int kConnect_s = 30;
+constexpr int kLook_ms = 10, kHungLooks = 10;  // of the guard at the wire
 
 /// The wire, in its process.
 class Wire {
@@ -61,6 +63,7 @@ class Wire {
     std::int64_t due_ns = clock_ns(CLOCK_MONOTONIC) + kPeriod_ns;
     std::int64_t look_ns = due_ns;
     while (!watch_.is_silent()) {
+      ++memory_.turns;
       std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
       if (now_ns < due_ns) {
         if (link.wait(due_ns)) report(link);
@@ -74,6 +77,7 @@ class Wire {
     }
     // The controller still hears of the robot until it ends.
     while (may_go_on()) {
+      ++memory_.turns;
       if (link.wait(clock_ns(CLOCK_MONOTONIC) + 5 * kPeriod_ns)) report(link);
     }
   }
@@ -148,15 +152,34 @@ void note_error(WireMemory& memory, const std::string& error) {
 [[noreturn]] void live(const UnitreeConfig& config, const RobotFigures& robot, WireMemory& memory,
                        int controller) {
   rename_process("legs-wire");
+  int code = 1;
   try {
     Wire(config, robot, memory, controller).run();
     if (memory.phase != WirePhase::kFailed) memory.phase = WirePhase::kEnded;
+    code = 0;
   } catch (const InputError& error) {
     note_error(memory, error.what());
   } catch (const std::exception& error) {
     note_error(memory, fmt::format("hardware.unitree: {}", error.what()));
   }
-  _exit(0);
+  _exit(code);
+}
+
+/// Waits for the end of the wire; false: not by itself, or after an error. One that powers motors
+/// and makes no turn at kHungLooks looks is killed. Looks are counted, not time: the guard may have
+/// been stopped as well.
+bool ends_well(pid_t wire, const WireMemory& memory) {
+  pollfd ended{.fd = open_process(wire), .events = POLLIN, .revents = 0};
+  std::uint64_t turns = 0;
+  for (int looks = 0; ended.fd >= 0 && poll(&ended, 1, kLook_ms) <= 0; ++looks) {
+    if (!memory.powered || memory.turns != turns) looks = 0;
+    turns = memory.turns;
+    if (looks == kHungLooks) kill(wire, SIGKILL);
+  }
+  int status = 0;
+  while (waitpid(wire, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 /// Damps a robot whose wire is gone, then switches it off.
@@ -191,10 +214,7 @@ void take_over(const UnitreeConfig& config, const RobotFigures& robot) {
     _exit(0);
   }
   memory.sender = sender;
-  int status = 0;
-  while (waitpid(sender, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) && memory.powered) {
+  if (!ends_well(sender, memory) && memory.powered) {
     memory.guarding = true;
     try {
       take_over(config, robot);
@@ -217,12 +237,16 @@ WireProcess::WireProcess(const UnitreeConfig& config, const RobotFigures& robot)
 
 WireProcess::~WireProcess() {
   memory_->ended = true;
-  for (int i = 0; i < 200 && runs() && !memory_->guarding; ++i) pause_ns(5'000'000);
+  const auto wait_1s = [this] {
+    for (int i = 0; i < 200 && runs() && !memory_->guarding; ++i) pause_ns(5'000'000);
+  };
+  wait_1s();
+  if (runs() && !memory_->guarding && memory_->sender > 0) {
+    kill(memory_->sender, SIGKILL);  // whose guard then damps motors that are on
+    wait_1s();
+  }
   if (!memory_->guarding) {
-    if (runs()) {
-      kill(memory_->sender, SIGKILL);
-      kill(pid_, SIGKILL);
-    }
+    if (runs()) kill(pid_, SIGKILL);
     waitpid(pid_, nullptr, 0);
   }
   close(process_);

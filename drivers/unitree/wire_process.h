@@ -16,7 +16,7 @@ namespace sandrunner::unitree {
 /// newest command 500 times a second, and what CommandWatch says where the controller falls silent,
 /// ends or is killed. So a controller that does not run any more leaves a damped robot, whatever
 /// the robot itself does when commands stop. It is the child of a second process, the guard, which
-/// does nothing but wait, and damps the robot where the first one is killed or crashes. The two
+/// watches it, kills it where it hangs, and damps the robot where it was killed or failed. The two
 /// have names and a session of their own: `pkill -9 sandrunner` ends neither. Example:
 /// wire_process_test.cpp.
 class WireProcess {
@@ -24,7 +24,7 @@ class WireProcess {
   /// Forks them; they do nothing yet. To be called while this process has one thread. Throws
   /// InputError.
   WireProcess(const UnitreeConfig& config, const RobotFigures& robot);
-  /// Ends them; waits for that, or kills them after a second. A guard that damps goes on alone.
+  /// Ends them; waits for that, or kills the wire after a second. A guard that damps goes on alone.
   ~WireProcess();
   WireProcess(const WireProcess&) = delete;
   WireProcess& operator=(const WireProcess&) = delete;

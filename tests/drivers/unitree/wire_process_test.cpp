@@ -277,6 +277,21 @@ TEST_F(WireProcessTest, AKilledWireEndsInDampingByItsGuard) {
   expect_damping_after([&] { kill(shared_->wire, SIGKILL); }, 0.4);
 }
 
+TEST_F(WireProcessTest, AWireThatHangsIsKilledAndItsGuardDamps) {
+  start();
+  expect_damping_after([&] { kill(shared_->wire, SIGSTOP); }, 0.55);
+}
+
+TEST_F(WireProcessTest, AWireThatHangsAsTheControllerEndsLeavesNoStiffness) {
+  start();
+  expect_damping_after(
+      [&] {
+        kill(shared_->wire, SIGSTOP);
+        shared_->wish = kEnd;
+      },
+      0.55);
+}
+
 TEST_F(WireProcessTest, AnEndedControllerLeavesTheMotorsOff) {
   start();
   ASSERT_TRUE(ready());
