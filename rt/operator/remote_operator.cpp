@@ -17,9 +17,12 @@ OperatorCommand RemoteOperator::command(std::uint64_t tick) noexcept {
   }
   next_tick_ = tick + 1;
   if (velocity_number_ == 0 || tick - arrival_tick_ > stale_ticks_) command_.velocity = {};
-  if (!end_.begun() && !first && asked.request_number != request_number_) {
+  // Of a run that ends, an operator may still want the robot damped.
+  const bool ends = end_.begun();
+  if (!first && asked.request_number != request_number_ &&
+      (!ends || asked.request == ModeRequest::kDamp)) {
     request_number_ = asked.request_number;
-    request(asked.request);
+    request(ends ? end_.damp() : asked.request);
     life_tick_ = tick;
   }
   command_.tick = life_tick_;

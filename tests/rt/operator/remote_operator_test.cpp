@@ -82,6 +82,17 @@ TEST(RemoteOperatorTest, AnInterruptLiesDownThenDampsForASecondAndTakesNoMoreReq
   EXPECT_EQ(op.command(2).request_id, 1u);
 }
 
+TEST(RemoteOperatorTest, AnOperatorMayDampARobotWhoseRunEnds) {
+  RemoteOperator op(kStale_ticks);
+  op.command(0);
+  op.advance({.mode = Mode::kStand, .interrupts = 1});
+  EXPECT_EQ(op.command(1).request, ModeRequest::kLie);
+  op.ask({.velocity = {}, .request = ModeRequest::kDamp, .request_number = 1});
+  EXPECT_EQ(op.command(2).request, ModeRequest::kDamp);
+  op.advance({.mode = Mode::kDamping, .interrupts = 1});
+  EXPECT_EQ(op.considered(), 1u);
+}
+
 TEST(RemoteOperatorTest, ASecondInterruptDampsAtOnce) {
   RemoteOperator op(kStale_ticks);
   op.command(0);
