@@ -12,6 +12,7 @@
 #include "drivers/check/check_report.h"
 #include "drivers/check/hand_move.h"
 #include "drivers/check/nudge.h"
+#include "drivers/check/signals_as_stop.h"
 #include "drivers/check/zero.h"
 #include "drivers/robot/bring_up.h"
 #include "drivers/robot/bus_listen.h"
@@ -222,7 +223,8 @@ class Check {
       state.torque_nm[j] = d.torque_nm();
       state.well[j] = d.fault() == 0 && look.tick() < d.tick() + kSilent_ticks;
     }
-    state.stop = lines_.next() || lines_.ended() || emergency_stop_pressed();
+    state.stop =
+        lines_.next() || lines_.ended() || emergency_stop_pressed() || SignalsAsStop::stopped();
     return state;
   }
 
@@ -237,6 +239,7 @@ class Check {
     JointTrace ignored;
     if (!watch(look, ignored).empty()) return;
     findings_.powered = true;
+    const SignalsAsStop signals;
     const NudgeExchange exchange = [&](const NudgePoints& points) {
       return nudge_exchange(look, points);
     };
