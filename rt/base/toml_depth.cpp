@@ -21,7 +21,10 @@ std::size_t end_of_string(std::string_view toml, std::size_t begin) noexcept {
     } else if (!long_one && toml[at] == '\n') {
       return at;
     } else if (long_one ? toml.substr(at, 3) == triple : toml[at] == quote) {
-      return at + (long_one ? 3 : 1);
+      at += long_one ? 3 : 1;
+      // A long string may end in one or two quotes of its own.
+      for (int own = 0; long_one && own < 2 && at < toml.size() && toml[at] == quote; ++own) ++at;
+      return at;
     }
   }
   return toml.size();

@@ -325,6 +325,9 @@ TEST(ConfigTreeTest, KeysOfTooManyPartsAreRefused) {
   EXPECT_EQ(error_of([&] { from("t = {b = 1, " + key + " = 1}"); }), "a.toml:1: " + cause);
   EXPECT_EQ(error_of([&] { from("s = \"\"\"\n\"\"\"\n'x'." + key + " = 1"); }),
             "a.toml:3: " + cause);
+  EXPECT_EQ(error_of([&] { from("s = [\"\"\"y\"\"\"\", {" + key + " = 1}]"); }),
+            "a.toml:1: " + cause)
+      << "a quote of the string's own before its end";
   EXPECT_NE(error_of([&] { ConfigTree().set(key + "=1"); }).find(cause), std::string::npos);
 }
 
