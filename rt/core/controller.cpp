@@ -250,13 +250,20 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
     state_.stopping = kStop;
   } else if (mode == Mode::kStand && event == Event::kRequestWalk && state_.folding != 0) {
     return mode;
+  } else if (mode == Mode::kStand && event == Event::kRequestStop) {
+    // On its way down, or up again, it can not stay where it is.
+    if (state_.folding != 0) return next_mode(mode, Event::kRequestDamp);
+    state_.stopping = kStop;
   }
   return next_mode(mode, event);
 }
 
 /// To the ground on the way that is the gentlest from where the robot is.
 Mode Controller::lie(Mode mode, std::uint64_t tick) noexcept {
-  if (mode == Mode::kStandUp && state_.folding != 0) return next_mode(mode, Event::kRequestDamp);
+  // Nor from a stiffness that still rises, as the first test of a drive's sign.
+  if (mode == Mode::kStandUp && (state_.folding != 0 || stiffness_share(tick) < 1.0)) {
+    return next_mode(mode, Event::kRequestDamp);
+  }
   if (mode == Mode::kWalk && state_.stopping == 0) begin_stop(tick);
   if ((kCarrying & mode_set(mode)) != 0) state_.stopping = kStopAndLie;
   return next_mode(mode, Event::kRequestLie);

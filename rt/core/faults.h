@@ -154,7 +154,7 @@ inline constexpr std::array<FaultRow, kNumFaults> kFaultTable = {{
     {Fault::kNotFollowing, "not_following",
      "something holds a joint: it is 0.6 rad away from its target, or it stays in its place in "
      "Walk while its target moves by 0.3 rad",
-     "drives", kStandUpOnly | kWalkOnly, "50 ms, in Walk 0.2 s"},
+     "drives", kCarrying, "50 ms, in Stand and Walk 0.2 s"},
     {Fault::kSpeedMismatch, "speed_mismatch",
      "a joint's position does not change as its speed says", "drives", kDriven, "0.3 rad"},
     {Fault::kJointMisplaced, "joint_misplaced",

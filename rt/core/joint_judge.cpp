@@ -153,14 +153,15 @@ bool torque_missing(const GateConfig& config, const JointState& joints, int j,
 bool not_following(const JointState& joints, int j, const JointContext& context,
                    JointMemory& m) noexcept {
   const double target_rad = context.sent_rad[j];
-  const bool behind = context.mode == Mode::kStandUp && context.stiff &&
+  const bool stands = context.mode == Mode::kStand;
+  const bool behind = (stands || context.mode == Mode::kStandUp) && context.stiff &&
                       std::fabs(target_rad - joints.position_rad[j]) > kNotFollowing_rad;
   std::uint64_t& ticks = m.behind_ticks[j];
   ticks = behind ? ticks + joints.tick[j] - m.sample_tick[j] : 0;
   const bool walks = context.mode == Mode::kWalk && context.stiff;
   const std::uint64_t held = rest_ticks(joints, j, target_rad, walks,
                                         {kHeld_rad, kHeldTarget_rad, kHeldTarget_rad}, m, m.held);
-  return ticks > ticks_from_s(kNotFollowing_s) || held > ticks_from_s(kHeld_s);
+  return ticks > ticks_from_s(stands ? kHeld_s : kNotFollowing_s) || held > ticks_from_s(kHeld_s);
 }
 
 bool near(double a_rad, double b_rad) noexcept {

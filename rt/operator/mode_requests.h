@@ -19,8 +19,8 @@ struct RequestDecision {
 };
 
 /// Decides in `mode`; `name` is one of kRequestTable. "stop" ends every motion: a walking robot's
-/// in a controlled stop, a rising one's in damping; it makes no robot stand up. `no_walk`: why the
-/// robot may not walk; null: it may.
+/// in a controlled stop, that of one on its way up or down in damping; it makes no robot stand up.
+/// `no_walk`: why the robot may not walk; null: it may.
 RequestDecision decide(std::string_view name, Mode mode, const char* no_walk) noexcept;
 
 /// Whether a request of this name ends motion, in whatever mode.

@@ -16,6 +16,7 @@
 // mistake STANDS_UP_UNASKED: moves_when_asked
 // mistake WALKS_WHILE_HANGING: moves_when_asked
 // mistake STOP_WALKS_ON: calms
+// mistake STOP_LOWERS_ON: calms
 // mistake UNKNOWN_WAY: way_of_the_table
 // mistake RESET_FORGETS_DOUBT: zero_known
 // mistake MEMORY_OF_A_JUDGEMENT: zero_known
@@ -206,7 +207,7 @@ inline after_request() {
     :: else
     fi
     follow_table(mode, event, next)
-  :: event == REQUEST_LIE && mode == STAND_UP && folding -> next = DAMPING
+  :: event == REQUEST_LIE && mode == STAND_UP && (folding || motion > 0) -> next = DAMPING
   :: event == REQUEST_LIE && ((mode == STAND_UP && !folding) || mode == STAND) ->
     stopping = LIE
     follow_table(mode, event, next)
@@ -218,6 +219,13 @@ inline after_request() {
     stopping = STOP
     follow_table(mode, event, next)
   :: event == REQUEST_WALK && mode == STAND && folding && !hanging -> skip
+#ifndef STOP_LOWERS_ON
+  :: event == REQUEST_STOP && mode == STAND ->
+    if
+    :: folding -> next = DAMPING
+    :: else -> stopping = STOP
+    fi
+#endif
   :: else -> follow_table(mode, event, next)
   fi
 }
@@ -460,7 +468,8 @@ inline keep_promises() {
     HOLDS(moves_when_asked, before == STAND && event == REQUEST_WALK && !hanging && !was_folding)
   :: else
   fi
-  HOLDS(calms, !CALMS(event) || !(mode == STAND_UP || (mode == WALK && stopping == 0)))
+  HOLDS(calms, !CALMS(event) || !(mode == STAND_UP || (mode == WALK && stopping == 0) ||
+                                  (mode == STAND && folding)))
   HOLDS(way_of_the_table, before == mode || starting || IS_EDGE(before, mode))
   HOLDS(zero_known, !misplaced || !DRIVEN(mode))
 }

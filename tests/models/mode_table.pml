@@ -88,7 +88,6 @@ inline any_condition(modes) {
   :: modes = 28  // as tilt
   :: modes = 30  // as encoder_frozen
   :: modes = 4  // as not_standing
-  :: modes = 20  // as not_following
   :: modes = 2  // as joint_misplaced
   fi
 }

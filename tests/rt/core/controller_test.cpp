@@ -396,6 +396,35 @@ TEST(LieTest, WalkIsIgnoredUntilStandHasRaisedTheRobotAgain) {
   EXPECT_EQ(loop.output.mode, Mode::kWalk);
 }
 
+TEST(LieTest, StopLetsARobotDownThatIsOnItsWayDownOrUpAgain) {
+  for (const bool up_again : {false, true}) {
+    FakeLoop loop;
+    loop.reach(Mode::kStand);
+    loop.request(ModeRequest::kLie);
+    loop.run_s(0.8);
+    if (up_again) loop.request(ModeRequest::kStand);
+    loop.run_s(0.2);
+    ASSERT_EQ(loop.output.mode, Mode::kStand);
+    loop.request(ModeRequest::kStop);
+    EXPECT_EQ(loop.output.mode, Mode::kDamping);
+  }
+}
+
+TEST(LieTest, ARobotWhoseStiffnessStillRisesDoesNotGetAllOfItToLieDown) {
+  ControllerConfig config = test_robot();
+  config.stand.gain_ramp_s = 1.2;
+  JointArray<double> posture_rad = config.stand.nominal_rad;
+  posture_rad[0] += 0.1;  // so near that it does not fold first
+  config.gate.lying_rad = posture_rad;
+  FakeLoop loop(Mode::kPassive, config);
+  loop.robot.now.joints.position_rad = posture_rad;
+  loop.stand_up();
+  loop.run_s(0.3);
+  ASSERT_EQ(loop.output.mode, Mode::kStandUp);
+  loop.request(ModeRequest::kLie);
+  EXPECT_EQ(loop.output.mode, Mode::kDamping);
+}
+
 TEST(LieTest, DampDoesNotWait) {
   for (const bool on_its_way : {false, true}) {
     FakeLoop loop;

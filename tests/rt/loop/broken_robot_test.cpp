@@ -114,6 +114,17 @@ TEST_F(BrokenRobotTest, AJointThatIsHeldInStandUpIsAFaultAndNotPressedWithAllTor
   }
 }
 
+TEST_F(BrokenRobotTest, AJointThatIsHeldAsTheRobotLiesDownIsAFault) {
+  const Outcome seen = outcome(
+      Mode::kStand, Drives::kGains,
+      [](DisturbedLoop& loop) {
+        hold(loop, 1u << 2);
+        loop.ask(ModeRequest::kLie);
+      },
+      6.0);
+  EXPECT_EQ(seen.fault, Fault::kNotFollowing);
+}
+
 TEST_F(BrokenRobotTest, AJointThatIsHeldInWalkIsAFault) {
   for (const int joint : {1, 2, 11}) {
     const Outcome seen = outcome(
