@@ -77,30 +77,6 @@ bool is_damiao_state(std::uint8_t state) noexcept {
 
 }  // namespace
 
-const char* words(MitStatus status) noexcept {
-  switch (status) {
-    case MitStatus::kOk:
-      return "ok";
-    case MitStatus::kNotFinite:
-      return "a value is not finite";
-    case MitStatus::kBadDrive:
-      return "impossible ids or limits of the drive";
-    case MitStatus::kErrorFrame:
-      return "an error frame";
-    case MitStatus::kWrongFormat:
-      return "wrong frame format";
-    case MitStatus::kOtherId:
-      return "another id";
-    case MitStatus::kWrongLength:
-      return "wrong length";
-    case MitStatus::kOtherMotor:
-      return "names another motor";
-    case MitStatus::kUnknownState:
-      return "unknown state of the drive";
-  }
-  return "";
-}
-
 const char* mit_fault_words(MitVariant variant, std::uint8_t fault) noexcept {
   if (fault == 0) return "";
   if (variant != MitVariant::kDamiao) return "drive fault";

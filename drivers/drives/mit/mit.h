@@ -72,7 +72,6 @@ enum class MitStatus : std::uint8_t {
   kOtherMotor,    ///< byte 0 names another motor
   kUnknownState,  ///< Damiao: a state that its manual does not list. The other fields are read.
 };
-const char* words(MitStatus status) noexcept;
 
 /// Damiao says in each reply whether it is enabled, the others do not.
 enum class MitPower : std::uint8_t { kUnknown, kDisabled, kEnabled };

@@ -15,13 +15,6 @@ constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMinWatchdog_s = 1e-3, kMaxWatchdog_s = 30.0;
 constexpr std::uint32_t kUnknownRegister = 1;
 
-constexpr std::array<const char*, kNumMoteusModes> kModeWords = {
-    "stopped",  "fault",   "enabling",      "calibrating", "calibration complete",
-    "PWM",      "voltage", "voltage FOC",   "voltage DQ",  "current",
-    "position", "timeout", "zero velocity", "stay within", "measure inductance",
-    "brake",
-};
-
 struct CodeWords {
   std::uint8_t code;
   const char* words;
@@ -205,11 +198,6 @@ bool to_mode(double value, MoteusMode& mode) noexcept {
 }
 
 }  // namespace
-
-const char* words(MoteusMode mode) noexcept {
-  const auto number = static_cast<std::size_t>(mode);
-  return number < kModeWords.size() ? kModeWords[number] : "unknown mode";
-}
 
 const char* moteus_fault_words(std::uint8_t code) noexcept {
   const auto* const found = std::find_if(std::begin(kFaultWords), std::end(kFaultWords),

@@ -53,7 +53,6 @@ enum class MoteusMode : std::uint8_t {
   kBrake,
 };
 inline constexpr int kNumMoteusModes = 16;
-const char* words(MoteusMode mode) noexcept;
 
 /// What a code of register 0x00F means, "" for 0.
 const char* moteus_fault_words(std::uint8_t code) noexcept;

@@ -125,42 +125,6 @@ double decode_value(std::uint32_t bits, MoteusFormat format, MoteusRegister reg)
 
 }  // namespace
 
-const char* words(MoteusStatus status) noexcept {
-  switch (status) {
-    case MoteusStatus::kOk:
-      return "ok";
-    case MoteusStatus::kNotFinite:
-      return "a value is not finite";
-    case MoteusStatus::kBadValue:
-      return "a value makes no sense";
-    case MoteusStatus::kBadDrive:
-      return "impossible id or gains of the drive";
-    case MoteusStatus::kTooLong:
-      return "more than a frame holds";
-    case MoteusStatus::kErrorFrame:
-      return "an error frame";
-    case MoteusStatus::kWrongFormat:
-      return "not CAN FD";
-    case MoteusStatus::kOtherId:
-      return "another id";
-    case MoteusStatus::kTruncated:
-      return "ends within a subframe";
-    case MoteusStatus::kUnknownSubframe:
-      return "unknown subframe";
-    case MoteusStatus::kBadNumber:
-      return "impossible count or register";
-    case MoteusStatus::kWrongDirection:
-      return "wrong direction";
-    case MoteusStatus::kRegisterError:
-      return "the drive refused a register";
-    case MoteusStatus::kBadMode:
-      return "unknown mode";
-    case MoteusStatus::kIncomplete:
-      return "a register is missing or unset";
-  }
-  return "";
-}
-
 void set_moteus_address(const MoteusAddress& address, CanFrame& frame) noexcept {
   frame.id = (address.prefix & 0x1FFFu) << 16 | (address.wants_reply ? kReplyBit : 0) |
              (address.source & 0x7Fu) << 8 | (address.destination & 0x7Fu);

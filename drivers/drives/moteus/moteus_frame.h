@@ -60,7 +60,6 @@ enum class MoteusStatus : std::uint8_t {
   kBadMode,          ///< a mode that is not in MoteusMode
   kIncomplete,       ///< a register that is needed is missing, or unset
 };
-const char* words(MoteusStatus status) noexcept;
 
 /// Registers next to each other that are to be read, answered in `format`.
 struct MoteusRead {

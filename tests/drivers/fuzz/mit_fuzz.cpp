@@ -26,7 +26,6 @@ void check(const MitDrive& drive, const CanFrame& frame) {
     require(std::fabs(reply.torque_nm) <= drive.limits.reply_torque_nm);
     require(encode_mit_reply(drive, reply, again) == MitStatus::kOk && same_data(frame, again));
   }
-  (void)words(status);
   (void)mit_fault_words(drive.variant, reply.fault);
 
   MitRequest request;

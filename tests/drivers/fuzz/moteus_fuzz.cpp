@@ -14,14 +14,12 @@ void check(const MoteusDrive& drive, const CanFrame& frame) {
   MoteusItem item;
   int items = 0;
   while (reader.next(item)) require(++items <= kMaxFdBytes * kMaxFdBytes);
-  (void)words(reader.status());
 
   MoteusReply reply;
   if (decode_moteus_reply(drive, frame, reply) == MoteusStatus::kOk) {
     require(static_cast<int>(reply.mode) < kNumMoteusModes);
     require(std::isfinite(reply.position_rad) && std::isfinite(reply.velocity_radps) &&
             std::isfinite(reply.torque_nm));
-    (void)words(reply.mode);
     (void)moteus_fault_words(reply.code);
   }
 

@@ -284,7 +284,6 @@ TEST(MoteusTest, FaultCodesAndLimitsHaveWords) {
     EXPECT_EQ(std::string(moteus_fault_words(byte)) != "unknown code", known) << code;
   }
   EXPECT_STREQ(moteus_fault_words(0), "");
-  EXPECT_STREQ(words(MoteusMode::kTimeout), "timeout");
   EXPECT_EQ(static_cast<int>(MoteusMode::kTimeout), 11);
   EXPECT_EQ(static_cast<int>(MoteusMode::kBrake), 15);
 }
