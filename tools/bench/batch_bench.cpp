@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/bench/batch_bench.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "rt/base/processor_name.h"
 #include "rt/core/processor.h"
+#include "tools/bench/benches.h"
 #include "tools/bench/clock.h"
 #include "tools/bench/standing_mujoco.h"
 #include "tools/bench/trotting_robots.h"
@@ -73,7 +72,7 @@ Report run_batch_bench(int rounds) {
   x8.advance(0, x8.packs(), kWarmUpPeriods);
   if (x16) x16->advance(0, x16->packs(), kWarmUpPeriods);
 
-  std::map<std::string, std::vector<double>> rates;
+  Samples rates;
   double contacts = 0.0;
   for (int round = 0; round < rounds; ++round) {
     const auto batch_rate = [](TrottingBatch& robots) {
@@ -111,13 +110,8 @@ Report run_batch_bench(int rounds) {
       {"fastest", mujoco_fastest.description()},
       {"clock", "processor time of the thread; wall clock for one and two threads"}};
   for (const auto& [name, values] : rates) report.rates.emplace_back(name, quartiles(values));
-  const auto ratio = [&](const std::string& name, const char* above, const char* below) {
-    if (!rates.contains(above)) return;
-    std::vector<double> values;
-    for (std::size_t i = 0; i < rates[above].size(); ++i) {
-      values.push_back(rates[above][i] / rates[below][i]);
-    }
-    report.ratios.emplace_back(name, quartiles(values));
+  const auto ratio = [&](const char* name, const char* above, const char* below) {
+    add_ratio(report, name, rates, above, below);
   };
   ratio("batch_x16_vs_mujoco", "batch_x16", "mujoco");
   ratio("batch_x8_vs_mujoco", "batch_x8", "mujoco");

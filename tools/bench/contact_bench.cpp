@@ -113,7 +113,7 @@ Report run_contact_bench(int rounds, int drops) {
   std::vector<Drop> cases;
   for (int i = 0; i < drops; ++i) cases.push_back(random_drop(static_cast<std::uint64_t>(i), foot));
 
-  std::map<std::string, std::vector<double>> depths_mm, rates;
+  Samples depths_mm, rates;
   for (int round = 0; round < rounds; ++round) {
     std::map<std::string, double> time_s;
     depths_mm.clear();
@@ -172,15 +172,9 @@ Report run_contact_bench(int rounds, int drops) {
       {"planar_mm", spread_against_cone("drft_planar")},
       {"clock", "processor time of the thread"}};
   for (const auto& [name, values] : rates) report.rates.emplace_back(name, quartiles(values));
-  const auto ratio = [&](const char* key, const char* name) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < rates[name].size(); ++i) {
-      values.push_back(rates["cone"][i] / rates[name][i]);
-    }
-    report.ratios.emplace_back(key, quartiles(values));
-  };
-  ratio("drft_vs_cone", "drft");
-  ratio("drft_planar_vs_cone", "drft_planar");
+  for (const char* name : {"drft", "drft_planar"}) {
+    add_ratio(report, fmt::format("{}_vs_cone", name), rates, "cone", name);
+  }
   return report;
 }
 

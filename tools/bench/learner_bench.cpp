@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/bench/learner_bench.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -14,6 +12,7 @@
 
 #include "rt/base/processor_name.h"
 #include "rt/core/processor.h"
+#include "tools/bench/benches.h"
 #include "tools/bench/clock.h"
 #include "tools/bench/fma_peak.h"
 #include "tools/train/kernels/kernels.h"
@@ -156,7 +155,7 @@ Report run_learner_bench(int rounds) {
   if (has_x16) require_agreement(learner::kernels_x16());
   std::vector<Layer> layers(std::begin(kSizes), std::end(kSizes));
 
-  std::map<std::string, std::vector<double>> rates;
+  Samples rates;
   for (int round = 0; round < rounds; ++round) {
     rates["peak_x8"].push_back(peak_gflops(fma_loop_x8, 8));
     if (has_x16) rates["peak_x16"].push_back(peak_gflops(fma_loop_x16, 16));
@@ -183,20 +182,12 @@ Report run_learner_bench(int rounds) {
       {"peak", "fused multiply-adds on registers, nothing else"},
       {"clock", "processor time of the thread"}};
   for (const auto& [name, values] : rates) report.rates.emplace_back(name, quartiles(values));
-  const auto ratio = [&](const std::string& above, const std::string& below) {
-    if (!rates.contains(above)) return;
-    std::vector<double> values;
-    for (std::size_t i = 0; i < rates[above].size(); ++i) {
-      values.push_back(rates[above][i] / rates[below][i]);
-    }
-    const bool peak = below.starts_with("peak");
-    report.ratios.emplace_back(above + (peak ? "_vs_peak" : "_vs_eigen"), quartiles(values));
-  };
   for (const Pass& pass : kPasses) {
     const std::string name = pass.name;
     for (const char* width : {"_x16", "_x8"}) {
-      ratio(name + width, name + "_eigen");
-      ratio(name + width, std::string("peak") + width);
+      const std::string ours = name + width;
+      add_ratio(report, ours + "_vs_eigen", rates, ours, name + "_eigen");
+      add_ratio(report, ours + "_vs_peak", rates, ours, std::string("peak") + width);
     }
   }
   return report;

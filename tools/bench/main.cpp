@@ -10,12 +10,8 @@
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
 #include "rt/base/program.h"
-#include "tools/bench/batch_bench.h"
+#include "tools/bench/benches.h"
 #include "tools/bench/contact_bench.h"
-#include "tools/bench/learner_bench.h"
-#include "tools/bench/policy_bench.h"
-#include "tools/bench/realtime_bench.h"
-#include "tools/bench/unitree_bench.h"
 
 namespace sandrunner {
 namespace {

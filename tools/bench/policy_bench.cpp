@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/bench/policy_bench.h"
-
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
@@ -21,6 +19,7 @@
 #include "policy/perceptron.h"
 #include "rt/base/processor_name.h"
 #include "rt/core/processor.h"
+#include "tools/bench/benches.h"
 #include "tools/bench/clock.h"
 
 namespace sandrunner::bench {
@@ -188,7 +187,7 @@ Report run_policy_bench(int rounds) {
     }
     return quartiles(std::move(times_s)).median;
   };
-  std::map<std::string, std::vector<double>> times_s;
+  Samples times_s;
   for (int round = 0; round < rounds; ++round) {
     ours.emplace_back(parameters);
     floors.emplace_back(ours.back().weight_bytes());
@@ -216,9 +215,7 @@ Report run_policy_bench(int rounds) {
     report.rates.emplace_back("policy_" + name, quartiles(rates));
   }
   const auto ratio = [&](const char* name, const char* above, const char* below) {
-    std::vector<double> values;
-    for (int i = 0; i < rounds; ++i) values.push_back(times_s[above][i] / times_s[below][i]);
-    report.ratios.emplace_back(name, quartiles(values));
+    add_ratio(report, name, times_s, above, below);
   };
   ratio("policy_hot_vs_read_floor", "hot", "hot_read_floor");
   ratio("policy_mlp_vs_read_floor", "mlp_hot", "mlp_read_floor");

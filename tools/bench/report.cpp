@@ -3,9 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 namespace sandrunner::bench {
+
+void add_ratio(Report& report, const std::string& name, const Samples& samples,
+               const std::string& above, const std::string& below) {
+  if (!samples.contains(above)) return;
+  std::vector<double> ratios = samples.at(above);
+  for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] /= samples.at(below)[i];
+  report.ratios.emplace_back(name, quartiles(ratios));
+}
 
 void print(const Report& report) {
   for (const auto& [name, text] : report.facts) fmt::print("{:<12}{}\n", name, text);

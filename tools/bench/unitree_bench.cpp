@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/bench/unitree_bench.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
@@ -21,6 +19,7 @@
 #include "rt/run/process_config.h"
 #include "rt/run/run_script.h"
 #include "sim/ground/terrain_description.h"
+#include "tools/bench/benches.h"
 #include "tools/bench/simulator_beside.h"
 
 namespace sandrunner::bench {

@@ -14,7 +14,7 @@
 #include "rt/run/run_script.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
-#include "tools/bench/realtime_bench.h"
+#include "tools/bench/benches.h"
 
 namespace sandrunner::bench {
 namespace {
