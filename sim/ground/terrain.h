@@ -2,9 +2,7 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
-#include <tuple>
 #include <type_traits>
 
 #include "sim/ground/ground.h"
@@ -70,11 +68,7 @@ bool keeps_footprints(const Terrain<S>& terrain) noexcept {
 /// The same terrain in another scalar.
 template <typename To>
 Terrain<To> convert_terrain(const Terrain<double>& from) noexcept {
-  using From = std::array<double, sizeof(Terrain<double>) / sizeof(double)>;
-  const auto values = std::bit_cast<From>(from);
-  std::array<To, std::tuple_size_v<From>> converted;
-  for (std::size_t i = 0; i < values.size(); ++i) converted[i] = To(values[i]);
-  return std::bit_cast<Terrain<To>>(converted);
+  return converted<To>(from);
 }
 
 }  // namespace sandrunner::sim

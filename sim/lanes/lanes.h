@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -83,6 +84,15 @@ inline void assign_where(const Mask<S>& m, const T& from, T& to) noexcept {
     const S chosen = select(m, a, b);
     std::memcpy(reinterpret_cast<char*>(&to) + at, &chosen, sizeof(S));
   }
+}
+
+/// The same in another scalar. T: all of its members are S.
+template <typename To, template <typename> typename T>
+inline T<To> converted(const T<double>& from) noexcept {
+  const auto values = std::bit_cast<std::array<double, sizeof(from) / sizeof(double)>>(from);
+  std::array<To, values.size()> to;
+  for (std::size_t i = 0; i < values.size(); ++i) to[i] = To(values[i]);
+  return std::bit_cast<T<To>>(to);
 }
 
 /// e^x for 0 <= x <= 7: the Taylor series of x/16, squared four times. Relative error below 2e-6 in

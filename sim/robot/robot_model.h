@@ -129,44 +129,7 @@ std::vector<SettingLine> robot_file_settings();
 /// The same figures in another scalar (one robot in float, or all lanes alike).
 template <typename To>
 RobotModel<To> convert_model(const RobotModel<double>& from) noexcept {
-  const auto vec = [](const Vec3<double>& v) { return Vec3<To>{To(v.x), To(v.y), To(v.z)}; };
-  const auto body = [&](const Body<double>& b) {
-    return Body<To>{To(b.mass),
-                    vec(b.com),
-                    {To(b.inertia.xx), To(b.inertia.xy), To(b.inertia.xz), To(b.inertia.yy),
-                     To(b.inertia.yz), To(b.inertia.zz)}};
-  };
-  RobotModel<To> to;
-  to.base = body(from.base);
-  for (int l = 0; l < kNumLegs; ++l) {
-    const auto& leg = from.legs[l];
-    to.legs[l] = {{To(leg.sign[0]), To(leg.sign[1]), To(leg.sign[2])},
-                  vec(leg.haa),
-                  vec(leg.hfe),
-                  vec(leg.kfe),
-                  vec(leg.foot),
-                  {vec(leg.patch[0]), vec(leg.patch[1]), vec(leg.patch[2]), vec(leg.patch[3])},
-                  body(leg.hip),
-                  body(leg.thigh),
-                  body(leg.shank)};
-  }
-  for (int j = 0; j < kNumJoints; ++j) {
-    to.rotor_inertia[j] = To(from.rotor_inertia[j]);
-    to.friction_nm[j] = To(from.friction_nm[j]);
-    to.lower_rad[j] = To(from.lower_rad[j]);
-    to.upper_rad[j] = To(from.upper_rad[j]);
-    to.torque_limit_nm[j] = To(from.torque_limit_nm[j]);
-    to.speed_limit_radps[j] = To(from.speed_limit_radps[j]);
-  }
-  to.foot_radius_m = To(from.foot_radius_m);
-  to.foot_width_m = To(from.foot_width_m);
-  to.foot_length_m = To(from.foot_length_m);
-  to.foot_patches = To(from.foot_patches);
-  to.knee_radius_m = To(from.knee_radius_m);
-  to.shank_radius_m = To(from.shank_radius_m);
-  to.base_box_centre_m = vec(from.base_box_centre_m);
-  to.base_box_half_m = vec(from.base_box_half_m);
-  return to;
+  return converted<To>(from);
 }
 
 }  // namespace sandrunner::sim
