@@ -27,8 +27,8 @@ struct RunResult {
   bool has_truth = true;
   std::optional<double> fall_time_s;  ///< since the start of Walk
   std::optional<Mode> fall_mode;      ///< in which it fell, or that a fault ended
-  std::string
-      fall_reason;  ///< "base_contact", "thigh_contact", "did_not_stand", or the name of a fault
+  std::string fall_reason;  ///< "base_contact", "thigh_contact", "did_not_stand", or the name of a
+                            ///< fault or warning
   bool interrupted = false;
   double walked_s = 0.0;  ///< time in Walk under the command
   LoopEnd end;

@@ -77,8 +77,9 @@ void warn_of(const ProcessConfig& config, const PolicyRunner& policy) {
   }
   if (config.controller.gate.hanging) {
     to_standard_error(
-        "sandrunner: hardware.hanging: tilt and free fall are not judged, nor would a fall on the "
-        "ground be; the robot does not walk\n");
+        "sandrunner: hardware.hanging: tilt, free fall and zeros at arm are not judged, nor would "
+        "a "
+        "fall on the ground be; the robot does not walk\n");
   }
 }
 
