@@ -99,8 +99,9 @@ std::vector<FaultCase> every_case() {
              }),
       sensor(Fault::kImuGyro, 600, [](F f, G, N) { f.imu.angular_velocity_radps[2] += 3.0; }),
       sensor(Fault::kTorqueMissing, 161, [](F f, G, N) { f.joints.torque_nm[4] += 15.0; }),
-      {Fault::kNotFollowing, 4000,
+      {Fault::kNotFollowing, 4400,
        [](DisturbedLoop& p) {
+         if (p.record.output.mode == Mode::kStand) p.ask(ModeRequest::kLie);
          JointArray<double> at_rad = p.simulator.state().robot.rigid.q;
          if (p.record.output.mode == Mode::kStandUp) at_rad[2] = -2.2;
          p.hand = hold(1u << 2, at_rad, at_rad);
