@@ -51,7 +51,8 @@ constexpr Setting<H> kGuards[] = {
 constexpr Setting<H> kFirstWalks[] = {
     {"torque_scale", &H::torque_scale, 0.0, 1.0, "Factor of every torque limit, for first walks."},
     {"hanging", &H::hanging,
-     "The robot hangs in a frame: tilt, free fall, zeros at arm and joints that all stay the same are not judged; Walk is refused."},
+     "The robot hangs in a frame: tilt, free fall, zeros at arm and joints that all stay the same "
+     "are not judged; Walk is refused."},
 };
 
 // Keys of a bus and of a drive that are not members of BusConfig and DriveConfig as they stand.

@@ -75,6 +75,8 @@ class Wire {
       now_ns = clock_ns(CLOCK_MONOTONIC);
       due_ns = std::max(due_ns + kPeriod_ns, now_ns - kPeriod_ns);  // it keeps its grid
     }
+    // The guard, too, leaves a robot to another program that commands it.
+    memory_.powered = false;
     // The controller still hears of the robot until it ends.
     while (may_go_on()) {
       ++memory_.turns;

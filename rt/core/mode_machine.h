@@ -7,7 +7,7 @@
 //   Passive  | Damping  .        .        .         .        .        .        .          | .         .        .       | Fault
 //   Damping  | .        .        .        .         Passive  StandUp  .        .          | .         .        .       | Fault
 //   StandUp  | .        Damping  Damping  Stand(3)  .        .        .        .          | Stand     .        .       | Fault
-//   Stand    | .        Damping  .        (3)       .        (4)      Walk(4)  .          | .         .        Damping | Fault
+//   Stand    | .        Damping  (5)      (3)       .        (4)      Walk(4)  .          | .         .        Damping | Fault
 //   Walk     | .        Damping  (1)      (1,3)     .        (1)      .        .          | .         Stand    .       | Fault
 //   Fault    | .        .        .        .         .        .        .        Passive(2) | .         .        .       | .
 // clang-format on
@@ -22,10 +22,12 @@
 // robot then stays Passive until the next request: a reset never re-arms.
 //
 // (3) Stand lowers the body: the legs fold, then it damps. A robot that lies on the ground, as in
-// the first motion of StandUp, goes to Damping at once, and so does one that leans by more than 20
-// degrees, as stiff legs would topple it.
+// the first motion of StandUp, goes to Damping at once, and so does one whose stiffness still
+// rises, and one that leans by more than 20 degrees, as stiff legs would topple it.
 //
 // (4) While the body is lowered, Stand raises it again, and Walk is ignored until that is done.
+//
+// (5) While the body is lowered or raised again, Stop damps. Before, it takes back a Lie.
 #pragma once
 
 #include <array>

@@ -78,7 +78,7 @@ std::string cyclone_xml(const DdsNetwork& network, const std::string& identity) 
   // One thread for all sockets: with several, each is woken at the end by a packet to itself, which
   // never arrives if the network interface is gone by then. And at the end each writer waits for
   // the acknowledgements of its readers, even dead ones: not for a second each. No message that is
-  // read here is large; a stranger's may not take this process's memory.
+  // sent or read here is large; a stranger's may not take this process's memory.
   constexpr const char* kInternal =
       "<Internal><MultipleReceiveThreads>false</MultipleReceiveThreads>"
       "<MaxSampleSize>4 MB</MaxSampleSize>"

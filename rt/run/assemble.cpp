@@ -77,9 +77,8 @@ void warn_of(const ProcessConfig& config, const PolicyRunner& policy) {
   }
   if (config.controller.gate.hanging) {
     to_standard_error(
-        "sandrunner: hardware.hanging: tilt, free fall and zeros at arm are not judged, nor would "
-        "a "
-        "fall on the ground be; the robot does not walk\n");
+        "sandrunner: hardware.hanging: tilt, free fall, zeros at arm and joints that all stay the "
+        "same are not judged, nor would a fall on the ground be; the robot does not walk\n");
   }
 }
 

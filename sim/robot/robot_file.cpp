@@ -75,7 +75,8 @@ constexpr Setting<M> kCollision[] = {
 using R = Robot;
 constexpr Setting<R> kPose[] = {
     {"nominal_rad", repeated<kJointsPerLeg>(&R::nominal_rad), -7.0, 7.0,
-     "HAA, HFE, KFE of every leg, standing; a training wants left and right to be mirror images.", kRequired},
+     "HAA, HFE, KFE of every leg, standing; a training wants left and right to be mirror images.",
+     kRequired},
     {"lying_rad", repeated<kJointsPerLeg>(&R::lying_rad), -7.0, 7.0,
      "HAA, HFE, KFE on its belly, as a run starts.", kRequired},
     {"fold_rad", &R::fold_rad, -7.0, 7.0,

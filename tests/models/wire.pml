@@ -114,7 +114,7 @@ active proctype wire() {
 #else
         if
         :: damped == 0 -> what = BRAKES; damped = 1
-        :: else -> stage = S_SILENT
+        :: else -> stage = S_SILENT; powered = 0
         fi
 #endif
       :: stage == S_DAMP && power && damped < DAMPED -> what = BRAKES; damped++

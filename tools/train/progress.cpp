@@ -216,7 +216,7 @@ const char* Progress::explanation() {
          "curve.csv has a row for each update: all of these, the battery's figures for each\n"
          "forward speed (battery.forward_share, slowest first), reward, tracking and falls under\n"
          "noise and pushes, and each term of the reward by its name (reward_..., penalty_...);\n"
-         "curve.html draws all of them and, in 3D, a run of the policy as it is;\n"
+         "curve.html draws what was measured and, in 3D, a run of the policy as it is;\n"
          "tools/pictures.py draws the most telling ones as curve.png.\n";
 }
 

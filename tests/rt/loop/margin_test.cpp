@@ -52,6 +52,9 @@ class Nearest {
         raise(Fault::kEncoderFrozen, share(joints.frozen_ticks[j], limits.frozen_ticks));
       }
       raise(Fault::kNotFollowing, share(joints.held.ticks[j], ticks_from_s(kHeld_s)));
+      if (mode == Mode::kStand) {
+        raise(Fault::kNotFollowing, share(joints.behind_ticks[j], ticks_from_s(kHeld_s)));
+      }
       if (gate.sent != 0 && mode == Mode::kStandUp) {
         raise(Fault::kNotFollowing,
               (gate.sent_rad[j] - joints.position_rad[j]) / kNotFollowing_rad);
@@ -116,8 +119,9 @@ class MarginTest : public testing::Test {
       loop.ask(ModeRequest::kStand);
       run_s(4.0);
     }
-    loop.ask(ModeRequest::kDamp);
-    run_s(1.5);
+    loop.ask(ModeRequest::kLie);
+    run_s(3.0);
+    EXPECT_EQ(loop.record.output.mode, Mode::kDamping) << name;
     EXPECT_EQ(loop.record.output.faults, 0u)
         << name << ": " << fault_name(loop.record.output.first_fault);
     EXPECT_EQ(loop.record.output.warnings, 0u) << name;
