@@ -54,12 +54,21 @@ def read_claims(markdown):
     return claims
 
 
+def rows_under(markdown, heading):
+    lines = markdown.partition(f"## {heading}\n")[2].partition("\n## ")[0].splitlines()
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines if line.startswith("|")]
+    return rows[2:]
+
+
 def read_repairs(markdown):
     """The rows of its table of repaired rules: claim, defect, repair, the verdict of the old
     rule."""
-    lines = markdown.partition("## Repaired rules")[2].partition("\n## ")[0].splitlines()
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines if line.startswith("|")]
-    return rows[2:]
+    return rows_under(markdown, "Repaired rules")
+
+
+def read_explanations(markdown):
+    """{claim: what is known of why our simulation contradicts it}."""
+    return dict(rows_under(markdown, "Contradicted"))
 
 
 def was_run(rule, evidence):

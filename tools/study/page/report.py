@@ -162,6 +162,7 @@ def report_html(folder, results, evidence, judged):
         page.add(chapters.CONTROLS + verdicts.control_table(all_controls) + verdicts.control_words(all_controls, judged))
     page.section("Verdicts")
     page.add(chapters.VERDICTS + verdicts.verdict_tables(judged, all_controls))
+    page.fold("Why the contradicted ones are", verdicts.contradiction_table(judged))
     page.section("How sure are the verdicts?")
     page.add(chapters.SURE)
     page.fold("Verdicts with half and with twice the tolerances", verdicts.sensitivity_table(evidence, judged))

@@ -124,6 +124,14 @@ def repair_table(judged):
     return table(["claim", "what was wrong", "the rule now", "verdict of the old rule", "verdict on this page"], rows)
 
 
+def contradiction_table(judged):
+    """The contradicted claims with what CLAIMS.md knows of the reason."""
+    known = claims.read_explanations(claims.CLAIMS_FILE.read_text())
+    rows = [[claim.id, from_markdown(claim.quote), escaped(judgement.ours), from_markdown(known.get(claim.id, "left open"))]
+            for claim, judgement in judged if judgement.verdict == claims.CONTRADICTS]
+    return table(["claim", "the paper", "ours", "why"], rows)
+
+
 def sensitivity_table(evidence, judged):
     """Verdicts that change with half and with twice the tolerances of the terms."""
     others = []

@@ -127,6 +127,13 @@ class Verdicts(unittest.TestCase):
             self.assertIn(claim_id, claims.RULES)
             self.assertTrue(before.startswith(claims.VERDICTS), before)
 
+    def test_a_contradicted_claim_has_its_reason_or_is_left_open(self):
+        known = claims.read_explanations(claims.CLAIMS_FILE.read_text())
+        self.assertLessEqual(set(known), set(claims.RULES))
+        evidence = on_the_beach({"ours": {"top_mps": 2.0}})
+        html = verdicts.contradiction_table(claims.judge_all(evidence))
+        self.assertRegex(html, "<td>1</td>.*left open")
+
     def test_verdicts_that_hang_on_a_tolerance_are_shown(self):
         evidence = on_the_beach({"ours": {"top_mps": 2.7}})  # 11 % less than the paper
         html = verdicts.sensitivity_table(evidence, claims.judge_all(evidence))
