@@ -46,9 +46,9 @@ struct WireMemory {
   std::atomic<bool> foreign{false};  ///< another program commands the robot
   std::atomic<bool> gave_up{false};  ///< the controller is not followed any more
   std::atomic<std::uint64_t> foreign_commands{0}, sent{0}, not_sent{0};
-  std::atomic<std::uint64_t> turns{0};  ///< of its loop: it does not hang
+  std::atomic<std::uint64_t> turns{0};  ///< of its loop; none: it hangs
   std::atomic<bool> real_time{false};   ///< it got a real-time priority
-  std::atomic<bool> powered{false};     ///< its last command lets motors give torque
+  std::atomic<bool> powered{false};     ///< its command gives torque; false once it left the motors
   std::atomic<pid_t> sender{0};         ///< the process that sends; of the guard
   std::atomic<bool> guarding{false};    ///< that process died, and the guard damps; of the guard
   std::array<char, 1000> error{};       ///< written before `phase` becomes kFailed

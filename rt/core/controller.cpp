@@ -251,7 +251,7 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
   } else if (mode == Mode::kStand && event == Event::kRequestWalk && state_.folding != 0) {
     return mode;
   } else if (mode == Mode::kStand && event == Event::kRequestStop) {
-    // On its way down, or up again, it can not stay where it is.
+    // On its way down, or up again, it cannot stay where it is.
     if (state_.folding != 0) return next_mode(mode, Event::kRequestDamp);
     state_.stopping = kStop;
   }
@@ -260,7 +260,8 @@ Mode Controller::after_request(const OperatorCommand& command, std::uint64_t tic
 
 /// To the ground on the way that is the gentlest from where the robot is.
 Mode Controller::lie(Mode mode, std::uint64_t tick) noexcept {
-  // Nor from a stiffness that still rises, as the first test of a drive's sign.
+  // Not stiffly where it lies on the ground, nor where the stiffness still rises, which is to show
+  // a drive whose sign is wrong.
   if (mode == Mode::kStandUp && (state_.folding != 0 || stiffness_share(tick) < 1.0)) {
     return next_mode(mode, Event::kRequestDamp);
   }

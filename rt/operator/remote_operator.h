@@ -20,8 +20,8 @@ struct OperatorRequests {
 
 /// The control thread's end of commands that come over DDS or from a page of --view. The age of a
 /// velocity counts from the tick at which it was first seen; beyond the stale time it is replaced
-/// by zero. Until the first request, the robot stays as it is. Ends gently when it is interrupted,
-/// in damping at once when that happens again; of requests it then takes damp alone.
+/// by zero. Until the first request, the robot stays as it is. Ends gently when it is interrupted.
+/// A run that ends takes no request but damp; that, and a second interrupt, damp at once.
 class RemoteOperator final : public OperatorInput {
  public:
   /// `stale_ticks`: the greatest age at which a velocity is still followed, in control ticks.
