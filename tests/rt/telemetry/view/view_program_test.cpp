@@ -14,6 +14,8 @@
 namespace sandrunner {
 namespace {
 
+using Json = nlohmann::json;
+
 struct Address {
   int port = 0;
   std::string key;

@@ -20,6 +20,8 @@
 namespace sandrunner {
 namespace {
 
+using Json = nlohmann::json;
+
 RunRow row_at(std::uint64_t period) {
   RunRow row;
   row.t_s = static_cast<double>(period) / kPolicyHz;

@@ -17,8 +17,6 @@
 
 namespace sandrunner {
 
-using Json = nlohmann::json;
-
 /// A connection to the server; every wait ends after 10 s.
 class Client {
  public:
@@ -121,10 +119,10 @@ class WebPage : public Client {
     return {head[0] & 0x0f, size == 0 ? std::string() : bytes(size)};
   }
   /// The next text that says this.
-  Json hear(const std::string& say) {
+  nlohmann::json hear(const std::string& say) {
     for (Message m = hear(); m.kind != -1 && m.kind != 8; m = hear()) {
       if (m.kind != 1) continue;
-      Json json = Json::parse(m.text);
+      nlohmann::json json = nlohmann::json::parse(m.text);
       if (json.at("say") == say) return json;
     }
     ADD_FAILURE() << "never heard " << say;
