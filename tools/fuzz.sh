@@ -23,6 +23,8 @@ cmake --preset asan-ubsan -D SANDRUNNER_FUZZ=ON >&2
 cmake --build build/asan-ubsan --target "${@:-fuzz}" >&2
 (($#)) || set -- $(cd build/asan-ubsan/bin && echo *_fuzz)
 mkdir -p build/fuzz/findings
+# A program may hold a source twice, its own and the library's (tests/CMakeLists.txt).
+export ASAN_OPTIONS=detect_odr_violation=0${ASAN_OPTIONS:+:$ASAN_OPTIONS}
 # As many at once as there are processors. 255: xargs starts no more of them.
 printf '%s\0' "$@" | xargs -0 -n 1 -P "$(nproc)" bash -c '
   mkdir -p "build/fuzz/corpus/$1"
