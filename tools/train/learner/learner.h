@@ -170,6 +170,8 @@ class Learner {
   };
 
   std::string architecture() const;
+  template <typename Self, typename Visit>
+  static void visit_arrays(Self& self, const Visit& visit);
   void ask_teacher(int block, int t, int worker);
   void act_in_mirror(int block, int t, int worker);
   void value_timeouts(int first_env, int worker);

@@ -28,35 +28,37 @@ std::string Learner::architecture() const {
                      network.wiring == Wiring{} ? "" : ", " + wiring_text(network.wiring));
 }
 
+// Shows every array of the state: name, first value, how many, whether they are of environments.
+template <typename Self, typename Visit>
+void Learner::visit_arrays(Self& self, const Visit& visit) {
+  const auto show = [&](const char* name, auto&& values, bool of_envs = false) {
+    visit(name, values.data(), static_cast<std::size_t>(values.size()), of_envs);
+  };
+  show("learner.parameters", self.parameters_);
+  show("learner.averaged", self.averaged_);
+  show("learner.adam_m", self.adam_.m);
+  show("learner.adam_v", self.adam_.v);
+  show("learner.memory", self.memory_, true);
+  show("learner.mirror_memory", self.mirror_memory_, true);
+  if (self.teacher_) show("learner.teacher_memory", self.teacher_->memory, true);
+  show("learner.asymmetry", self.asymmetry_, true);
+  auto& first = self.rollout_;
+  visit("learner.reset", &first.reset(0, 0), static_cast<std::size_t>(first.shape.envs), false);
+  show("learner.observation", first.observation(0));
+  show("learner.privileged", first.privileged(0));
+  show("learner.estimate_target", first.estimate_target(0));
+  show("learner.insight", first.insight(0));
+}
+
 void Learner::save(Checkpoint& checkpoint) const {
   checkpoint.architecture = architecture();
   Counters counters = counters_;
   counters.adam_steps = adam_.step;
   checkpoint.put("learner.counters", &counters, 1);
-  checkpoint.put("learner.parameters", parameters_.data(), parameters_.size());
-  checkpoint.put("learner.averaged", averaged_.data(), averaged_.size());
-  checkpoint.put("learner.adam_m", adam_.m.data(), adam_.m.size());
-  checkpoint.put("learner.adam_v", adam_.v.data(), adam_.v.size());
-  checkpoint.put_envs("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
-  checkpoint.put_envs("learner.mirror_memory", mirror_memory_.data(),
-                      static_cast<std::size_t>(mirror_memory_.size()));
-  if (teacher_) {
-    checkpoint.put("learner.teacher", &teacher_->hash, 1);
-    checkpoint.put_envs("learner.teacher_memory", teacher_->memory.data(),
-                        static_cast<std::size_t>(teacher_->memory.size()));
-  }
-  checkpoint.put_envs("learner.asymmetry", asymmetry_.data(),
-                      static_cast<std::size_t>(asymmetry_.size()));
-  checkpoint.put("learner.reset", &rollout_.reset(0, 0),
-                 static_cast<std::size_t>(rollout_.shape.envs));
-  const auto put_first_step = [&](const std::string& name, const auto& field) {
-    const auto columns = field(0);
-    checkpoint.put(name, columns.data(), static_cast<std::size_t>(columns.size()));
-  };
-  put_first_step("learner.observation", rollout_.observation);
-  put_first_step("learner.privileged", rollout_.privileged);
-  put_first_step("learner.estimate_target", rollout_.estimate_target);
-  put_first_step("learner.insight", rollout_.insight);
+  if (teacher_) checkpoint.put("learner.teacher", &teacher_->hash, 1);
+  visit_arrays(*this, [&](const char* name, const auto* values, std::size_t count, bool of_envs) {
+    of_envs ? checkpoint.put_envs(name, values, count) : checkpoint.put(name, values, count);
+  });
 }
 
 void Learner::load(const Checkpoint& checkpoint) {
@@ -64,15 +66,6 @@ void Learner::load(const Checkpoint& checkpoint) {
     throw InputError(fmt::format("{}: checkpoint is for {}; expected {}", checkpoint.source,
                                  checkpoint.architecture, architecture()));
   }
-  Counters counters;
-  checkpoint.get("learner.counters", &counters, 1);
-  checkpoint.get("learner.parameters", parameters_.data(), parameters_.size());
-  checkpoint.get("learner.averaged", averaged_.data(), averaged_.size());
-  checkpoint.get("learner.adam_m", adam_.m.data(), adam_.m.size());
-  checkpoint.get("learner.adam_v", adam_.v.data(), adam_.v.size());
-  checkpoint.get("learner.memory", memory_.data(), static_cast<std::size_t>(memory_.size()));
-  checkpoint.get("learner.mirror_memory", mirror_memory_.data(),
-                 static_cast<std::size_t>(mirror_memory_.size()));
   if (teacher_) {
     std::uint64_t hash = 0;
     checkpoint.get("learner.teacher", &hash, 1);
@@ -80,21 +73,12 @@ void Learner::load(const Checkpoint& checkpoint) {
       throw InputError(fmt::format(
           "{}: found another teacher than this; continue with the same one", checkpoint.source));
     }
-    checkpoint.get("learner.teacher_memory", teacher_->memory.data(),
-                   static_cast<std::size_t>(teacher_->memory.size()));
   }
-  checkpoint.get("learner.asymmetry", asymmetry_.data(),
-                 static_cast<std::size_t>(asymmetry_.size()));
-  checkpoint.get("learner.reset", &rollout_.reset(0, 0),
-                 static_cast<std::size_t>(rollout_.shape.envs));
-  const auto get_first_step = [&](const std::string& name, auto& field) {
-    auto columns = field(0);
-    checkpoint.get(name, columns.data(), static_cast<std::size_t>(columns.size()));
-  };
-  get_first_step("learner.observation", rollout_.observation);
-  get_first_step("learner.privileged", rollout_.privileged);
-  get_first_step("learner.estimate_target", rollout_.estimate_target);
-  get_first_step("learner.insight", rollout_.insight);
+  Counters counters;
+  checkpoint.get("learner.counters", &counters, 1);
+  visit_arrays(*this, [&](const char* name, auto* values, std::size_t count, bool /*of_envs*/) {
+    checkpoint.get(name, values, count);
+  });
   counters_ = counters;
   adam_.step = counters.adam_steps;
   begin_window();
