@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <string>
 
 #include "rt/core/messages.h"
 
@@ -193,8 +192,5 @@ constexpr bool judged_in(Mode mode, Fault fault) noexcept {
 
 /// Stable name of one fault: "non_finite_joint", "joints_stale", "tilt", ...; "none".
 const char* fault_name(Fault fault) noexcept;
-
-/// kFaultTable in Markdown, for README.md.
-std::string fault_table_markdown();
 
 }  // namespace sandrunner

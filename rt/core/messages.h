@@ -141,6 +141,11 @@ struct OperatorCommand {
   ModeRequest request = ModeRequest::kNone;
   std::uint64_t request_id = 0;
   std::uint64_t tick = 0;  ///< of the operator's latest sign of life
+
+  void ask(ModeRequest wanted) noexcept {
+    request = wanted;
+    ++request_id;
+  }
 };
 
 /// What the policy is given: the sensors and the shaped command of one tick.

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <string>
 
 namespace sandrunner {
 
@@ -72,8 +71,5 @@ constexpr const char* warning_name(std::uint64_t warnings) noexcept {
   const int bit = std::countr_zero(warnings);
   return bit < kNumWarnings ? kWarningTable[bit].name : "none";
 }
-
-/// kWarningTable in Markdown, for README.md.
-std::string warning_table_markdown();
 
 }  // namespace sandrunner

@@ -44,9 +44,7 @@ OperatorVerdict RemoteOperator::advance(const TickFacts& facts) noexcept {
 }
 
 void RemoteOperator::request(ModeRequest r) noexcept {
-  if (r == ModeRequest::kNone) return;
-  command_.request = r;
-  ++command_.request_id;
+  if (r != ModeRequest::kNone) command_.ask(r);
 }
 
 }  // namespace sandrunner

@@ -30,14 +30,14 @@ OperatorCommand ReturnToStand::command(std::uint64_t tick) noexcept {
   if (other.request_id != others_id_) {
     others_id_ = other.request_id;
     phase_ = Phase::kIdle;
-    request(other.request);
+    command_.ask(other.request);
   }
   if (phase_ == Phase::kIdle) return command_;
   command_.velocity = {};
   command_.tick = tick;
   const ModeRequest next = wanted();
   const bool again = ticks_ % kAskAgain_ticks == 0;
-  if (next != ModeRequest::kNone && (next != command_.request || again)) request(next);
+  if (next != ModeRequest::kNone && (next != command_.request || again)) command_.ask(next);
   return command_;
 }
 
@@ -68,11 +68,6 @@ ModeRequest ReturnToStand::wanted() const noexcept {
       break;
   }
   return up ? ModeRequest::kNone : ModeRequest::kDamp;
-}
-
-void ReturnToStand::request(ModeRequest r) noexcept {
-  command_.request = r;
-  ++command_.request_id;
 }
 
 }  // namespace sandrunner

@@ -28,7 +28,6 @@ class ReturnToStand final : public OperatorInput {
  private:
   enum class Phase { kIdle, kDown, kUp };  // kDown: until it rests and is upright
   ModeRequest wanted() const noexcept;
-  void request(ModeRequest r) noexcept;
 
   OperatorInput& other_;
   Phase phase_ = Phase::kIdle;

@@ -16,7 +16,7 @@ RunScript::RunScript(const CommandSource& command, const RunPlan& plan, bool can
       phase_(plan.start_walking ? Phase::kWalk : Phase::kArm),
       has_walked_(plan.start_walking),
       fall_mode_(plan.start_walking ? Mode::kWalk : Mode::kPassive) {
-  if (phase_ == Phase::kArm) request(ModeRequest::kArm);
+  if (phase_ == Phase::kArm) command_.ask(ModeRequest::kArm);
 }
 
 OperatorCommand RunScript::command(std::uint64_t tick) noexcept {
@@ -55,7 +55,7 @@ AfterTick RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
   switch (phase_) {
     case Phase::kArm:
       if (mode == Mode::kDamping) {
-        request(ModeRequest::kStand);
+        command_.ask(ModeRequest::kStand);
         enter(Phase::kStandUp);
       }
       return AfterTick::kGoOn;
@@ -63,7 +63,7 @@ AfterTick RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
       if (mode != Mode::kStand) standing_ = 0;
       if (mode == Mode::kStand && (standing_ += ticks) >= kSettle_ticks) {
         if (can_walk_) {
-          request(ModeRequest::kWalk);
+          command_.ask(ModeRequest::kWalk);
           enter(Phase::kWalk);
         } else {
           end(end_.lie());
@@ -73,7 +73,7 @@ AfterTick RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
     case Phase::kWalk:
       if (mode == Mode::kWalk && (walked_ += ticks) >= walk_ticks_) {
         if (plan_.start_walking) return AfterTick::kEnd;
-        request(ModeRequest::kStand);
+        command_.ask(ModeRequest::kStand);
         enter(Phase::kStop);
       }
       return AfterTick::kGoOn;
@@ -87,11 +87,6 @@ AfterTick RunScript::next_phase(Mode mode, std::uint64_t ticks) noexcept {
   return AfterTick::kEnd;
 }
 
-void RunScript::request(ModeRequest r) noexcept {
-  command_.request = r;
-  ++command_.request_id;
-}
-
 void RunScript::enter(Phase phase) noexcept {
   phase_ = phase;
   standing_ = 0;
@@ -99,7 +94,7 @@ void RunScript::enter(Phase phase) noexcept {
 
 void RunScript::end(ModeRequest r) noexcept {
   if (r == ModeRequest::kNone) return;
-  request(r);
+  command_.ask(r);
   enter(Phase::kEnd);
 }
 

@@ -51,7 +51,6 @@ class RunScript final : public OperatorInput {
  private:
   enum WayDown { kAtOnce, kGently };
   enum class Phase { kArm, kStandUp, kWalk, kStop, kEnd };
-  void request(ModeRequest r) noexcept;
   void enter(Phase phase) noexcept;
   void end(ModeRequest r) noexcept;
   void fail(const char* reason, WayDown way) noexcept;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "rt/base/guard_process.h"
 #include "rt/core/mode_machine.h"
 #include "rt/operator/mode_requests.h"
 #include "rt/telemetry/dds/ros.h"
@@ -42,13 +43,6 @@ OperatorId operator_of(const dds_guid_t& participant) {
   static_assert(sizeof id == sizeof participant.v);
   std::memcpy(id.data(), participant.v, sizeof id);
   return id;
-}
-
-template <std::size_t kSize>
-void copy_text(char (&to)[kSize], std::string_view from) {
-  const std::size_t size = std::min(from.size(), kSize - 1);
-  std::memcpy(to, from.data(), size);
-  to[size] = '\0';
 }
 
 }  // namespace
@@ -138,9 +132,9 @@ bool CommandInbox::take_requests() {
     sandrunner_ModeReply reply{};
     reply.id = request.id;
     reply.accepted = outcome.accepted;
-    copy_text(reply.mode, mode_name(desk_.mode()));
-    copy_text(reply.robot, robot_);
-    copy_text(reply.reason, outcome.accepted ? "" : outcome.text);
+    write_text(mode_name(desk_.mode()), reply.mode);
+    write_text(robot_, reply.robot);
+    write_text(outcome.accepted ? "" : outcome.text, reply.reason);
     dds_write(replies_, &reply);
   };
   const auto follow_text = [this](const void* message, const dds_sample_info_t& info) {

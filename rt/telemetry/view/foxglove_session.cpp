@@ -145,12 +145,7 @@ std::shared_ptr<const LiveTopics::Message> FoxgloveSession::next_message() {
   return topics_.next(place_, subscribed_);
 }
 
-ViewSession::Outgoing FoxgloveSession::next() {
-  if (!answers_.empty()) {
-    std::string answer = std::move(answers_.front());
-    answers_.pop_front();
-    return {std::move(answer), true};
-  }
+ViewSession::Outgoing FoxgloveSession::next_data() {
   if (!held_) held_ = next_message();
   std::string bytes;
   // Time first: the client takes a message for one of the time that was said last.

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -27,11 +26,10 @@ class FoxgloveSession final : public ViewSession {
   FoxgloveSession& operator=(const FoxgloveSession&) = delete;
 
   std::optional<Goodbye> take(std::string_view text) override;
-  Outgoing next() override;
   Claim claim() const override { return Claim::kLooks; }
-  bool listens() const override { return answers_.size() < kMostAnswers; }
 
  private:
+  Outgoing next_data() override;
   using Id = std::uint32_t;  // of a subscription, chosen by the client
   // What is wrong with it; empty: nothing.
   std::string subscribe(const nlohmann::json& wish);
@@ -44,7 +42,6 @@ class FoxgloveSession final : public ViewSession {
   RunTopics owed_;  // topics with one message, which is not sent yet
   std::uint64_t place_, said_ns_ = 0;
   std::shared_ptr<const LiveTopics::Message> held_;  // until its time is sent
-  std::deque<std::string> answers_;
 };
 
 }  // namespace sandrunner

@@ -44,13 +44,8 @@ void PageSession::greet(const PageHello& hello) {
   if (!hello.key.empty() && !has_key) answers_.push_back(view_refusal("the key is not this run's"));
 }
 
-ViewSession::Outgoing PageSession::next() {
+ViewSession::Outgoing PageSession::next_data() {
   if (claim_ == Claim::kNone) return {};
-  if (!answers_.empty()) {
-    std::string answer = std::move(answers_.front());
-    answers_.pop_front();
-    return {std::move(answer), true};
-  }
   if (std::string rows = parts_.feed.next(in_feed_); !rows.empty()) return {std::move(rows), false};
   const auto now = std::chrono::steady_clock::now();
   if (now < state_due_) return {};

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,11 +21,10 @@ class PageSession final : public ViewSession {
   PageSession(const ViewServer::Parts& parts, std::string key, std::string run, std::uint64_t page);
 
   std::optional<Goodbye> take(std::string_view text) override;
-  Outgoing next() override;
   Claim claim() const override { return claim_; }
-  bool listens() const override { return answers_.size() < kMostAnswers; }
 
  private:
+  Outgoing next_data() override;
   void greet(const PageHello& hello);
 
   const ViewServer::Parts& parts_;
@@ -34,7 +32,6 @@ class PageSession final : public ViewSession {
   ViewOrders orders_;
   Claim claim_ = Claim::kNone;
   ViewFeed::Place in_feed_;
-  std::deque<std::string> answers_;
   std::chrono::steady_clock::time_point state_due_{};
 };
 

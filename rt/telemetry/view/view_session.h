@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace sandrunner {
 
@@ -27,14 +29,21 @@ class ViewSession {
   /// The client said `text`, of kViewMessageBytes at most. If anything is returned, the connection
   /// is to be closed with it.
   virtual std::optional<Goodbye> take(std::string_view text) = 0;
-  /// Asked whenever nothing is being written.
-  virtual Outgoing next() = 0;
+  /// Asked whenever nothing is being written: answers first.
+  Outgoing next() {
+    if (answers_.empty()) return next_data();
+    Outgoing answer{std::move(answers_.front()), true};
+    answers_.pop_front();
+    return answer;
+  }
   virtual Claim claim() const = 0;
   /// False: kMostAnswers wait for the client, which is not listened to until it takes them.
-  virtual bool listens() const = 0;
+  bool listens() const { return answers_.size() < kMostAnswers; }
 
  protected:
   static constexpr std::size_t kMostAnswers = 4;
+  virtual Outgoing next_data() = 0;
+  std::deque<std::string> answers_;
 };
 
 }  // namespace sandrunner

@@ -90,10 +90,7 @@ struct DisturbedLoop {
     return {tick, simulator.state(), loop.controller().state(), policy.newest(), policy.network()};
   }
 
-  void ask(ModeRequest request) {
-    command.request = request;
-    ++command.request_id;
-  }
+  void ask(ModeRequest request) { command.ask(request); }
   /// The next tick, after `skipped` missed ones.
   void step(std::uint64_t skipped = 0) {
     if (hand) {

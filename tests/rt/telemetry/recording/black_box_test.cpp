@@ -63,10 +63,7 @@ class BlackBoxTest : public RecordingProgramTest {
     ticks_->end();
     return box_->result();
   }
-  void request(ModeRequest request) {
-    command_.request = request;
-    ++command_.request_id;
-  }
+  void request(ModeRequest request) { command_.ask(request); }
 
   std::string path(std::uint64_t fault_tick) const {
     return folder_.path("black-box-" + std::to_string(fault_tick) + ".mcap");
@@ -385,7 +382,7 @@ TEST_F(BlackBoxTest, ThreadedRunReplaysFromTheMiddle) {
   op.want(VelocityCommand{.vx_mps = 1.0});
   CallingSink sink;
   sink.at_tick = [&](const TickRecord&) {
-    if (op.time_s() > 3.0 && op.faults() == 0) {
+    if (op.time_s() > 3.0 && op.mode() != Mode::kFault) {
       op.want(VelocityCommand{.vx_mps = std::numeric_limits<double>::quiet_NaN()});
     }
     if (op.time_s() > 3.2) op.end();
