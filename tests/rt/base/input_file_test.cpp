@@ -54,12 +54,5 @@ TEST(InputFileTest, AHugeFileIsRefused) {
             path + ": cannot be read (more than 67108864 bytes), expected a list");
 }
 
-TEST(OneLineTest, ALongMessageKeepsItsBeginningAndItsEnd) {
-  const std::string line = one_line("--set x: found '" + std::string(50'000, '[') + "', expected");
-  EXPECT_EQ(line.size(), 1005u);
-  EXPECT_TRUE(line.starts_with("--set x: found '[["));
-  EXPECT_TRUE(line.ends_with("[[', expected"));
-}
-
 }  // namespace
 }  // namespace sandrunner

@@ -262,40 +262,5 @@ TEST(ForeignTrafficTest, IsAFaultOfItsJointInEveryModeFromThatTickOn) {
   }
 }
 
-TEST(FaultNameTest, EveryFaultHasItsNameAndAnUnknownOneToo) {
-  for (const FaultRow& row : kFaultTable) EXPECT_STREQ(fault_name(row.fault), row.name);
-  EXPECT_STREQ(fault_name(Fault::kForeignTraffic), "foreign_traffic");
-  EXPECT_STREQ(fault_name(Fault::kNone), "none");
-  EXPECT_STREQ(fault_name(static_cast<Fault>(std::uint64_t{1} << 40)), "unknown");
-}
-
-TEST(ImuFaultTest, AnImuOutsideItsRangeStopsTheRobotInEveryMode) {
-  for (const Mode mode :
-       {Mode::kPassive, Mode::kDamping, Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
-    FakeLoop loop;
-    loop.reach(mode);
-    loop.spoil = [](ControllerInput& seen) { seen.sensors.imu.angular_velocity_radps[1] = 41.0; };
-    loop.tick();
-    EXPECT_EQ(loop.output.mode, Mode::kFault) << mode_name(mode);
-    EXPECT_EQ(loop.output.first_fault, Fault::kImuRange);
-    EXPECT_TRUE(only_brakes(loop.output.command));
-  }
-}
-
-TEST(ImuFaultTest, AnAttitudeThatDoesNotMatchGravityStopsAStandingRobot) {
-  FakeLoop loop;
-  loop.reach(Mode::kStand);
-  loop.spoil = [](ControllerInput& seen) {
-    Vector3& felt = seen.sensors.imu.linear_acceleration_mps2;
-    felt = rotated(turned(kUpright, {0.0, 1.0, 0.0}, 0.8), felt);
-    for (double& q : seen.sensors.joints.position_rad) {
-      q += seen.sensors.tick % 2 == 0 ? kTremble_rad : -kTremble_rad;
-    }
-  };
-  loop.run_s(2.0);
-  EXPECT_EQ(loop.output.mode, Mode::kFault);
-  EXPECT_EQ(loop.output.first_fault, Fault::kImuAttitude);
-}
-
 }  // namespace
 }  // namespace sandrunner

@@ -568,6 +568,7 @@ TEST(FaultTest, NamesAreStable) {
     EXPECT_STREQ(fault_name(static_cast<Fault>(1u << i)), expected[i]);
   }
   EXPECT_STREQ(fault_name(Fault::kNone), "none");
+  EXPECT_STREQ(fault_name(static_cast<Fault>(std::uint64_t{1} << 40)), "unknown");
 }
 
 TEST(TicksFromSecondsTest, RoundsAndBoundsInvalidValues) {

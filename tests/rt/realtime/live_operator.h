@@ -10,7 +10,7 @@
 namespace sandrunner {
 
 /// An operator in another thread, who writes what he wants into a triple buffer and sees the latest
-/// mode and faults.
+/// mode.
 class LiveOperator final : public OperatorInput {
  public:
   OperatorCommand command(std::uint64_t tick) noexcept override {
@@ -21,7 +21,6 @@ class LiveOperator final : public OperatorInput {
   OperatorVerdict advance(const TickFacts& facts) noexcept override {
     ticks_ += facts.ticks;
     mode_.store(facts.mode, std::memory_order_relaxed);
-    faults_.store(facts.faults, std::memory_order_relaxed);
     return {.next = end_.load(std::memory_order_relaxed) || facts.interrupts > 0 ? AfterTick::kEnd
                                                                                  : AfterTick::kGoOn,
             .counts = facts.mode == Mode::kWalk};
@@ -32,7 +31,6 @@ class LiveOperator final : public OperatorInput {
   void want(ModeRequest request) { send(wanted_.velocity, request, true); }
   void end() { end_ = true; }
   Mode mode() const { return mode_; }
-  std::uint64_t faults() const { return faults_; }
   double time_s() const { return static_cast<double>(ticks_) * kControlPeriod_s; }
 
  private:
@@ -46,7 +44,7 @@ class LiveOperator final : public OperatorInput {
   TripleBuffer<OperatorCommand> buffer_;
   OperatorCommand wanted_;
   std::atomic<bool> end_{false};
-  std::atomic<std::uint64_t> ticks_{0}, faults_{0};
+  std::atomic<std::uint64_t> ticks_{0};
   std::atomic<Mode> mode_{Mode::kPassive};
 };
 

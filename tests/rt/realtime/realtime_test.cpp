@@ -128,21 +128,6 @@ TEST(RealtimeTest, LiveCommandsWalkStopStandAndWalkAgain) {
             result.realtime->control.releases);
 }
 
-TEST(RealtimeTest, NonFiniteCommandEndsInDamping) {
-  std::uint64_t faults = 0;
-  run_unless_stalled([&] {
-    LiveOperator op;
-    Steps steps;
-    RunResult run = run_live(op, [&] {
-      steps.when(0, op.time_s() > 0.2, [&] { op.want(VelocityCommand{kNan, 0.0, 0.0}); });
-      if (op.mode() == Mode::kFault || op.time_s() > 5.0) op.end();
-    });
-    faults = op.faults();
-    return run;
-  });
-  EXPECT_EQ(faults, static_cast<std::uint64_t>(Fault::kNonFiniteCommand));
-}
-
 TEST(RealtimeTest, LiveRunWithAFaultHasNotSurvivedEvenAfterAReset) {
   int steps_done = 0;
   const RunResult result = run_unless_stalled([&] {

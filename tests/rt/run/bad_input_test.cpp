@@ -34,7 +34,6 @@ class BadInputTest : public ProgramTest {
 
 TEST_F(BadInputTest, OptionsAreRefusedBeforeAnyWork) {
   expect_refused("--nosuch", "--nosuch");
-  expect_refused("--terain rigid", "--terain");
   expect_refused("walk", "walk");
   expect_refused("--policy", "--policy");
   expect_refused("--start fly", "fly");
@@ -43,9 +42,10 @@ TEST_F(BadInputTest, OptionsAreRefusedBeforeAnyWork) {
   expect_refused("--duration nan", "--duration: nan");
   expect_refused("--duration inf", "--duration: inf");
   expect_refused("--duration long", "long");
-  expect_refused("--duration 20s", "20s");
   expect_refused("--seed 1.5", "1.5");
   expect_refused("--seed x", "x");
+  expect_refused("--seed -1", "-1");
+  expect_refused("--seed 99999999999999999999", "99999999999999999999");
   expect_refused("--command 1 0 0",
                  "unexpected '0': several numbers of one option need commas, as in 1,0,0");
 }
@@ -125,11 +125,6 @@ TEST_F(BadInputTest, ASettingWithoutItsSignIsExplained) {
                  "as in 1,0,0; --set takes path=value");
 }
 
-TEST_F(BadInputTest, SeedsOutOfRangeAreRefused) {
-  expect_refused("--seed -1", "-1");
-  expect_refused("--seed 99999999999999999999", "99999999999999999999");
-}
-
 TEST_F(BadInputTest, CommandsAreRefusedWithFileAndLine) {
   expect_refused("--command 1,2", "'1,2' has 2 numbers, expected 3");
   expect_refused("--command nan,0,0", "'nan,0,0'");
@@ -178,26 +173,10 @@ TEST_F(BadInputTest, DamagedPoliciesAreRefused) {
   }
   write("longer", bytes + "x");
   expect_refused("--policy longer", "'longer': ");
-  std::string noise(100000, '\0');
-  RandomFloats random(3);
-  for (char& byte : noise) byte = static_cast<char>(random.bits());
-  write("noise", noise);
-  expect_refused("--policy noise", "'noise': ");
-
-  const TensorFile good = read_safetensors(folder_.path("good"));
-  TensorFile file = good;
+  TensorFile file = read_safetensors(folder_.path("good"));
   file.tensors.at("golden.action").values[100] += 0.01f;
   write_safetensors(folder_.path("golden"), file);
   expect_refused("--policy golden", "golden example fails at step");
-  file = good;
-  file.tensors.at("actor.1.bias").shape = {64};
-  file.tensors.at("actor.1.bias").values.resize(64);
-  write_safetensors(folder_.path("resized"), file);
-  expect_refused("--policy resized", "actor.1.bias");
-
-  // The writer refuses a NaN, so it goes into the bytes: the last four are a tensor's end.
-  write("nan", bytes.substr(0, bytes.size() - 4) + std::string("\x00\x00\xc0\x7f", 4));
-  expect_refused("--policy nan", "'nan': ");
 }
 
 TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
@@ -206,6 +185,8 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   const std::string urdf(embedded_robot_file("raibo.urdf"));
   write("map.toml", map);
   expect_refused("--set robot=map.toml", "raibo.urdf: cannot be read");
+  write("raibo.urdf", "");
+  expect_refused("--set robot=map.toml", "raibo.urdf: not a ");
   write("raibo.urdf", urdf.substr(0, urdf.size() / 2));
   expect_refused("--set robot=map.toml", "raibo.urdf: not a ");
   write("raibo.urdf", "no robot at all");

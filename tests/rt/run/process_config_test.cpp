@@ -268,30 +268,6 @@ TEST(ProcessConfigTest, EffectiveSettingsReadBackToThemselves) {
   }
 }
 
-TEST(ProcessConfigTest, MissingOrBrokenRobotIsRefused) {
-  const TemporaryFolder folder;
-  const std::string map(embedded_robot_file("raibo.toml"));
-  const std::string urdf(embedded_robot_file("raibo.urdf"));
-  write_file(folder.path("map.toml"), map);
-  const auto load = [&] { config_of("rigid", {"robot=" + folder.path("map.toml")}); };
-  expect_refused([] { config_of("rigid", {"robot=absent.toml"}); },
-                 {"absent.toml: cannot be read"});
-  expect_refused(load, {folder.path("raibo.urdf") + ": cannot be read"});
-  for (const std::string& broken : {std::string(), std::string("garbage"), urdf.substr(0, 3000),
-                                    std::string("<robot name=\"a\"></robot>")}) {
-    write_file(folder.path("raibo.urdf"), broken);
-    expect_refused(load, {folder.path("raibo.urdf") + ": not a "});
-  }
-  write_file(
-      folder.path("raibo.urdf"),
-      "<robot name=\"cart\"><link name=\"cart\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" "
-      "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link></robot>");
-  expect_refused(load, {folder.path("raibo.urdf") + ": has no link 'base'"});
-  write_file(folder.path("raibo.urdf"), urdf);
-  write_file(folder.path("map.toml"), "wheels = 4\n" + map);
-  expect_refused(load, {folder.path("map.toml") + ":1: unknown key 'wheels'"});
-}
-
 TEST(ProcessConfigTest, AnglesAreShownAsTheyWereMeant) {
   const std::string effective = config_of("dry-sand", {}, nullptr).effective;
   EXPECT_NE(effective.find("terrain.cone_angle_deg = 60.0\n"), std::string::npos) << effective;

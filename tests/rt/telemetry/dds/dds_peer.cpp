@@ -3,7 +3,6 @@
 //   dds_peer DOMAIN INTERFACE drive VX_MPS COUNT [SECURITY_DIR IDENTITY]   Twists at 50 Hz
 //   dds_peer DOMAIN INTERFACE watch SECONDS [SECURITY_DIR IDENTITY]        counts the gaps between
 //       batches of ticks, and the ticks that are neither there nor reported as missed by the robot
-//   dds_peer DOMAIN INTERFACE publish SECONDS                              telemetry of a robot
 //   dds_peer DOMAIN XML stock SECONDS      what comes on rt/odom with this configuration of Cyclone
 //       DDS
 // Prints what it did as one line; "matched" as soon as it has found the other end, and "watching"
@@ -80,14 +79,6 @@ int watch(const DdsParticipant& participant, double duration_s) {
   return 0;
 }
 
-int publish(const DdsParticipant& participant, const DdsConfig& config, double duration_s) {
-  Telemetry telemetry(participant, config, example_robot(), nullptr, RunClock::kRealtime);
-  const double longest_s = publish_for(telemetry, 0, duration_s);
-  std::printf("longest_us %.0f\nfailed %llu\n", longest_s * 1e6,
-              static_cast<unsigned long long>(telemetry.failed_writes()));
-  return 0;
-}
-
 int stock(int domain, const char* xml, double duration_s) {
   DdsConfig config;
   config.domain = domain;
@@ -121,8 +112,7 @@ int run(int argc, char** argv) {
   }
   const DdsParticipant participant(config, identity);
   if (what == "drive") return drive(participant, std::atof(argv[4]), std::atoi(argv[5]));
-  if (what == "watch") return watch(participant, std::atof(argv[4]));
-  return what == "publish" ? publish(participant, config, std::atof(argv[4])) : 2;
+  return what == "watch" ? watch(participant, std::atof(argv[4])) : 2;
 }
 
 }  // namespace

@@ -187,35 +187,6 @@ TEST_F(DdsProgramTest, RealTimeRecordingsUnderLoadReplayBitForBit) {
   }
 }
 
-TEST_F(DdsProgramTest, Go2IsPublishedUnderTheNamesOfItsOwnFile) {
-  const std::vector<std::string> names = {"FL_hip_joint", "FL_thigh_joint", "FL_calf_joint",
-                                          "FR_hip_joint", "FR_thigh_joint", "FR_calf_joint",
-                                          "RL_hip_joint", "RL_thigh_joint", "RL_calf_joint",
-                                          "RR_hip_joint", "RR_thigh_joint", "RR_calf_joint"};
-  const DdsParticipant participant(config_, "operator");  // has the domain on loopback
-  Peer peer(config_);
-  const dds_entity_t joints = peer.reader("rt/joint_states", sensor_msgs_msg_dds__JointState__desc);
-  const dds_entity_t urdf =
-      peer.reader("rt/robot_description", std_msgs_msg_dds__String__desc, true);
-  const ChildProcess robot(
-      words_of(program(config_) + "--robot go2 --clock realtime --out " + folder_.path("out")));
-  std::vector<std::string> published;
-  EXPECT_TRUE(wait_until([&] {
-    take<sensor_msgs_msg_dds__JointState_>(joints, [&](const sensor_msgs_msg_dds__JointState_& m) {
-      published.assign(m.name._buffer, m.name._buffer + m.name._length);
-    });
-    return !published.empty();
-  }));
-  EXPECT_EQ(published, names);
-  std::string description;
-  EXPECT_TRUE(wait_until([&] {
-    take<std_msgs_msg_dds__String_>(
-        urdf, [&](const std_msgs_msg_dds__String_& m) { description = m.data; });
-    return !description.empty();
-  }));
-  EXPECT_NE(description.find("FL_calf_joint"), std::string::npos);
-}
-
 // One subscriber listens, one is stopped for a while, one dies.
 TEST_F(DdsProgramTest, BadSubscribersHoldUpNeitherControlNorRecordingNorAGoodOne) {
   const int watched_s = from_environment("SANDRUNNER_WATCHED_S", 4);

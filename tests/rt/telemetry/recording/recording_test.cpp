@@ -74,30 +74,6 @@ TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
   EXPECT_EQ(hash(), without);
 }
 
-TEST_F(RecordingTest, ARobotOfAnotherFileIsRecordedUnderItsOwnNames) {
-  const TemporaryFolder robot;
-  const std::string map = write_small_robot(robot);
-  PolicyFile policy = random_policy_file();
-  policy.spec.joint_names = sim::load_robot(map).description.joint_names;
-  write_policy_file(robot.path("small.safetensors"), policy);
-  run(SANDRUNNER_PROGRAM, "--start walk --duration 0.1 --robot " + map + " --policy " +
-                              robot.path("small.safetensors") + " --record " + folder_.path(""));
-  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
-  McapReader reader(path());
-  std::map<std::string, std::string> content;  // by topic
-  while (const McapMessage* message = reader.next()) {
-    content[reader.channels().at(message->channel_id).topic] = {
-        reinterpret_cast<const char*>(message->data.data()), message->data.size()};
-  }
-  EXPECT_EQ(reader.attachments().back().data, small_robot_urdf());
-  for (const char* leg : {"fl", "fr", "rl", "rr"}) {
-    for (const char* joint : {"_roll", "_pitch", "_knee"}) {
-      EXPECT_NE(content["/joint_states"].find(std::string(leg) + joint), std::string::npos);
-    }
-  }
-  EXPECT_NE(content["/tf"].find("base_link"), std::string::npos);
-}
-
 TEST_F(RecordingTest, OfGo2WithItsOwnPolicyReplaysBitForBitAndIsDrawn) {
   record("--robot go2 --set dds.enabled=false");
   EXPECT_EQ(read_ticks(path(), [](const TickRecord&) { return true; }).info.policy,
@@ -107,7 +83,7 @@ TEST_F(RecordingTest, OfGo2WithItsOwnPolicyReplaysBitForBitAndIsDrawn) {
   EXPECT_NE(read_file(folder_.path("plots/run.html")).find("FL_calf"), std::string::npos);
 }
 
-TEST_F(RecordingTest, ReplaysWithTheRobotThatItCarries) {
+TEST_F(RecordingTest, NamesAndReplaysTheRobotThatItCarries) {
   std::string map;
   {
     const TemporaryFolder robot;
@@ -122,6 +98,19 @@ TEST_F(RecordingTest, ReplaysWithTheRobotThatItCarries) {
     write_file(map, "no map");
     EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
   }
+  McapReader reader(path());
+  std::map<std::string, std::string> content;  // by topic
+  while (const McapMessage* message = reader.next()) {
+    content[reader.channels().at(message->channel_id).topic] = {
+        reinterpret_cast<const char*>(message->data.data()), message->data.size()};
+  }
+  EXPECT_EQ(reader.attachments().back().data, small_robot_urdf());
+  for (const char* leg : {"fl", "fr", "rl", "rr"}) {
+    for (const char* joint : {"_roll", "_pitch", "_knee"}) {
+      EXPECT_NE(content["/joint_states"].find(std::string(leg) + joint), std::string::npos);
+    }
+  }
+  EXPECT_NE(content["/tf"].find("base_link"), std::string::npos);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path() + " --plot " + folder_.path("plots")), 0) << output();
   EXPECT_NE(output().find("every bit agrees"), std::string::npos) << output();
 }
@@ -192,16 +181,6 @@ TEST_F(RecordingTest, FlippedBitOfAnOutputIsNamed) {
   flip(path(), folder_.path("flipped.mcap"), 777, word, 1);
   EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
   EXPECT_NE(output().find("DIFFERS at tick 777 (0.19425 s): command_position_rad[4]: recorded"),
-            std::string::npos)
-      << output();
-}
-
-TEST_F(RecordingTest, FlippedBitOfAnInputIsFoundByWhatItChanges) {
-  record();
-  // The lowest bit of an encoder in the tick that releases the policy.
-  flip(path(), folder_.path("flipped.mcap"), 800, word_named("joint_position_rad[7]"), 1);
-  EXPECT_EQ(run(SANDRUNNER_REPLAY, folder_.path("flipped.mcap")), 1);
-  EXPECT_NE(output().find("DIFFERS at tick 800 (0.20000 s): released_joint_position_rad[7]"),
             std::string::npos)
       << output();
 }
@@ -379,12 +358,8 @@ TEST_F(RecordingTest, EventsAreModesRequestsAndFaults) {
     if (reader.channels().at(message->channel_id).topic != kEventsTopic) continue;
     CdrReader cdr(message->data);
     cdr.number<std::uint64_t>();
-    for (int part = 0; part < 2; ++part) {
-      const auto size = cdr.number<std::uint32_t>();
-      const auto text = cdr.block(size, 1);
-      events += std::string(reinterpret_cast<const char*>(text.data()), size - 1) +
-                (part == 0 ? " " : "; ");
-    }
+    events += std::string(cdr.text()) + " ";
+    events += std::string(cdr.text()) + "; ";
   }
   EXPECT_EQ(events,
             "mode passive; request arm; mode damping; mode stand_up; request stand; mode stand; "
