@@ -24,9 +24,6 @@ void check_speed(const char* name, double value, double limit, const char* unit)
 }
 
 void check(const Options& o) {
-  if (o.dds.domain < 0 || o.dds.domain > 230) {
-    throw InputError(fmt::format("--domain: found {}, expected 0 to 230", o.dds.domain));
-  }
   if (o.subcommand == "cmd") {
     check_speed("VX", o.velocity.vx_mps, kAbsurdSpeed_mps, "m/s");
     check_speed("VY", o.velocity.vy_mps, kAbsurdSpeed_mps, "m/s");
@@ -49,13 +46,17 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.option_defaults()->always_capture_default();
   app.require_subcommand(1);
   app.fallthrough();  // common options may also follow the subcommand
-  app.add_option("--domain", o.dds.domain, "the robot's dds.domain")->type_name("N");
+  app.add_option("--domain", o.dds.domain, "the robot's dds.domain")
+      ->check(CLI::Range(0, 230))
+      ->type_name("N");
   app.add_option("--interface", o.dds.interface, "the robot's dds.interface; lo: this computer")
       ->type_name("NAME");
   app.add_option("--security", o.dds.security_dir,
                  "folder with the files of the identity \"operator\" (tools/dds_security.sh)")
       ->type_name("DIR");
-  app.add_option("--cmd-vel", cmd_vel, "the robot's dds.cmd_vel")->type_name("twist|twist_stamped");
+  app.add_option("--cmd-vel", cmd_vel, "the robot's dds.cmd_vel")
+      ->check(CLI::IsMember({"twist", "twist_stamped"}))
+      ->type_name("twist|twist_stamped");
 
   CLI::App* status = app.add_subcommand(
       "status", "show the state of the robot; on a terminal, keep refreshing it");
@@ -79,10 +80,6 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "  sandrunner-ctl mode stand\n"
       "  sandrunner-ctl cmd 0.5 0 0 --for 3");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
-  if (cmd_vel != "twist" && cmd_vel != "twist_stamped") {
-    throw InputError(
-        fmt::format("--cmd-vel: found '{}', expected twist or twist_stamped", cmd_vel));
-  }
   o.dds.stamped_cmd_vel = cmd_vel == "twist_stamped";
   o.subcommand = app.get_subcommands().front()->get_name();
   if (has_for->count() > 0) o.for_s = for_s;

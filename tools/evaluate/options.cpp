@@ -8,25 +8,14 @@
 #include <thread>
 
 #include "rt/base/command_line.h"
-#include "rt/base/errors.h"
 
 namespace sandrunner::evaluate {
-namespace {
-
-void check(const char* name, long long value, long long low, long long high) {
-  if (value < low || value > high) {
-    throw InputError(fmt::format("{}: {}, expected {} to {}", name, value, low, high));
-  }
-}
-
-}  // namespace
 
 std::optional<Options> parse_options(int argc, const char* const* argv) {
   Options o;
   o.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::vector<std::string> all_parts, chosen;
   for (const PartRow& row : kParts) all_parts.emplace_back(row.name);
-  long long seed = static_cast<long long>(o.study.seed);
   std::string line = "on";
   CLI::App app{
       "Measures how well a policy runs, in simulation; compares two policies on the same starts, "
@@ -41,18 +30,24 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       ->type_name("NAME|FILE");
   app.add_option("--out", o.out_dir, "folder for evaluation.json and CSV files")->type_name("DIR");
   app.add_option("--threads", o.threads, "worker threads; the results do not depend on them")
+      ->check(CLI::Range(1, 1024))
       ->type_name("N");
   app.add_option("--runs", o.study.runs, "runs of each ground, command and scenario")
+      ->check(CLI::Range(1, 100'000))
       ->type_name("N");
   app.add_option("--grid-runs", o.study.grid_runs, "robots in each cell of the stiffness grid")
+      ->check(CLI::Range(1, 100'000))
       ->type_name("N");
-  app.add_option("--seed", seed, "seed of starts, noise, pushes and random commands")
+  app.add_option("--seed", o.study.seed, "seed of starts, noise, pushes and random commands")
+      ->check(CLI::Range(1, 1'000'000'000))
       ->type_name("N");
   app.add_option("--only", chosen, "some of " + fmt::format("{}", fmt::join(all_parts, ",")))
       ->delimiter(',')
+      ->check(CLI::IsMember(all_parts))
       ->type_name("PART,...")
       ->always_capture_default(false);
   app.add_option("--torque-speed-line", line, "drives lose torque towards their no-load speed")
+      ->check(CLI::IsMember({"on", "off"}))
       ->type_name("on|off");
   app.footer(
       "Examples:\n"
@@ -60,23 +55,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "  sandrunner-evaluate --policy mine.safetensors --against theirs.safetensors --only "
       "straight");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
-  check("--threads", o.threads, 1, 1024);
-  check("--runs", o.study.runs, 1, 100000);
-  check("--grid-runs", o.study.grid_runs, 1, 100000);
-  check("--seed", seed, 1, 1'000'000'000);
-  o.study.seed = static_cast<std::uint64_t>(seed);
-  for (const std::string& part : chosen) {
-    if (std::find(all_parts.begin(), all_parts.end(), part) == all_parts.end()) {
-      throw InputError(
-          fmt::format("--only: '{}', expected some of {}", part, fmt::join(all_parts, ", ")));
-    }
-  }
   for (const PartRow& row : kParts) {
     const bool is_chosen = std::find(chosen.begin(), chosen.end(), row.name) != chosen.end();
     if (chosen.empty() || is_chosen) o.parts.push_back(row);
-  }
-  if (line != "on" && line != "off") {
-    throw InputError(fmt::format("--torque-speed-line: '{}', expected on or off", line));
   }
   o.torque_speed_line = line == "on";
   return o;

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -16,22 +18,11 @@ namespace {
 
 constexpr std::string_view kEnding = ".toml";
 
-/// Names with commas, blanks or ends of lines between.
-std::vector<std::string> words_of(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return c == ',' || c == '\n' || c == '\t' || c == '\r'; }, ' ');
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; (begin = text.find_first_not_of(' ', begin)) != std::string::npos;) {
-    const std::size_t end = std::min(text.find(' ', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end;
-  }
-  return words;
-}
-
-JointArray<int> joints_of(const std::string& origin, const std::string& text,
+JointArray<int> joints_of(const std::string& origin, std::string text,
                           const RobotDescription& robot) {
-  const std::vector<std::string> names = words_of(text);
+  std::ranges::replace(text, ',', ' ');
+  std::istringstream words(text);
+  const std::vector<std::string> names(std::istream_iterator<std::string>(words), {});
   JointArray<int> joint_of{};
   bool good = names.size() == kNumJoints;
   for (int j = 0; good && j < kNumJoints; ++j) {

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "rt/base/command_line.h"
-#include "rt/base/errors.h"
 #include "tools/study/experiments/experiments.h"
 
 namespace sandrunner::study {
@@ -32,23 +31,29 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
   app.add_option("--only", only,
                  fmt::format("some of {}", fmt::join(all.begin() + 1, all.end(), ",")))
       ->delimiter(',')
+      ->check(CLI::IsMember(all))
       ->type_name("E1,...");
   app.add_option("--seeds", o.seeds, "training seeds (default: all that are there)")
       ->delimiter(',')
+      ->check(CLI::Range(1, 1'000'000'000))
       ->type_name("1,...");
   app.add_option("--runs", o.lab.runs, "runs of each ground and command")
+      ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
   app.add_option(
          "--grid-runs", o.lab.grid_runs,
          "robots in each cell of E7's grid; with fewer than the paper's 360, E8 has fewer too")
+      ->check(CLI::Range(1, 100'000))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--grid-cells", o.lab.grid_cells,
                  "cells of the grid each way; claims need the paper's 10")
+      ->check(CLI::Range(2, 100))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--threads", o.lab.threads, "worker threads; the results do not depend on them")
+      ->check(CLI::Range(1, 1024))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--published", o.published,
@@ -62,21 +67,6 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
       "  sandrunner-study --from tools/study/trained --out report\n"
       "  sandrunner-study --from tools/study/trained --only E1,E5 --runs 8 --out quick");
   if (!parse_command_line(app, argc, argv)) return std::nullopt;
-  const auto check = [](const char* name, int value, int low, int high) {
-    if (value >= low && value <= high) return;
-    throw InputError(fmt::format("{}: found {}, expected {} to {}", name, value, low, high));
-  };
-  check("--runs", o.lab.runs, 1, 1000);
-  check("--grid-runs", o.lab.grid_runs, 1, 100'000);
-  check("--grid-cells", o.lab.grid_cells, 2, 100);
-  check("--threads", o.lab.threads, 1, 1024);
-  for (const int seed : o.seeds) check("--seeds", seed, 1, 1'000'000'000);
-  for (const std::string& key : only) {
-    if (find_experiment(key) == nullptr) {
-      throw InputError(fmt::format("--only: found '{}', expected some of {}", key,
-                                   fmt::join(all.begin() + 1, all.end(), ",")));
-    }
-  }
   for (const std::string& key : all) {
     const bool chosen = std::find(only.begin(), only.end(), key) != only.end();
     if (chosen || key == "fairness") o.only.push_back(key);

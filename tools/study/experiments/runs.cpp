@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/study/experiments/runs.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <limits>
-#include <stdexcept>
+
+#include "tools/evaluate/statistics.h"
 
 namespace sandrunner::study {
 namespace {
@@ -28,14 +26,6 @@ std::map<std::string, std::vector<double>> lists_from(const Json& json) {
 }
 
 }  // namespace
-
-const std::vector<double>& RunGroup::values(const std::string& figure) const {
-  const auto found = runs.find(figure);
-  if (found == runs.end()) {
-    throw std::logic_error(fmt::format("no figure '{}' on {} {}", figure, ground, scenario));
-  }
-  return found->second;
-}
 
 Json to_json(const Measured& measured) {
   Json groups = Json::array();
@@ -62,15 +52,6 @@ Measured measured_from(const Json& json) {
   return measured;
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  int n = 0;
-  for (const double v : values) {
-    if (std::isnan(v)) continue;
-    sum += v;
-    ++n;
-  }
-  return n > 0 ? sum / n : kNan;
-}
+double mean_of(const std::vector<double>& values) { return evaluate::mean_interval(values).value; }
 
 }  // namespace sandrunner::study

@@ -23,9 +23,6 @@ struct RunGroup {
   std::map<std::string, std::vector<double>> lists;
   /// Float32 numbers, little-endian, in base64: what would be long as text.
   std::map<std::string, std::string> packed = {};
-
-  /// The values of a figure, which must be there.
-  const std::vector<double>& values(const std::string& figure) const;
 };
 
 struct Measured {

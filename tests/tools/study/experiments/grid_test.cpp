@@ -28,12 +28,12 @@ TEST_F(GridExperimentTest, YieldsEachCellAndEachRobot) {
     EXPECT_EQ(measured.groups.at(0).lists.at(name).size(), 4u) << name;
   }
   const RunGroup& robots = measured.groups.at(1);
-  EXPECT_EQ(robots.values("reward").size(), 16u);
+  EXPECT_EQ(robots.runs.at("reward").size(), 16u);
   // The shipped policy's mean over the cells is that over the robots.
-  EXPECT_NEAR(mean_of(robots.values("reward")), mean_of(measured.groups[0].lists.at("reward")),
+  EXPECT_NEAR(mean_of(robots.runs.at("reward")), mean_of(measured.groups[0].lists.at("reward")),
               1e-9);
-  EXPECT_GT(mean_of(robots.values("success")), 0.8);
-  EXPECT_LT(mean_of(robots.values("slope_flat_m")),
+  EXPECT_GT(mean_of(robots.runs.at("success")), 0.8);
+  EXPECT_LT(mean_of(robots.runs.at("slope_flat_m")),
             0.0);  // it lifts its feet higher on soft ground
 }
 
@@ -44,7 +44,7 @@ TEST_F(GridExperimentTest, AControllerThatSeesTheGroundIsJudgedOnItsOwnGround) {
   const Measured measured = run_fairness(lab, models_.at(0));
   ASSERT_EQ(measured.groups.size(), 3u);
   for (const RunGroup& group : measured.groups) {
-    EXPECT_EQ(group.values("alive"), (std::vector<double>{1, 1, 1})) << group.command;
+    EXPECT_EQ(group.runs.at("alive"), (std::vector<double>{1, 1, 1})) << group.command;
   }
 }
 

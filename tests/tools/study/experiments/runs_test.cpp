@@ -29,8 +29,8 @@ TEST(RunsTest, MeasurementsAreReadAsTheyWereWritten) {
   EXPECT_EQ(back.groups[0].ground, "grass");
   EXPECT_EQ(back.groups[0].scenario, "turn");
   EXPECT_EQ(back.groups[0].command, -1.0);
-  EXPECT_EQ(back.groups[0].values("cotu")[2], 1.0 / 3.0);
-  EXPECT_TRUE(std::isnan(back.groups[0].values("cotu")[1]));
+  EXPECT_EQ(back.groups[0].runs.at("cotu")[2], 1.0 / 3.0);
+  EXPECT_TRUE(std::isnan(back.groups[0].runs.at("cotu")[1]));
   EXPECT_EQ(back.groups[0].lists, measured.groups[0].lists);
   EXPECT_EQ(back.groups[0].packed, measured.groups[0].packed);
 }
@@ -74,7 +74,7 @@ TEST(RunFiguresTest, ATurnSucceedsByMoreThanHalfATurnTheCommandedWay) {
   runs[2].figures.turned_rad = 1.1 * std::numbers::pi;
   runs[3].figures.turned_rad = -1.1 * std::numbers::pi;
   runs[3].figures.fell = true;
-  EXPECT_EQ(turn_group("grass", -1.0, runs).values("success"),
+  EXPECT_EQ(turn_group("grass", -1.0, runs).runs.at("success"),
             (std::vector<double>{1.0, 0.0, 0.0, 0.0}));
 }
 
@@ -84,10 +84,10 @@ TEST(RunFiguresTest, AStraightRunHasWhatSuccessIsJudgedBy) {
   runs[1].figures.track_done = runs[1].figures.track_stops_brief = true;
   runs[2].figures.failed_before_track = true;
   const RunGroup group = straight_group("beach", 1.0, runs);
-  EXPECT_EQ(group.values("reached"), (std::vector<double>{1.0, 1.0, 0.0}));
-  EXPECT_EQ(group.values("limits_kept"), (std::vector<double>{1.0, 0.0, 0.0}));
-  EXPECT_EQ(group.values("stops_brief"), (std::vector<double>{0.0, 1.0, 0.0}));
-  EXPECT_EQ(group.values("failed_before_track"), (std::vector<double>{0.0, 0.0, 1.0}));
+  EXPECT_EQ(group.runs.at("reached"), (std::vector<double>{1.0, 1.0, 0.0}));
+  EXPECT_EQ(group.runs.at("limits_kept"), (std::vector<double>{1.0, 0.0, 0.0}));
+  EXPECT_EQ(group.runs.at("stops_brief"), (std::vector<double>{0.0, 1.0, 0.0}));
+  EXPECT_EQ(group.runs.at("failed_before_track"), (std::vector<double>{0.0, 0.0, 1.0}));
 }
 
 }  // namespace

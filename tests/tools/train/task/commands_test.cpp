@@ -53,27 +53,5 @@ TEST(CommandsTest, ComeAtOnceOrAsRamps) {
   EXPECT_GT(ramps.all, 5 * at_once.all);
 }
 
-// The curricula go by the robots on soil, if there are any.
-TEST(CommandsTest, OpenOnHardGroundAlone) {
-  flush_denormals_to_zero();
-  const sim::Robot robot = sim::load_raibo();
-  ConfigTree tree;
-  add_training_layers(tree, robot);
-  tree.set("ground.rigid_envs=64");
-  tree.set("ground.patchy_envs=0");
-  for (const char* gate : {"command.gate_kernel=0", "ground.gate_kernel=0",
-                           "command.gate_falls=1e3", "ground.gate_falls=1e3"}) {
-    tree.set(gate);
-  }
-  Task task(read_task_config(tree), robot, {kEnvs, kEnvs}, 1);
-  learner::Rollout rollout({kEnvs, 1, Task::privileged_size()}, 1);
-  task.observe(0, 0, rollout);
-  const Curriculum before = task.curriculum();
-  task.step(0, 0, rollout);
-  task.end_window(0.0, 0.0);
-  EXPECT_GT(task.curriculum().speed_mps, before.speed_mps);
-  EXPECT_GT(task.curriculum().ground, before.ground);
-}
-
 }  // namespace
 }  // namespace sandrunner::train

@@ -16,10 +16,8 @@ namespace {
 constexpr int kWalkers = 64;
 
 std::vector<sim::BatchRobot<float>> robots_of(const Task& task) {
-  learner::Checkpoint checkpoint;
-  task.save(checkpoint);
-  std::vector<sim::BatchRobot<float>> robots(kWalkers);
-  checkpoint.get("task.robots", robots.data(), robots.size());
+  std::vector<sim::BatchRobot<float>> robots;
+  for (int env = 0; env < kWalkers; ++env) robots.push_back(task.batch().robot(env));
   return robots;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include "rt/core/processor.h"
 #include "tools/train/task/robot_settings.h"
@@ -35,15 +34,13 @@ int robots_in_two_patches(double loose_step_share, double patch_rigid_share) {
     rollout.action(t).setZero();
     task.step(0, t, rollout);
   }
-  learner::Checkpoint checkpoint;
-  task.save(checkpoint);
-  std::vector<sim::BatchRobot<float>> robots(kStanding);
-  checkpoint.get("task.robots", robots.data(), robots.size());
-  return static_cast<int>(std::ranges::count_if(robots, [](const auto& r) {
-    const auto& feet = r.state.feet;
-    return std::ranges::any_of(feet,
-                               [&](const auto& foot) { return foot.region != feet[0].region; });
-  }));
+  int count = 0;
+  for (int env = 0; env < kStanding; ++env) {
+    const auto feet = task.batch().robot(env).state.feet;
+    count +=
+        std::ranges::any_of(feet, [&](const auto& foot) { return foot.region != feet[0].region; });
+  }
+  return count;
 }
 
 TEST(LooseStep, PutsAFootOnTheGroundOfASofterPatch) {

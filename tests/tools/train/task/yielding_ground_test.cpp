@@ -42,15 +42,11 @@ Task task_with(const TaskConfig& config, int steps) {
 }
 
 std::vector<sim::Ground<float>> patches_of(const Task& task) {
-  learner::Checkpoint checkpoint;
-  task.save(checkpoint);
-  std::vector<sim::BatchRobot<float>> robots(kEnvs);
-  checkpoint.get("task.robots", robots.data(), robots.size());
   std::vector<sim::Ground<float>> patches;
-  for (const auto& robot : robots) {
-    for (int i = 0; i < static_cast<int>(robot.terrain.count); ++i) {
-      patches.push_back(robot.terrain.ground[static_cast<std::size_t>(i)]);
-    }
+  for (int env = 0; env < kEnvs; ++env) {
+    const sim::Terrain<float>& terrain = task.terrain(env);
+    patches.insert(patches.end(), terrain.ground.begin(),
+                   terrain.ground.begin() + static_cast<int>(terrain.count));
   }
   return patches;
 }
