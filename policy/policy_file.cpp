@@ -13,7 +13,6 @@
 #include "policy/perceptron_file.h"
 #include "policy/safetensors.h"
 #include "policy/spec_metadata.h"
-#include "policy/study_file.h"
 #include "policy/text.h"
 
 namespace sandrunner {
@@ -108,7 +107,6 @@ PolicyFile decode(const std::string& path, TensorFile content) {
               "found a perceptron with an observation of its own, expected a network as those "
               "that are trained here: it can run, but not be trained on");
   }
-  renew_study_file(path, content);
   PolicyFile file;
   Metadata values(path, std::move(content.metadata));
   read_settings(values, file);

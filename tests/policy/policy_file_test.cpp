@@ -131,35 +131,6 @@ TEST_F(PolicyFileTest, OfANetworkThatNeedsWhatNoRobotCanSenseMakesNoPolicy) {
   }
 }
 
-TEST_F(PolicyFileTest, FilesOfTheFormatStudy1AreReadAndNewlyWritten) {
-  int found = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SANDRUNNER_STUDY_TRAINED)) {
-    if (entry.path().extension() != ".safetensors") continue;
-    const TensorFile old = read_safetensors(entry.path());
-    if (old.metadata.at("sandrunner.format") != "study 1") continue;
-    ++found;
-    PolicyFile file = read_policy_file(entry.path());
-    file.golden = make_golden_example(file.parameters);
-    write_policy_file(path_, file);
-    const TensorFile now = read_safetensors(path_);
-    EXPECT_EQ(now.metadata.at("sandrunner.format"), "1");
-    for (const auto& [name, tensor] : old.tensors) {
-      if (name == "encoder" || name.starts_with("golden.")) continue;
-      EXPECT_EQ(tensor.values, now.tensors.at(name).values) << entry.path() << name;
-    }
-    if (!old.tensors.contains("encoder")) continue;
-    const std::vector<float>& row = old.tensors.at("encoder").values;  // [ih | bias | hh]
-    EXPECT_EQ(now.tensors.at("encoder.weight_ih").values[1], row[1]);
-    EXPECT_EQ(now.tensors.at("encoder.bias_ih").values[0], row[30]);
-    EXPECT_EQ(now.tensors.at("encoder.weight_hh").values[2], row[33]);
-  }
-  EXPECT_EQ(found, 7);
-}
-
-TEST_F(PolicyFileTest, OfTheFormatStudy1WithoutSettingsIsRefused) {
-  expect_refused_with("sandrunner.format", "study 1", "'provenance.config' is missing");
-}
-
 TEST_F(PolicyFileTest, LoadedPolicyStepsAsTheOneThatWasWritten) {
   Policy loaded = load_policy(path_);
   Policy original(file_.spec, Network(file_.parameters));
