@@ -154,7 +154,8 @@ std::string in_our_words(const CLI::App& app, const std::string& message) {
        "$1: found $2 of them, expected one"},
       {std::regex("(\\S+): 1 required (\\S+) missing"), "$1: found no value, expected $2"},
       {std::regex("(\\S+): (.*) not in \\{(.*)\\}"), "$1: found '$2', expected one of $3"},
-      {std::regex("(\\S+): Value (\\S+) not in range \\[?(.*?)\\]?"), "$1: found $2, expected $3"},
+      {std::regex("(\\S+): Value (\\S+) not in range \\[?(\\S+) (?:to|-) (\\S+?)\\]?"),
+       "$1: found $2, expected $3 to $4"},
       {std::regex("(\\S+) is required"), "command line: found no $1, expected one"},
   };
   for (const auto& [theirs, ours] : kWords) {

@@ -53,7 +53,7 @@ bool process_runs(int process) noexcept;
 /// Less than a second.
 void pause_ns(std::int64_t time_ns) noexcept;
 
-/// Writes `text` to shared memory, as much as fits, with a 0 at its end.
+/// Writes as much of `text` as fits, with a 0 at its end: to shared memory or an array of DDS.
 void write_text(std::string_view text, std::span<char> place) noexcept;
 
 }  // namespace sandrunner

@@ -2,6 +2,7 @@
 #include "rt/core/faults.h"
 
 namespace sandrunner {
+
 const char* fault_name(Fault fault) noexcept {
   if (fault == Fault::kNone) return "none";
   for (const FaultRow& row : kFaultTable) {

@@ -83,8 +83,7 @@ class Day {
   }
   template <typename Look>
   void ask(ModeRequest request, Mode mode, const Look& look) {
-    command_.request = request;
-    ++command_.request_id;
+    command_.ask(request);
     for (int i = 0; i < 800 && loop_.record().output.mode != mode; ++i) wait(0.01, look);
     EXPECT_EQ(loop_.record().output.mode, mode);
   }

@@ -42,6 +42,7 @@ class ViewSession {
 
  protected:
   static constexpr std::size_t kMostAnswers = 4;
+  /// What is to be said where no answer waits.
   virtual Outgoing next_data() = 0;
   std::deque<std::string> answers_;
 };

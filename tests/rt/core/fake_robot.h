@@ -96,8 +96,7 @@ class FakeLoop {
   }
   void request(ModeRequest wish) {
     if (robot.now.tick == 0) tick();  // the first step only enters the start mode
-    input.command.request = wish;
-    ++input.command.request_id;
+    input.command.ask(wish);
     tick();
   }
   /// The two steps from Passive to StandUp.

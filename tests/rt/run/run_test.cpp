@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -178,6 +179,15 @@ TEST(RunTest, FaultIsReportedWithItsName) {
     EXPECT_LE(result.fall_time_s.value_or(99), run.latest_s) << run.reason;
     EXPECT_EQ(mode_of(result.record.rows.back()), Mode::kFault) << run.reason;
   }
+}
+
+TEST(RunTest, AnInfiniteWeightIsAFault) {
+  PolicyFile file = random_policy_file();
+  file.parameters.actor[2].bias[3] = std::numeric_limits<float>::infinity();
+  PolicyRunner policy(Policy(file.spec, Network(file.parameters)));
+  const RunResult result = run_once(config_of("rigid", {}, policy.spec()), policy,
+                                    {.walk_s = 1.0, .start_walking = true});
+  EXPECT_EQ(result.fall_reason, "non_finite_action");
 }
 
 TEST(RunTest, InterruptLiesDownAndIsNoFall) {

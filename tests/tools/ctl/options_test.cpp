@@ -56,7 +56,7 @@ TEST(OptionsTest, BadInputIsNamedInOneLine) {
   } kCases[] = {
       {{}, "found no command, expected status, cmd, mode, drive"},
       {{"fly"}, "found 'fly', expected status, cmd, mode, drive"},
-      {{"status", "--domain", "231"}, "--domain: found 231, expected 0"},
+      {{"status", "--domain", "231"}, "--domain: found 231, expected 0 to 230"},
       {{"status", "--domain", "x"}, "--domain"},
       {{"status", "--interface", ""}, "--interface"},
       {{"status", "--cmd-vel", "pose"}, "--cmd-vel: found 'pose'"},

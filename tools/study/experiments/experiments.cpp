@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/study/experiments/experiments.h"
 
-#include <algorithm>
-
 namespace sandrunner::study {
+
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> kAll = {
       {"fairness", trained_controllers(), run_fairness},
@@ -21,13 +20,6 @@ const std::vector<Experiment>& experiments() {
       {"E8", {"oracle-h", "oracle-o"}, run_attribution},
   };
   return kAll;
-}
-
-const Experiment* find_experiment(std::string_view key) {
-  const auto& all = experiments();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Experiment& e) { return key == e.key; });
-  return found == all.end() ? nullptr : &*found;
 }
 
 }  // namespace sandrunner::study

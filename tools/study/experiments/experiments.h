@@ -3,7 +3,6 @@
 // mean is for ../page to say.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "tools/study/experiments/lab.h"
@@ -18,8 +17,6 @@ struct Experiment {
 
 /// All of them, in the order of the page. The first, "fairness", is always run.
 const std::vector<Experiment>& experiments();
-/// The one with this key; null: there is none.
-const Experiment* find_experiment(std::string_view key);
 
 /// Fairness: 1, 2 and 3 m/s on the ground on which the controller was trained.
 Measured run_fairness(Lab& lab, const Model& model);

@@ -47,8 +47,8 @@ Measurements measure(const Options& options, const std::vector<Model>& models) {
   Measurements measurements;
   prepare_folder(options.out + "/cache", "--out");
   Lab lab(options.lab);
-  for (const std::string& name : options.only) {
-    const Experiment& experiment = *find_experiment(name);
+  for (const Experiment& experiment : experiments()) {
+    if (std::ranges::find(options.only, experiment.key) == options.only.end()) continue;
     int ran = 0, kept = 0;
     for (const Model& model : models) {
       if (!takes_part(experiment, model)) continue;
@@ -62,9 +62,9 @@ Measurements measure(const Options& options, const std::vector<Model>& models) {
         measured = experiment.run(lab, model);
         write_file(path, Json{{"key", key}, {"measured", to_json(*measured)}}.dump() + "\n");
       }
-      measurements[name][model.controller->key][model.seed] = std::move(*measured);
+      measurements[experiment.key][model.controller->key][model.seed] = std::move(*measured);
     }
-    fmt::print("{}: {} models run, {} taken from an earlier run\n", name, ran, kept);
+    fmt::print("{}: {} models run, {} taken from an earlier run\n", experiment.key, ran, kept);
     std::fflush(stdout);
   }
   return measurements;
