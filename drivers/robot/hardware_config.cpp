@@ -342,30 +342,20 @@ HardwareConfig read_hardware_config(ConfigTree& config, const RobotDescription& 
 std::vector<SettingLine> hardware_settings() {
   std::vector<SettingLine> lines;
   const std::string hardware = "hardware", bus = "hardware.bus[]", drive = "hardware.drive[]";
-  list_settings(lines, hardware, kExchange);
-  list_settings(lines, hardware, std::array{drive_timeout(DriveMode::kGains)});
-  list_settings(lines, hardware, kGuards);
-  list_settings(lines, hardware, kFirstWalks);
-  list_settings(lines, bus, kInterface);
-  list_settings(lines, bus, kProtocol);
+  list_settings(lines, hardware, kExchange, std::array{drive_timeout(DriveMode::kGains)}, kGuards,
+                kFirstWalks);
+  list_settings(lines, bus, kInterface, kProtocol);
   const std::map<std::string, AnyDrive> known = families(AnyDrive{});
   for (const auto& [name, family] : known) {
     lines.back().range += (lines.back().range.empty() ? "" : ", ") + name;
   }
-  list_settings(lines, bus, kFd);
-  list_settings(lines, bus, kNominalRate);
-  list_settings(lines, bus, kDataRate);
-  list_settings(lines, drive, kDrive);
-  list_settings(lines, drive, kJoint);
+  list_settings(lines, bus, kFd, kNominalRate, kDataRate);
+  list_settings(lines, drive, kDrive, kJoint);
   for (const auto& [name, family] : known) {
     std::visit([&](const auto& d) { list_drive_settings(d, lines, drive); }, family);
   }
-  list_settings(lines, hardware + ".imu", kImu);
-  list_settings(lines, hardware + ".imu", kImuRate);
-  list_settings(lines, hardware + ".imu", kQuaternionRate);
-  list_settings(lines, hardware + ".imu", kMounting);
-  list_settings(lines, hardware + ".emergency_stop", kStopChip);
-  list_settings(lines, hardware + ".emergency_stop", kStopLine);
+  list_settings(lines, hardware + ".imu", kImu, kImuRate, kQuaternionRate, kMounting);
+  list_settings(lines, hardware + ".emergency_stop", kStopChip, kStopLine);
   return lines;
 }
 

@@ -14,7 +14,6 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
-#include <ranges>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -72,7 +71,6 @@ inline constexpr const char* kFromRobotFile = "from the robot file";
 /// One setting of a configuration table.
 template <typename Settings>
 struct Setting {
-  using Of = Settings;
   using Member =
       std::variant<double Settings::*, int Settings::*, unsigned Settings::*,
                    std::uint16_t Settings::*, std::uint64_t Settings::*, bool Settings::*,
@@ -194,54 +192,61 @@ std::string setting_text(bool value);
 std::string setting_text(const std::string& value);
 std::string range_text(double min, double max);
 
-/// Lists all rows of a table, with the defaults that `defaults` has.
-template <typename Rows, typename Settings = typename std::ranges::range_value_t<Rows>::Of>
-void list_settings(std::vector<SettingLine>& lines, const std::string& table, const Rows& rows,
-                   const Settings& defaults = {}) {
-  for (const Setting<Settings>& row : rows) {
-    SettingLine line{.key = setting_path(table, row.key),
-                     .fallback = {},
-                     .unit = unit_of(row.key),
-                     .range = range_text(row.min, row.max),
-                     .meaning = row.meaning};
-    const auto describe = [&]<typename Member>(const Member& member) {
-      if constexpr (std::is_same_v<Member, WordSetting<Settings>>) {
-        line.fallback = member.words[static_cast<std::size_t>(member.get(defaults))];
+/// The line of a row, with the default that default-constructed settings have.
+template <typename Settings>
+SettingLine setting_line(const std::string& table, const Setting<Settings>& row) {
+  const Settings defaults{};
+  SettingLine line{.key = setting_path(table, row.key),
+                   .fallback = {},
+                   .unit = unit_of(row.key),
+                   .range = range_text(row.min, row.max),
+                   .meaning = row.meaning};
+  const auto describe = [&]<typename Member>(const Member& member) {
+    if constexpr (std::is_same_v<Member, WordSetting<Settings>>) {
+      line.fallback = member.words[static_cast<std::size_t>(member.get(defaults))];
+      line.unit.clear();
+      line.range.clear();
+      for (const char* const word : member.words) {
+        line.range += (line.range.empty() ? "" : ", ") + std::string(word);
+      }
+    } else if constexpr (std::is_same_v<Member, DegreesSetting<Settings>>) {
+      line.fallback = setting_text(degrees_of(defaults.*member.member));
+    } else if constexpr (kFewOf<Member> > 0) {
+      line.fallback = setting_text((defaults.*member.member)[0]);
+    } else {
+      const auto& value = defaults.*member;
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if constexpr (std::is_same_v<Value, bool>) {
+        line.unit.clear();
+        line.range = "true, false";
+        line.fallback = setting_text(value);
+      } else if constexpr (std::is_same_v<Value, std::string>) {
         line.unit.clear();
         line.range.clear();
-        for (const char* const word : member.words) {
-          line.range += (line.range.empty() ? "" : ", ") + std::string(word);
-        }
-      } else if constexpr (std::is_same_v<Member, DegreesSetting<Settings>>) {
-        line.fallback = setting_text(degrees_of(defaults.*member.member));
-      } else if constexpr (kFewOf<Member> > 0) {
-        line.fallback = setting_text((defaults.*member.member)[0]);
+        line.fallback = setting_text(value);
+      } else if constexpr (std::is_arithmetic_v<Value>) {
+        line.fallback = setting_text(static_cast<double>(value));
       } else {
-        const auto& value = defaults.*member;
-        using Value = std::remove_cvref_t<decltype(value)>;
-        if constexpr (std::is_same_v<Value, bool>) {
-          line.unit.clear();
-          line.range = "true, false";
-          line.fallback = setting_text(value);
-        } else if constexpr (std::is_same_v<Value, std::string>) {
-          line.unit.clear();
-          line.range.clear();
-          line.fallback = setting_text(value);
-        } else if constexpr (std::is_arithmetic_v<Value>) {
-          line.fallback = setting_text(static_cast<double>(value));
-        } else {
-          for (const double number : value) {
-            line.fallback += (line.fallback.empty() ? "[" : ", ") + setting_text(number);
-          }
-          line.fallback += "]";
+        for (const double number : value) {
+          line.fallback += (line.fallback.empty() ? "[" : ", ") + setting_text(number);
         }
+        line.fallback += "]";
       }
-    };
-    std::visit(describe, row.member);
-    if (row.fallback != nullptr) line.fallback = row.fallback;
-    if (row.range != nullptr) line.range = row.range;
-    lines.push_back(std::move(line));
-  }
+    }
+  };
+  std::visit(describe, row.member);
+  if (row.fallback != nullptr) line.fallback = row.fallback;
+  if (row.range != nullptr) line.range = row.range;
+  return line;
+}
+
+/// Lists all rows of a table, whose settings may be of several structs.
+template <typename... Rows>
+void list_settings(std::vector<SettingLine>& lines, const std::string& table, const Rows&... rows) {
+  const auto list = [&](const auto& of_struct) {
+    for (const auto& row : of_struct) lines.push_back(setting_line(table, row));
+  };
+  (list(rows), ...);
 }
 
 }  // namespace sandrunner

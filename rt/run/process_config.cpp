@@ -317,10 +317,8 @@ std::vector<SettingLine> process_settings() {
   list_settings(lines, "controller.walk", walk_settings(in_words));
   list_settings(lines, "controller.stand", stand_settings(in_words));
   list_settings(lines, "controller.damping", damping_settings(in_words));
-  list_settings(lines, "controller.shaping", kEnvelope);
-  list_settings(lines, "controller.shaping", kShaping);
-  list_settings(lines, "controller.gate", kLowered);
-  list_settings(lines, "controller.gate", gate_settings(in_words));
+  list_settings(lines, "controller.shaping", kEnvelope, kShaping);
+  list_settings(lines, "controller.gate", kLowered, gate_settings(in_words));
   list_settings(lines, "view", kView);
   list_settings(lines, "recording", kRecording);
   list_settings(lines, "summary", kSummary);

@@ -57,26 +57,29 @@ Batch::Batch(int robots, const FootProfile<double>& foot, const StepSettings& se
   }
 }
 
+std::byte* Batch::lane(int robot, std::size_t offset) const noexcept {
+  return memory_.get() + static_cast<std::size_t>(robot / width()) * kernel_.pack_bytes +
+         offset * static_cast<std::size_t>(width()) +
+         static_cast<std::size_t>(robot % width()) * sizeof(float);
+}
+
 void Batch::copy_in(int robot, std::size_t offset, const void* values, std::size_t bytes) noexcept {
   const auto lanes = static_cast<std::size_t>(width());
-  std::byte* to = memory_.get() + static_cast<std::size_t>(robot / width()) * kernel_.pack_bytes +
-                  offset * lanes + static_cast<std::size_t>(robot % width()) * sizeof(float);
-  const auto* from = static_cast<const std::byte*>(values);
+  std::byte* const to = lane(robot, offset);
   for (std::size_t at = 0; at < bytes; at += sizeof(float)) {
-    std::memcpy(to + at * lanes, from + at, sizeof(float));
+    std::memcpy(to + at * lanes, static_cast<const std::byte*>(values) + at, sizeof(float));
   }
 }
 
-void Batch::copy_out(int robot, std::size_t offset, void* values,
-                     std::size_t bytes) const noexcept {
+template <typename Value>
+Value Batch::copy_out(int robot, std::size_t offset, std::size_t bytes) const noexcept {
   const auto lanes = static_cast<std::size_t>(width());
-  const std::byte* from =
-      memory_.get() + static_cast<std::size_t>(robot / width()) * kernel_.pack_bytes +
-      offset * lanes + static_cast<std::size_t>(robot % width()) * sizeof(float);
-  auto* to = static_cast<std::byte*>(values);
+  const std::byte* const from = lane(robot, offset);
+  Value v;
   for (std::size_t at = 0; at < bytes; at += sizeof(float)) {
-    std::memcpy(to + at, from + at * lanes, sizeof(float));
+    std::memcpy(reinterpret_cast<std::byte*>(&v) + at, from + at * lanes, sizeof(float));
   }
+  return v;
 }
 
 void Batch::set_model(int robot, const RobotModel<float>& v) noexcept {
@@ -107,24 +110,16 @@ void Batch::set_robot(int robot, const BatchRobot<float>& v) noexcept {
   copy_in(robot, 0, &v, sizeof(v));
 }
 BatchRobot<float> Batch::robot(int robot) const noexcept {
-  BatchRobot<float> v;
-  copy_out(robot, 0, &v, sizeof(v));
-  return v;
+  return copy_out<BatchRobot<float>>(robot, 0);
 }
 RobotState<float> Batch::state(int robot) const noexcept {
-  RobotState<float> v;
-  copy_out(robot, offset_of(&BatchRobot<float>::state), &v, state_bytes());
-  return v;
+  return copy_out<RobotState<float>>(robot, offset_of(&BatchRobot<float>::state), state_bytes());
 }
 BatchSums<float> Batch::sums(int robot) const noexcept {
-  BatchSums<float> v;
-  copy_out(robot, offset_of(&BatchRobot<float>::sums), &v, sizeof(v));
-  return v;
+  return copy_out<BatchSums<float>>(robot, offset_of(&BatchRobot<float>::sums));
 }
 BatchReport<float> Batch::report(int robot) const noexcept {
-  BatchReport<float> v;
-  copy_out(robot, offset_of(&BatchRobot<float>::report), &v, sizeof(v));
-  return v;
+  return copy_out<BatchReport<float>>(robot, offset_of(&BatchRobot<float>::report));
 }
 
 void Batch::advance(int pack, int ticks) noexcept {

@@ -129,8 +129,11 @@ class Batch {
   std::size_t state_bytes() const noexcept;
   template <typename Pointer>
   void put(Pointer pointer, int robot, std::vector<Pointer>& of_lanes) const;
+  // Where a robot's number at `offset` of a BatchRobot is; the next is `width()` floats behind it.
+  std::byte* lane(int robot, std::size_t offset) const noexcept;
   void copy_in(int robot, std::size_t offset, const void* values, std::size_t bytes) noexcept;
-  void copy_out(int robot, std::size_t offset, void* values, std::size_t bytes) const noexcept;
+  template <typename Value>
+  Value copy_out(int robot, std::size_t offset, std::size_t bytes = sizeof(Value)) const noexcept;
 
   int robots_;
   FootProfile<double> foot_;

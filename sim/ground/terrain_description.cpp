@@ -98,9 +98,7 @@ TerrainDescription terrain_preset(const std::string& name) {
 
 std::vector<SettingLine> terrain_settings() {
   std::vector<SettingLine> lines;
-  list_settings(lines, "terrain", kTerrain);
-  list_settings(lines, "terrain", ShapeParameters::kSettings);
-  list_settings(lines, "terrain", kGround);
+  list_settings(lines, "terrain", kTerrain, ShapeParameters::kSettings, kGround);
   Laws::for_each([&]<template <typename> typename Law>(int) {
     list_settings(lines, "terrain", Law<double>::Parameters::kSettings);
   });

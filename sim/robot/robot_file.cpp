@@ -231,16 +231,11 @@ std::vector<SettingLine> robot_file_settings() {
   list_settings(lines, "legs", kLegs);
   list_settings(lines, "joints", kJoints);
   list_settings(lines, "links", kLinks);
-  list_settings(lines, "collision", kCollision);
-  list_settings(lines, "collision", kShapes);
-  list_settings(lines, "pose", kPose);
-  list_settings(lines, "pose", kHeight);
-  list_settings(lines, "gains", kGains);
-  list_settings(lines, "gains", std::array{damping(0.0)});
+  list_settings(lines, "collision", kCollision, kShapes);
+  list_settings(lines, "pose", kPose, kHeight);
+  list_settings(lines, "gains", kGains, std::array{damping(0.0)});
   list_settings(lines, "limits", kLimits);
-  list_settings(lines, "motor", kMotor);
-  list_settings(lines, "motor", kLine);
-  list_settings(lines, "motor", kConstant);
+  list_settings(lines, "motor", kMotor, kLine, kConstant);
   return lines;
 }
 

@@ -11,6 +11,19 @@ namespace {
 constexpr std::string_view kPasteBegins = "\x1b[200~", kPasteEnds = "\x1b[201~";
 constexpr std::size_t kLongestSequence = 32;  // what is longer is none
 
+// At scale 1; null: this is no steering key.
+const VelocityCommand* steered_by(char key) {
+  static constexpr std::pair<char, VelocityCommand> kKeys[] = {
+      {'w', {.vx_mps = kFullSpeed.vx_mps}},     {'s', {.vx_mps = -kFullSpeed.vx_mps}},
+      {'a', {.vy_mps = kFullSpeed.vy_mps}},     {'d', {.vy_mps = -kFullSpeed.vy_mps}},
+      {'q', {.wz_radps = kFullSpeed.wz_radps}}, {'e', {.wz_radps = -kFullSpeed.wz_radps}},
+  };
+  for (const auto& [of, velocity] : kKeys) {
+    if (of == key) return &velocity;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<char> KeyReader::keys(std::string_view bytes) {
@@ -43,34 +56,22 @@ std::vector<char> KeyReader::keys(std::string_view bytes) {
 }
 
 KeyAction KeyDriver::press(char key, std::int64_t now_ns) {
-  switch (key) {
-    case 'w':
-    case 's':
-    case 'a':
-    case 'd':
-    case 'q':
-    case 'e':
-      key_ = key;
-      last_ns_ = now_ns;
-      return {};
-    case '+':
-    case '=':
-      rescale(scale_tenths_ + 1, now_ns);
-      return {};
-    case '-':
-      rescale(scale_tenths_ - 1, now_ns);
-      return {};
-    case kKeyEscape:
-    case kKeyCtrlC:
-      key_ = '\0';
-      return {.quits = true};
-    default:
-      break;
-  }
-  for (const RequestRow& row : kRequestTable) {
-    if (row.key == '\0' || row.key != key) continue;
-    key_ = '\0';
-    return {.request = &row};
+  if (const VelocityCommand* const steered = steered_by(key)) {
+    steered_ = steered;
+    last_ns_ = now_ns;
+  } else if (key == '+' || key == '=') {
+    rescale(scale_tenths_ + 1, now_ns);
+  } else if (key == '-') {
+    rescale(scale_tenths_ - 1, now_ns);
+  } else if (key == kKeyEscape || key == kKeyCtrlC) {
+    steered_ = nullptr;
+    return {.quits = true};
+  } else {
+    for (const RequestRow& row : kRequestTable) {
+      if (row.key == '\0' || row.key != key) continue;
+      steered_ = nullptr;
+      return {.request = &row};
+    }
   }
   return {};
 }
@@ -82,25 +83,10 @@ void KeyDriver::rescale(int tenths, std::int64_t now_ns) {
 }
 
 std::optional<VelocityCommand> KeyDriver::command(std::int64_t now_ns) const {
-  if (key_ == '\0' || now_ns - last_ns_ >= kHold_ns) return std::nullopt;
+  if (!steered_ || now_ns - last_ns_ >= kHold_ns) return std::nullopt;
   const double scale = 0.1 * scale_tenths_;
-  const double vx_mps = scale * kFullSpeed.vx_mps;
-  const double vy_mps = scale * kFullSpeed.vy_mps;
-  const double wz_radps = scale * kFullSpeed.wz_radps;
-  switch (key_) {
-    case 'w':
-      return VelocityCommand{.vx_mps = vx_mps};
-    case 's':
-      return VelocityCommand{.vx_mps = -vx_mps};
-    case 'a':
-      return VelocityCommand{.vy_mps = vy_mps};
-    case 'd':
-      return VelocityCommand{.vy_mps = -vy_mps};
-    case 'q':
-      return VelocityCommand{.wz_radps = wz_radps};
-    default:
-      return VelocityCommand{.wz_radps = -wz_radps};
-  }
+  return VelocityCommand{scale * steered_->vx_mps, scale * steered_->vy_mps,
+                         scale * steered_->wz_radps};
 }
 
 }  // namespace sandrunner::ctl

@@ -58,7 +58,7 @@ class KeyDriver {
   void rescale(int tenths, std::int64_t now_ns);
 
   int scale_tenths_ = 5;
-  char key_ = '\0';  // the last steering key; '\0': none
+  const VelocityCommand* steered_ = nullptr;  // by the last steering key, at scale 1; null: none
   std::int64_t last_ns_ = 0;
 };
 

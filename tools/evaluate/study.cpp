@@ -4,30 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "sim/lanes/lanes.h"
 #include "sim/simulator.h"
 
 namespace sandrunner::evaluate {
-namespace {
-
-sim::RigidState<float> in_float(const sim::RigidState<double>& from) {
-  const auto number = [](double v) { return static_cast<float>(v); };
-  const auto vec = [&](const sim::Vec3<double>& v) {
-    return sim::Vec3<float>{number(v.x), number(v.y), number(v.z)};
-  };
-  sim::RigidState<float> to;
-  to.position = vec(from.position);
-  to.velocity = vec(from.velocity);
-  to.angular_velocity = vec(from.angular_velocity);
-  to.orientation = {number(from.orientation.w), number(from.orientation.x),
-                    number(from.orientation.y), number(from.orientation.z)};
-  for (int j = 0; j < kNumJoints; ++j) {
-    to.q[j] = number(from.q[j]);
-    to.qd[j] = number(from.qd[j]);
-  }
-  return to;
-}
-
-}  // namespace
 
 Study::Study(const StudySettings& settings, const sim::Robot& robot)
     : settings_(settings),
@@ -44,7 +24,7 @@ const sim::RobotState<float>& Study::start_on(const sim::TerrainDescription& ter
   config.terrain = terrain;
   config.seed = run == 0 ? 0 : run_seed(run);
   sim::RobotState<float> start;
-  start.rigid = in_float(sim::Simulator(robot_, config).state().robot.rigid);
+  start.rigid = sim::converted<float>(sim::Simulator(robot_, config).state().robot.rigid);
   return starts_.emplace_back(start);
 }
 

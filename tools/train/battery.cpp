@@ -193,11 +193,8 @@ void Battery::run_block(int block, int worker) {
     for (int env = first; env < first + kBlock; ++env) {
       const bool steady = 2 * step >= steps_;
       add_step(env, command[static_cast<std::size_t>(env - first)], steady);
-      rollout_.reset(0, env) = rollout_.reset(1, env);
     }
-    rollout_.observation(0).middleCols(first, kBlock) =
-        rollout_.observation(1).middleCols(first, kBlock);
-    rollout_.insight(0).middleCols(first, kBlock) = rollout_.insight(1).middleCols(first, kBlock);
+    rollout_.begin_next(first, kBlock);
   }
 }
 

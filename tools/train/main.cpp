@@ -49,7 +49,8 @@ void print_end(const Training& training, const std::string& out, const std::stri
 // The battery of these settings, with the networks of a file.
 void judge(const TrainConfig& config, const sim::Robot& robot, const std::string& file,
            int threads) {
-  const TaskNetwork network = read_task_network(file, config.task.policy.mode_gain);
+  const TaskNetwork network =
+      make_task_network(read_policy_file(file), config.task.policy.mode_gain);
   require_joints(network.spec, robot.description);
   WorkerPool pool(threads);
   Battery battery(config.battery, config.task, config.learner.block_envs, robot, network.layout,

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "rt/base/errors.h"
@@ -15,6 +14,7 @@ namespace {
 
 using R = RunSettings;
 constexpr Setting<R> kRun[] = {
+    {"envs", &R::envs, 1, 1 << 20},
     {"transitions", &R::transitions, 1.0, 1e13},
     {"checkpoint_interval_s", &R::checkpoint_interval_s, 0.0, 1e6},
     {"settle_share", &R::settle_share, 0.0, 1.0},
@@ -25,6 +25,8 @@ constexpr Setting<R> kRun[] = {
 
 using B = BatterySettings;
 constexpr Setting<B> kBattery[] = {
+    {"every_updates", &B::every_updates, 0, 1 << 20},
+    {"runs", &B::runs, 1, 1000},
     {"duration_s", &B::duration_s, 1.0, 60.0},
     {"softest_flat_npm3", &B::softest_flat_npm3, 1.0, 1e10},
     {"softest_cone_npm3", &B::softest_cone_npm3, 1.0, 1e10},
@@ -36,6 +38,7 @@ constexpr Setting<B> kBattery[] = {
 
 using G = GateSettings;
 constexpr Setting<G> kGate[] = {
+    {"enabled", &G::enabled, ""},
     {"least_alive", &G::least_alive, 0.0, 1.0},
     {"rise_transitions", &G::rise_transitions, 1.0, 1e13},
     {"back_rate", &G::back_rate, 0.0, 100.0},
@@ -43,6 +46,11 @@ constexpr Setting<G> kGate[] = {
 
 using L = learner::LearnerConfig;
 constexpr Setting<L> kLearner[] = {
+    {"block_envs", &L::block_envs, 1, 1 << 16},
+    {"minibatches", &L::minibatches, 1, 1024},
+    {"epochs", &L::epochs, 1, 100},
+    {"symmetry_steps", &L::symmetry_steps, 1, 10000},
+    {"average_updates", &L::average_updates, 1, 1 << 20},
     {"gamma", &L::gamma, 0.0, 0.999999},
     {"lambda", &L::lambda, 0.0, 1.0},
     {"kl_target", &L::kl_target, 1e-6, 10.0},
@@ -59,6 +67,8 @@ constexpr Setting<learner::LossConfig> kLoss[] = {
     {"symmetry_weight", &learner::LossConfig::symmetry_weight, 0.0, 1e3},
 };
 
+constexpr Setting<TrainConfig> kWindow[] = {{"window", &TrainConfig::window, 1, 4096}};
+
 std::vector<int> read_widths(ConfigTree& config, const std::string& key) {
   require_key(config, key);
   std::vector<int> widths;
@@ -73,30 +83,19 @@ std::vector<int> read_widths(ConfigTree& config, const std::string& key) {
 
 learner::LearnerConfig read_learner_config(ConfigTree& config) {
   learner::LearnerConfig l;
-  l.block_envs = read_integer(config, "learner.block_envs", 1, 1 << 16);
-  l.minibatches = read_integer(config, "learner.minibatches", 1, 1024);
-  l.epochs = read_integer(config, "learner.epochs", 1, 100);
-  l.symmetry_steps = read_integer(config, "learner.symmetry_steps", 1, 10000);
-  l.average_updates = read_integer(config, "learner.average_updates", 1, 1 << 20);
-  read_numbers(config, "learner", kLearner, l);
+  read_required(config, "learner", kLearner, l);
   l.network.critic = read_widths(config, "learner.critic");
-  read_numbers(config, "learner", kLoss, l.loss);
+  read_required(config, "learner", kLoss, l.loss);
   return l;
 }
 
 void read_battery(ConfigTree& config, BatterySettings& battery) {
-  battery.every_updates = read_integer(config, "battery.every_updates", 0, 1 << 20);
-  battery.runs = read_integer(config, "battery.runs", 1, 1000);
-  read_numbers(config, "battery", kBattery, battery);
-  require_key(config, "battery.forward_share");
-  std::ranges::copy(config.numbers("battery.forward_share", {}, kForwardSpeeds, 0.01, 1.0),
-                    battery.forward_share.begin());
+  read_required(config, "battery", kBattery, battery);
+  read_array(config, "battery.forward_share", 0.01, 1.0, battery.forward_share);
 }
 
 void read_gate(ConfigTree& config, const BatterySettings& battery, GateSettings& gate) {
-  require_key(config, "gate.enabled");
-  gate.enabled = config.flag("gate.enabled", true);
-  read_numbers(config, "gate", kGate, gate);
+  read_required(config, "gate", kGate, gate);
   if (gate.enabled && battery.every_updates == 0) {
     throw InputError(
         "training config: battery.every_updates = 0, expected at least 1, or gate.enabled = false");
@@ -143,11 +142,10 @@ void check_blocks(const TrainConfig& c) {
 
 TrainConfig read_train_config(ConfigTree& config) {
   TrainConfig c;
-  c.run.envs = read_integer(config, "run.envs", 1, 1 << 20);
-  read_numbers(config, "run", kRun, c.run);
+  read_required(config, "run", kRun, c.run);
   read_battery(config, c.battery);
   read_gate(config, c.battery, c.gate);
-  c.window = read_integer(config, "learner.window", 1, 4096);
+  read_required(config, "learner", kWindow, c);
   c.learner = read_learner_config(config);
   c.task = read_task_config(config);
   read_wiring(config, c);

@@ -26,7 +26,8 @@ void Training::go_on_from(PolicyFile policy) {
 
 // The policy imitates the networks of this file.
 void Training::imitate(const std::string& teacher_file) {
-  const TaskNetwork teacher = read_task_network(teacher_file, config_.task.policy.mode_gain);
+  const TaskNetwork teacher =
+      make_task_network(read_policy_file(teacher_file), config_.task.policy.mode_gain);
   require_scales(teacher.spec, teacher.scales, config_.task.policy, task_.scales());
   learner_.set_teacher(teacher.layout, teacher.parameters);
   origin_ = fmt::format("sandrunner-train, imitating '{}' of {} transitions", teacher.spec.name,

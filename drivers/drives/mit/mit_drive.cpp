@@ -106,10 +106,7 @@ void read_drive(MitDrive& drive, ConfigTree& t, const std::string& where) {
 
 void list_drive_settings(const MitDrive&, std::vector<SettingLine>& lines,
                          const std::string& table) {
-  list_settings(lines, table, kModel);
-  list_settings(lines, table, kReply);
-  list_settings(lines, table, kRanges);
-  list_settings(lines, table, kReplyRange);
+  list_settings(lines, table, kModel, kReply, kRanges, kReplyRange);
 }
 
 int drive_id(const MitDrive& drive) noexcept { return drive.motor_id; }

@@ -52,7 +52,8 @@ FileName read_name(const std::filesystem::path& path) {
 
 Model load_model(const FileName& name, const train::PolicySettings& task, const sim::Robot& robot) {
   const std::string bytes = read_input_file(name.path, "a policy file");
-  train::TaskNetwork network = train::read_task_network(name.path, task.mode_gain);
+  train::TaskNetwork network =
+      train::make_task_network(parse_policy_file(bytes, name.path), task.mode_gain);
   const learner::NetworkSizes& sizes = network.layout.sizes();
   const std::string wiring = wiring_text(sizes.wiring);
   if (wiring != name.controller->wiring) {
@@ -121,7 +122,8 @@ Model load_published(const std::string& path, const sim::Robot& robot) {
   require_joints(policy.spec(), robot.description);
   const train::PolicySettings task = train::shipped_task_config(robot).policy;
   return {find_controller("published"), 0, hash_of(bytes),
-          train::read_task_network(path, task.mode_gain), std::move(policy)};
+          train::make_task_network(parse_policy_file(bytes, path), task.mode_gain),
+          std::move(policy)};
 }
 
 }  // namespace sandrunner::study

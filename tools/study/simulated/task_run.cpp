@@ -40,13 +40,7 @@ void run_on_task(const train::TaskNetwork& network, const TaskRun& run, const si
                   memory.middleCols(first, envs), rollout.action(0).middleCols(first, envs));
       task.step(block, 0, rollout);
       observe({step, first, envs, rollout, pass.actor_input(), pass.encoding(), details, task});
-      for (int env = first; env < first + envs; ++env)
-        rollout.reset(0, env) = rollout.reset(1, env);
-      rollout.observation(0).middleCols(first, envs) =
-          rollout.observation(1).middleCols(first, envs);
-      rollout.insight(0).middleCols(first, envs) = rollout.insight(1).middleCols(first, envs);
-      rollout.estimate_target(0).middleCols(first, envs) =
-          rollout.estimate_target(1).middleCols(first, envs);
+      rollout.begin_next(first, envs);
     }
   };
   pool.run(run.envs / run.block_envs, run_block);

@@ -133,6 +133,17 @@ struct BasicRollout {
   ValueField<Scalar> advantage;
   ValueField<Scalar> value_target;
 
+  /// The state after the window of these environments becomes that before the next one.
+  void begin_next(int first_env, int envs) {
+    const auto carry = [&](auto&... fields) {
+      ((fields(0).middleCols(first_env, envs) = fields(shape.steps).middleCols(first_env, envs)),
+       ...);
+    };
+    carry(observation, privileged, estimate_target, insight);
+    for (int env = first_env; env < first_env + envs; ++env)
+      reset(0, env) = reset(shape.steps, env);
+  }
+
   /// Calls visit(bytes of a field, its steps) for each field that an update needs of a window that
   /// has been valued, or that the next window begins with.
   template <typename Visit>

@@ -379,14 +379,7 @@ UpdateStats Learner::update() {
   stats.encoding_rms = std::sqrt(stats.encoding_rms / done);
   stats.learning_rate = counters_.learning_rate;
 
-  const int last = rollout_.shape.steps;
-  rollout_.observation(0) = rollout_.observation(last);
-  rollout_.privileged(0) = rollout_.privileged(last);
-  rollout_.estimate_target(0) = rollout_.estimate_target(last);
-  rollout_.insight(0) = rollout_.insight(last);
-  for (int env = 0; env < rollout_.shape.envs; ++env) {
-    rollout_.reset(0, env) = rollout_.reset(last, env);
-  }
+  rollout_.begin_next(0, rollout_.shape.envs);
   ++counters_.updates;
   // Equal weights at first, so that the random start is soon forgotten.
   const auto share = static_cast<float>(
@@ -394,7 +387,7 @@ UpdateStats Learner::update() {
   for (std::size_t i = 0; i < averaged_.size(); ++i) {
     averaged_[i] += share * (parameters_[i] - averaged_[i]);
   }
-  counters_.steps += static_cast<std::uint64_t>(last);
+  counters_.steps += static_cast<std::uint64_t>(rollout_.shape.steps);
   begin_window();
   stats.action_std = std::exp(static_cast<double>(rollout_.log_std.mean()));
   return stats;

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "policy/policy_file.h"
 #include "rt/base/errors.h"
 #include "tools/train/task/leg_modes.h"
 
@@ -25,9 +24,7 @@ learner::ParameterLayout model_layout(const Wiring& wiring) {
   return {sizes, 1};
 }
 
-TaskNetwork read_task_network(const std::string& path,
-                              const std::array<double, kNumLegs>& mode_gain) {
-  PolicyFile file = read_policy_file(path);
+TaskNetwork make_task_network(PolicyFile file, const std::array<double, kNumLegs>& mode_gain) {
   answer_in_modes(mode_gain, file.parameters);
   TaskNetwork network{
       std::move(file.spec), scales_of(file.parameters), model_layout(file.parameters.wiring), {}};

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
-#include "policy/policy.h"
+#include "policy/policy_file.h"
 #include "tools/train/learner/parameters.h"
 #include "tools/train/task/normalise.h"
 #include "tools/train/task/task_config.h"
@@ -32,9 +31,8 @@ struct TaskNetwork {
   std::vector<float> parameters;
 };
 
-/// Of a policy file. Throws InputError. `mode_gain`: of the Task (leg_modes.h).
-TaskNetwork read_task_network(const std::string& path,
-                              const std::array<double, kNumLegs>& mode_gain);
+/// `mode_gain`: of the Task (leg_modes.h).
+TaskNetwork make_task_network(PolicyFile file, const std::array<double, kNumLegs>& mode_gain);
 
 /// Throws InputError unless weights of `network`, of a policy with this spec, mean in a Task with
 /// these settings and scales what they mean in their own. Nominal positions may differ: angles are

@@ -63,6 +63,8 @@ constexpr Setting<C> kCommand[] = {
 
 using G = GroundSettings;
 constexpr Setting<G> kGround[] = {
+    {"rigid_envs", &G::rigid_envs, 0, 1 << 16},
+    {"patchy_envs", &G::patchy_envs, 0, 1 << 16},
     {"patch_length_low_m", &G::patch_length_low_m, 0.01, 1e3},
     {"patch_length_high_m", &G::patch_length_high_m, 0.01, 1e3},
     {"patch_rigid_share", &G::patch_rigid_share, 0.0, 1.0},
@@ -120,6 +122,9 @@ constexpr Setting<R> kRobot[] = {
     {"friction_spread", &R::friction_spread, 0.0, 1.0},
     {"rotor_inertia_low", &R::rotor_inertia_low, 0.1, 10.0},
     {"rotor_inertia_high", &R::rotor_inertia_high, 0.1, 10.0},
+    {"base_com_m", &R::base_com_m, 0.0, 1.0},
+    {"latency_s", &R::latency_s, 0.0, 2.0 / kPolicyHz},
+    {"torque_speed_line", &R::torque_speed_line, ""},
 };
 
 using N = NoiseSettings;
@@ -132,73 +137,48 @@ constexpr Setting<N> kNoise[] = {
     {"level_high", &N::level_high, 0.0, 10.0},
 };
 
-template <std::size_t kSize>
-void read_array(ConfigTree& config, const std::string& key, double min, double max,
-                std::array<double, kSize>& values) {
-  require_key(config, key);
-  std::ranges::copy(config.numbers(key, {}, kSize, min, max), values.begin());
-}
-
 GroundSettings read_ground_settings(ConfigTree& config) {
   GroundSettings g;
-  g.rigid_envs = read_integer(config, "ground.rigid_envs", 0, 1 << 16);
-  g.patchy_envs = read_integer(config, "ground.patchy_envs", 0, 1 << 16);
-  read_numbers(config, "ground", kGround, g);
-  require_order("ground.sigma_flat_low", g.sigma_flat_low, "ground.sigma_flat_low_start",
-                g.sigma_flat_low_start);
-  require_order("ground.sigma_flat_low_start", g.sigma_flat_low_start, "ground.sigma_flat_high",
-                g.sigma_flat_high);
-  require_order("ground.sigma_cone_low", g.sigma_cone_low, "ground.sigma_cone_low_start",
-                g.sigma_cone_low_start);
-  require_order("ground.sigma_cone_low_start", g.sigma_cone_low_start, "ground.sigma_cone_high",
-                g.sigma_cone_high);
-  require_order("ground.patch_length_low_m", g.patch_length_low_m, "ground.patch_length_high_m",
-                g.patch_length_high_m);
-  require_order("ground.friction_low", g.friction_low, "ground.friction_high", g.friction_high);
-  require_order("ground.inertial_low", g.inertial_low, "ground.inertial_high", g.inertial_high);
-  require_order("ground.stroke_stiffness_low", g.stroke_stiffness_low,
-                "ground.stroke_stiffness_high", g.stroke_stiffness_high);
-  require_order("ground.stroke_damping_low", g.stroke_damping_low, "ground.stroke_damping_high",
-                g.stroke_damping_high);
+  read_required(config, "ground", kGround, g);
+  require_order(config, "ground.sigma_flat_low", "ground.sigma_flat_low_start");
+  require_order(config, "ground.sigma_flat_low_start", "ground.sigma_flat_high");
+  require_order(config, "ground.sigma_cone_low", "ground.sigma_cone_low_start");
+  require_order(config, "ground.sigma_cone_low_start", "ground.sigma_cone_high");
+  require_order(config, "ground.patch_length_low_m", "ground.patch_length_high_m");
+  require_order(config, "ground.friction_low", "ground.friction_high");
+  require_order(config, "ground.inertial_low", "ground.inertial_high");
+  require_order(config, "ground.stroke_stiffness_low", "ground.stroke_stiffness_high");
+  require_order(config, "ground.stroke_damping_low", "ground.stroke_damping_high");
   require_key(config, "ground.yielding");
   const std::string granular = sim::kind_name(sim::GroundKind::kGranular);
   const std::string linear = sim::kind_name(sim::GroundKind::kLinear);
   const bool springs = config.choice("ground.yielding", granular, {granular, linear}) == linear;
   g.yielding = springs ? sim::GroundKind::kLinear : sim::GroundKind::kGranular;
-  require_order("ground.spring_low", g.spring_low, "ground.spring_low_start", g.spring_low_start);
-  require_order("ground.spring_low_start", g.spring_low_start, "ground.spring_high", g.spring_high);
-  require_order("ground.spring_damping_ratio_low", g.spring_damping_ratio_low,
-                "ground.spring_damping_ratio_high", g.spring_damping_ratio_high);
-  require_order("ground.layer_depth_low_m", g.layer_depth_low_m, "ground.layer_depth_high_m",
-                g.layer_depth_high_m);
-  require_order("ground.mud_strength_low_pa", g.mud_strength_low_pa, "ground.mud_strength_high_pa",
-                g.mud_strength_high_pa);
+  require_order(config, "ground.spring_low", "ground.spring_low_start");
+  require_order(config, "ground.spring_low_start", "ground.spring_high");
+  require_order(config, "ground.spring_damping_ratio_low", "ground.spring_damping_ratio_high");
+  require_order(config, "ground.layer_depth_low_m", "ground.layer_depth_high_m");
+  require_order(config, "ground.mud_strength_low_pa", "ground.mud_strength_high_pa");
   return g;
 }
 
 RobotSettings read_robot_settings(ConfigTree& config) {
   RobotSettings r;
-  read_numbers(config, "robot", kRobot, r);
-  read_array(config, "robot.base_com_m", 0.0, 1.0, r.base_com_m);
-  read_array(config, "robot.latency_s", 0.0, 2.0 / kPolicyHz, r.latency_s);
-  require_order("robot.rotor_inertia_low", r.rotor_inertia_low, "robot.rotor_inertia_high",
-                r.rotor_inertia_high);
-  require_key(config, "robot.torque_speed_line");
-  r.torque_speed_line = config.flag("robot.torque_speed_line", true);
+  read_required(config, "robot", kRobot, r);
+  require_order(config, "robot.rotor_inertia_low", "robot.rotor_inertia_high");
   return r;
 }
 
 RewardSettings read_reward_settings(ConfigTree& config) {
   RewardSettings r;
-  read_numbers(config, "reward", RewardSettings::kSettings, r);
-  read_numbers(config, "penalty", PenaltySettings::kSettings, r.penalty);
+  read_required(config, "reward", RewardSettings::kSettings, r);
+  read_required(config, "penalty", PenaltySettings::kSettings, r.penalty);
   r.for_each_term([&]<typename Term>(const std::string& table, Term& term) {
     const char* name = Term::kName;
     if constexpr (requires { Term::kTable; }) name = Term::kTable;
-    read_numbers(config, table + "." + name, Term::kSettings, term);
+    read_required(config, table + "." + name, Term::kSettings, term);
   });
-  require_order("reward.prior_start_transitions", r.prior_start_transitions,
-                "reward.prior_end_transitions", r.prior_end_transitions);
+  require_order(config, "reward.prior_start_transitions", "reward.prior_end_transitions");
   return r;
 }
 
@@ -206,12 +186,11 @@ RewardSettings read_reward_settings(ConfigTree& config) {
 
 TaskConfig read_task_config(ConfigTree& config) {
   TaskConfig c;
-  read_numbers(config, "policy", kPolicy, c.policy);
+  read_required(config, "policy", kPolicy, c.policy);
   read_array(config, "policy.mode_gain", 0.01, 100.0, c.policy.mode_gain);
-  read_numbers(config, "episode", kEpisode, c.episode);
-  read_numbers(config, "command", kCommand, c.command);
-  require_order("command.speed_start_mps", c.command.speed_start_mps, "command.speed_max_mps",
-                c.command.speed_max_mps);
+  read_required(config, "episode", kEpisode, c.episode);
+  read_required(config, "command", kCommand, c.command);
+  require_order(config, "command.speed_start_mps", "command.speed_max_mps");
   if (const double shares = c.command.zero_share + c.command.in_place_share; shares > 1.0) {
     throw InputError(fmt::format(
         "training config: command.zero_share + command.in_place_share = {}, expected at most 1",
@@ -219,7 +198,7 @@ TaskConfig read_task_config(ConfigTree& config) {
   }
   c.ground = read_ground_settings(config);
   c.robot = read_robot_settings(config);
-  read_numbers(config, "noise", kNoise, c.noise);
+  read_required(config, "noise", kNoise, c.noise);
   c.reward = read_reward_settings(config);
   return c;
 }

@@ -16,11 +16,7 @@ export function makeCharts({ hello, frames }, robot, parent) {
   const at = (field, k = 0, scale = 1) => (i) => scale * frames.at(i, field, k);
   const legs = (value) => hello.legs.map((name, l) => ({ name, color: kLegColors[l], wide: l % 2 === 0, value: value(l) }));
   const commanded = (k) => ({ name: 'commanded', color: kCommanded, dash: [4, 3], value: at('requested', k) });
-  const strip = (...args) => {
-    const canvas = document.createElement('canvas');
-    parent.append(canvas);
-    return new Strip(canvas, ...args);
-  };
+  const strip = (...args) => new Strip(parent, ...args);
   const joints = (what, field, unit, limit) => ['first joint', 'second joint', 'knee'].map((joint, k) => {
     const name = jointKind(hello, k) ?? joint, most = robot.limits[k]?.[limit];
     return strip(`${what} ${name}`, unit, legs((l) => at(field, kJointsPerLeg * l + k)),

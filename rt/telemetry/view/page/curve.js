@@ -17,10 +17,8 @@ export function showCurve({ title, x_label, x, every, charts }) {
   document.body.prepend(section);
   document.body.classList.add('training');
   const strips = charts.map((chart) => {
-    const canvas = document.createElement('canvas');
-    grid.append(canvas);
     const lines = chart.lines.map(({ name, values }, k) => ({ label: name, color: kColors[k], value: (i) => values[i] ?? NaN }));
-    return new Strip(canvas, chart.title, chart.unit, lines, { least: 1e-3, marks: ' M' });
+    return new Strip(grid, chart.title, chart.unit, lines, { least: 1e-3, marks: ' M' });
   });
   let row = last;
   const draw = () => {

@@ -1,34 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The shown time of a run that goes on: follows its newest frame, or looks back while the robot goes on.
+import { Player } from './player.js';
 
 const kBehind_s = 0.02;  // the frames between which the newest picture lies
 const kSmooth_s = 0.05;  // frames come in batches; the shown time glides
 
-export class LivePlayer {
+export class LivePlayer extends Player {
   constructor({ frames, live }) {
-    this.frames = frames;
-    this.rate = 1;
+    super(frames);
     this.t = live.recorded ? this.begin : this.end;
-    this.playing = true;
     this.following = !live.recorded;
   }
 
-  get begin() { return this.frames.count ? this.frames.time(0) : 0; }
-  get end() { return this.frames.count ? this.frames.time(this.frames.count - 1) : 0; }
-
   toggle() {
-    if (!this.playing && this.t >= this.end) this.t = this.begin;
-    this.playing = !this.playing;
+    super.toggle();
     this.following = false;
   }
 
   /** Back to what is now. */
   follow() { this.playing = this.following = true; }
 
-  /** Stops there. */
   seek(t) {
-    this.playing = this.following = false;
-    this.t = Math.min(this.end, Math.max(this.begin, t));
+    super.seek(t);
+    this.following = false;
   }
 
   /** @param {number} seconds that have passed for the viewer */

@@ -3,12 +3,14 @@
 
 export class Player {
   constructor(frames) {
-    this.begin = frames.count ? frames.time(0) : 0;
-    this.end = frames.count ? frames.time(frames.count - 1) : 0;
+    this.frames = frames;
     this.t = this.begin;
     this.rate = 1;
     this.playing = true;
   }
+
+  get begin() { return this.frames.count ? this.frames.time(0) : 0; }
+  get end() { return this.frames.count ? this.frames.time(this.frames.count - 1) : 0; }
 
   toggle() {
     if (!this.playing && this.t >= this.end) this.t = this.begin;

@@ -34,11 +34,13 @@ const kLeft = 40, kRight = 8, kSwatch = 12, kFont = 'system-ui, sans-serif';
 
 export class Strip {
   /**
+   * @param {Element} parent gets its canvas
    * @param {object[]} lines {name, color, value(row), dash?, wide?}
    * @param {object} more limits: values of dashed red lines, always in sight; least: smallest range of the axis;
    *   zero: the axis holds 0; marks: unit of the times that stand below it; pointed: time of an upright line
    */
-  constructor(canvas, title, unit, lines, more = {}) {
+  constructor(parent, title, unit, lines, more = {}) {
+    const canvas = parent.appendChild(document.createElement('canvas'));
     Object.assign(this, { canvas, title, unit, lines, limits: [], least: 0.1, zero: false, marks: '', pointed: NaN, ...more });
     this.top = this.marks ? 35 : 21;  // names below the title: values stand beside them
     this.bottom = this.marks ? 19 : 7;

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "policy/policy_file.h"
-#include "rt/base/output_files.h"
 #include "tests/support/not_finite.h"
-#include "tests/support/temporary_folder.h"
 #include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::study {
@@ -73,17 +71,14 @@ TEST(StaticDepthTest, GrowsOnSofterGroundAndBearsAQuarterOfTheRobot) {
 
 class GridRunTest : public testing::Test {
  protected:
-  GridRunTest() { write_file(folder_.path("policy.safetensors"), shipped_policy_text()); }
   std::vector<GridRobot> run(const GridCell& cell, int robots, int threads) const {
     WorkerPool pool(threads);
-    return run_cell(network(), cell, robots, robot_, pool);
+    return run_cell(network_, cell, robots, robot_, pool);
   }
-  train::TaskNetwork network() const {
-    return train::read_task_network(folder_.path("policy.safetensors"),
-                                    train::shipped_task_config(robot_).policy.mode_gain);
-  }
-  const TemporaryFolder folder_;
   const sim::Robot robot_ = sim::load_raibo();
+  const train::TaskNetwork network_ =
+      train::make_task_network(parse_policy_file(shipped_policy_text(), "the shipped policy"),
+                               train::shipped_task_config(robot_).policy.mode_gain);
 };
 
 TEST_F(GridRunTest, IsTheSameForAnyThreadsAndNumberOfRobots) {
@@ -120,7 +115,7 @@ TEST_F(GridRunTest, EveryCellAndNetworkHasTheSameCommandsAndItsOwnGround) {
 }
 
 TEST_F(GridRunTest, ARobotThatFallsHasNoClearanceAndLosesReward) {
-  train::TaskNetwork limp = network();
+  train::TaskNetwork limp = network_;
   for (float& weight : limp.parameters) weight *= 3.0f;  // it flails
   WorkerPool pool(1);
   int fell = 0;

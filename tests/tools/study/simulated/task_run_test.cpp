@@ -4,12 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "policy/policy_file.h"
-#include "rt/base/output_files.h"
-#include "tests/support/temporary_folder.h"
 #include "tools/train/task/robot_settings.h"
 
 namespace sandrunner::study {
@@ -17,16 +14,12 @@ namespace {
 
 class TaskRunTest : public testing::Test {
  protected:
-  TaskRunTest() {
-    write_file(folder_.path("policy.safetensors"), shipped_policy_text());
-    network_ = train::read_task_network(folder_.path("policy.safetensors"), task_.policy.mode_gain);
-    task_.ground.rigid_envs = task_.ground.patchy_envs = 0;
-  }
+  TaskRunTest() { task_.ground.rigid_envs = task_.ground.patchy_envs = 0; }
   /// Reward of each environment over the run.
   std::vector<double> rewards(const TaskRun& run, int threads) const {
     std::vector<double> sums(static_cast<std::size_t>(run.envs));
     WorkerPool pool(threads);
-    run_on_task(*network_, run, robot_, pool, [&](const TaskStep& s) {
+    run_on_task(network_, run, robot_, pool, [&](const TaskStep& s) {
       for (int env = s.first_env; env < s.first_env + s.envs; ++env) {
         sums[static_cast<std::size_t>(env)] += s.rollout.reward(0, env);
       }
@@ -34,10 +27,10 @@ class TaskRunTest : public testing::Test {
     return sums;
   }
 
-  const TemporaryFolder folder_;
   const sim::Robot robot_ = sim::load_raibo();
   train::TaskConfig task_ = train::shipped_task_config(robot_);
-  std::optional<train::TaskNetwork> network_;
+  const train::TaskNetwork network_ = train::make_task_network(
+      parse_policy_file(shipped_policy_text(), "the shipped policy"), task_.policy.mode_gain);
 };
 
 TEST_F(TaskRunTest, HasTheSameBitsForAnyThreadsAndOthersForAnotherSeed) {
@@ -54,14 +47,14 @@ TEST_F(TaskRunTest, ShowsEachStepAsTheNetworkAnsweredIt) {
   run.steps = 3;
   WorkerPool pool(1);
   int steps = 0;
-  run_on_task(*network_, run, robot_, pool, [&](const TaskStep& s) {
+  run_on_task(network_, run, robot_, pool, [&](const TaskStep& s) {
     EXPECT_EQ(s.step, steps++);
-    ASSERT_EQ(s.actor_input.rows(), network_->layout.actor_inputs());
+    ASSERT_EQ(s.actor_input.rows(), network_.layout.actor_inputs());
     for (int env = 0; env < s.envs; ++env) {
       for (int i = 0; i < kCommandSize; ++i) {
         EXPECT_EQ(s.actor_input(i, env), s.rollout.observation(0)(i, env));
       }
-      for (int i = 0; i < network_->layout.hidden(); ++i) {
+      for (int i = 0; i < network_.layout.hidden(); ++i) {
         EXPECT_EQ(s.actor_input(kCommandSize + i, env), s.encoding(i, env));
       }
       // The insight holds the state that the estimator is to find.
@@ -85,7 +78,7 @@ TEST_F(TaskRunTest, GivesTrialsTheirCommandAndGround) {
   trial.features[0] = 0.25f;
   run.trials.assign(16, trial);
   WorkerPool pool(1);
-  run_on_task(*network_, run, robot_, pool, [&](const TaskStep& s) {
+  run_on_task(network_, run, robot_, pool, [&](const TaskStep& s) {
     EXPECT_EQ(s.rollout.insight(0)(0, 7), 0.25f);
     EXPECT_EQ(s.task.terrain(7).ground[0].sigma_flat, terrain.ground[0].sigma_flat);
     // From rest, with 2 m/s^2.

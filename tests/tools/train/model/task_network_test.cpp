@@ -9,9 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "policy/policy_file.h"
-#include "rt/base/output_files.h"
-#include "tests/support/temporary_folder.h"
 #include "tools/train/learner/block_pass.h"
 #include "tools/train/task/leg_modes.h"
 
@@ -27,7 +24,10 @@ PolicyFile random_file(const Wiring& wiring, std::vector<float>* trained = nullp
   learner::NetworkSizes sizes;
   sizes.wiring = wiring;
   const learner::ParameterLayout layout(sizes, 80);
-  const std::vector<float> parameters = learner::initial_parameters(layout, 5, 0.5);
+  std::vector<float> parameters = learner::initial_parameters(layout, 5, 0.5);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    parameters[i] += 0.01f * std::sin(static_cast<float>(i));  // no bias is 0
+  }
   if (trained != nullptr) *trained = parameters;
   learner::to_policy(layout, parameters, file.parameters);
   answer_in_joints(kModeGain, file.parameters);
@@ -35,11 +35,7 @@ PolicyFile random_file(const Wiring& wiring, std::vector<float>* trained = nullp
   return file;
 }
 
-class TaskNetworkTest : public testing::TestWithParam<Wiring> {
- protected:
-  std::string path() const { return folder_.path("model.safetensors"); }
-  const TemporaryFolder folder_;
-};
+class TaskNetworkTest : public testing::TestWithParam<Wiring> {};
 
 constexpr ActorInputs kUsual, kProprioception = {true, false, true, false};
 INSTANTIATE_TEST_SUITE_P(Wirings, TaskNetworkTest,
@@ -47,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Wirings, TaskNetworkTest,
                                          Wiring{EncoderKind::kTcn, kUsual},
                                          Wiring{EncoderKind::kLstm, {false, true, true, true}},
                                          Wiring{EncoderKind::kInsight, kProprioception},
-                                         Wiring{EncoderKind::kLstm, kProprioception}),
+                                         Wiring{EncoderKind::kLstm, kProprioception}, Wiring{}),
                          [](const auto& test) { return "Wiring" + std::to_string(test.index); });
 
 TEST_P(TaskNetworkTest, APolicyAnswersInJointsWhatTheTrainingAnswersInModes) {
@@ -66,16 +62,17 @@ TEST_P(TaskNetworkTest, APolicyAnswersInJointsWhatTheTrainingAnswersInModes) {
   const learner::Matrix<float> insight = learner::Matrix<float>::Zero(kInsightSize, 1);
   std::array<float, kObservationSize> raw{};
   Policy policy(file.spec, Network(p));
-  const std::uint8_t go_on = 0;
   double moved = 0.0;
-  for (int step = 0; step < 60; ++step) {
+  for (int step = 0; step < 70; ++step) {
+    const std::uint8_t reset = step == 10;
+    if (reset != 0) policy.reset();
     for (int i = 0; i < kObservationSize; ++i) {
       raw[i] = std::sin(static_cast<float>(7 * step + i));
       normalised(i, 0) =
           (raw[i] - p.observation_mean[i]) / std::sqrt(p.observation_variance[i] + 1e-8f);
       normalised(i, 0) = std::clamp(normalised(i, 0), -p.observation_clip, p.observation_clip);
     }
-    pass.answer(weights, normalised, insight, &go_on, memory, modes);
+    pass.answer(weights, normalised, insight, &reset, memory, modes);
     std::array<float, kNumJoints> joints{};
     joints_from_modes(kModeGain, modes.data(), 1, joints.data());
     const PolicyStep answer = policy.step(raw);
@@ -89,8 +86,7 @@ TEST_P(TaskNetworkTest, APolicyAnswersInJointsWhatTheTrainingAnswersInModes) {
 
 TEST_P(TaskNetworkTest, TaskNetworkHasTheWeightsOfTheTraining) {
   std::vector<float> trained;
-  write_policy_file(path(), random_file(GetParam(), &trained));
-  const TaskNetwork network = read_task_network(path(), kModeGain);
+  const TaskNetwork network = make_task_network(random_file(GetParam(), &trained), kModeGain);
   const learner::LayerView& last = network.layout.actor().back();
   for (std::ptrdiff_t i = 0; i < last.bias + kNumJoints; ++i) {
     ASSERT_NEAR(network.parameters[i], trained[i], 1e-6f) << "parameter " << i;
@@ -98,10 +94,8 @@ TEST_P(TaskNetworkTest, TaskNetworkHasTheWeightsOfTheTraining) {
 }
 
 TEST(ShippedPolicyTest, RunsOnATaskToo) {
-  const TemporaryFolder folder;
-  const std::string path = folder.path("policy.safetensors");
-  write_file(path, shipped_policy_text());
-  const TaskNetwork network = read_task_network(path, kModeGain);
+  const TaskNetwork network =
+      make_task_network(parse_policy_file(shipped_policy_text(), "the shipped policy"), kModeGain);
   EXPECT_TRUE(network.layout.sizes().wiring == Wiring{});
   EXPECT_EQ(network.spec.name, "raibo");
 }
