@@ -152,17 +152,24 @@ void Simulator::set_terrain(const TerrainDescription& terrain) {
   remembers_ = keeps_footprints(terrain_);
 }
 
+ImuSample Simulator::imu() const noexcept {
+  const auto& [w, x, y, z] = state_.robot.rigid.orientation;
+  const Vec3<double>& rate = state_.robot.rigid.angular_velocity;
+  return {.orientation_wxyz = {w, x, y, z},
+          .angular_velocity_radps = {rate.x, rate.y, rate.z},
+          .linear_acceleration_mps2 = state_.linear_acceleration_mps2,
+          .tick = state_.tick};
+}
+
 SensorFrame Simulator::sample() const noexcept {
   const RigidState<double>& x = state_.robot.rigid;
   SensorFrame f;
-  f.tick = f.imu.tick = state_.tick;
+  f.tick = state_.tick;
+  f.imu = imu();
   f.joints.tick.fill(state_.tick);
   f.joints.position_rad = x.q;
   f.joints.velocity_radps = x.qd;
   f.joints.torque_nm = state_.torque_nm;
-  f.imu.orientation_wxyz = {x.orientation.w, x.orientation.x, x.orientation.y, x.orientation.z};
-  f.imu.angular_velocity_radps = {x.angular_velocity.x, x.angular_velocity.y, x.angular_velocity.z};
-  f.imu.linear_acceleration_mps2 = state_.linear_acceleration_mps2;
   const SensorNoise& n = config_.noise;
   std::uint64_t counter = state_.tick * 64;  // fewer than 64 draws per tick
   const auto noise = [&](double sigma) {
@@ -206,19 +213,24 @@ void Simulator::write(const SafeCommand& command) noexcept {
   }
   if (cut_.load(std::memory_order_relaxed)) acting = SafeCommand{};
   const JointCommand& c = acting.joints();
-  RigidState<double>& x = state_.robot.rigid;
+  const RigidState<double>& x = state_.robot.rigid;
+  JointArray<double> torque_nm;
   for (int j = 0; j < kNumJoints; ++j) {
-    state_.torque_nm[j] = acting.enabled()
-                              ? drive_torque<double>(j, x.q[j], x.qd[j],
-                                                     {.q = c.position_rad[j],
-                                                      .qd = c.velocity_radps[j],
-                                                      .kp = c.kp_nmprad[j],
-                                                      .kd = c.kd_nmsprad[j],
-                                                      .feedforward_nm = c.feedforward_nm[j]},
-                                                     robot_.model.torque_limit_nm[j], line_)
-                              : 0.0;
+    torque_nm[j] = acting.enabled() ? drive_torque<double>(j, x.q[j], x.qd[j],
+                                                           {.q = c.position_rad[j],
+                                                            .qd = c.velocity_radps[j],
+                                                            .kp = c.kp_nmprad[j],
+                                                            .kd = c.kd_nmsprad[j],
+                                                            .feedforward_nm = c.feedforward_nm[j]},
+                                                           robot_.model.torque_limit_nm[j], line_)
+                                    : 0.0;
   }
-  const Mat3<double> before = rotation_matrix(x.orientation);
+  step(torque_nm);
+}
+
+void Simulator::step(const JointArray<double>& torque_nm) noexcept {
+  state_.torque_nm = torque_nm;
+  const Mat3<double> before = rotation_matrix(state_.robot.rigid.orientation);
   stepper_.step(robot_.model, foot_, terrain_, config_.step, state_.torque_nm, state_.robot,
                 report_, relief(), {{remembers_ ? &state_.footprints : nullptr}});
   // Specific force at the base origin, body frame.
@@ -308,8 +320,7 @@ std::vector<SettingLine> simulator_settings() {
                    .unit = {},
                    .range = "true, false",
                    .meaning = "Drives lose torque towards their top speed."});
-  list_settings(lines, "sim", kLine);
-  list_settings(lines, "sim", kStep);
+  list_settings(lines, "sim", kLine, kStep);
   return lines;
 }
 

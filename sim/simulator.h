@@ -79,6 +79,8 @@ class Simulator final : public RobotIo {
   void read(std::uint64_t tick, SensorFrame& frame) noexcept override;
   /// Takes the command and advances the robot by one tick.
   void write(const SafeCommand& command) noexcept override;
+  /// Advances the robot by one tick under these torques: its drives are outside of the simulator.
+  void step(const JointArray<double>& torque_nm) noexcept;
   /// Simulates the missed ticks, so that simulated time stays on the grid.
   void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override;
   void cut_drives() noexcept override { cut_.store(true, std::memory_order_relaxed); }
@@ -89,6 +91,7 @@ class Simulator final : public RobotIo {
   void restore(const SimulatorState& state) noexcept;
   void add_to(StateHash& hash) const noexcept override;
 
+  ImuSample imu() const noexcept;  ///< as of a sensor without noise and delay
   const StepReport<double>& report() const noexcept { return report_; }  ///< of the last step
   const RobotModel<double>& model() const noexcept { return robot_.model; }
   const Terrain<double>& terrain() const noexcept { return terrain_; }

@@ -23,16 +23,9 @@ constexpr int kDoublePeriods = 1000;
 constexpr int kMujocoSteps = 6000;
 constexpr int kWarmUpPeriods = 100;
 
-template <typename Work>
-double cpu_time_s(Work&& work) {
-  const double start = thread_cpu_s();
-  work();
-  return thread_cpu_s() - start;
-}
-
 // Steps per second of all packs on one or two threads, by the clock on the wall.
 double wall_rate(TrottingBatch& robots, int threads) {
-  const double start = wall_s();
+  const double start_s = clock_s(CLOCK_MONOTONIC);
   const int middle = threads == 2 ? robots.packs() / 2 : robots.packs();
   std::thread other([&] {
     flush_denormals_to_zero();
@@ -40,7 +33,7 @@ double wall_rate(TrottingBatch& robots, int threads) {
   });
   robots.advance(0, middle, kBatchPeriods);
   other.join();
-  return robots.size() * kBatchPeriods * kTicksPerPolicyStep / (wall_s() - start);
+  return robots.size() * kBatchPeriods * kTicksPerPolicyStep / (clock_s(CLOCK_MONOTONIC) - start_s);
 }
 
 void require_walking(const TrottingBatch& robots) {

@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ctime>
+#include "rt/base/clock_ns.h"
 
 namespace sandrunner::bench {
 
-/// Processor time of the calling thread, s: what others do on the machine is not in it.
-inline double thread_cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// Time since some moment, s.
-inline double wall_s() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+/// Processor time that the calling thread takes for `work`, s: what others do on the machine is not
+/// in it.
+template <typename Work>
+double cpu_time_s(const Work& work) {
+  const double start_s = clock_s(CLOCK_THREAD_CPUTIME_ID);
+  work();
+  return clock_s(CLOCK_THREAD_CPUTIME_ID) - start_s;
 }
 
 }  // namespace sandrunner::bench

@@ -120,9 +120,9 @@ Report run_contact_bench(int rounds, int drops) {
     const auto time = [&](const char* name, int first, auto&& fall) {
       const int last = std::min(first + kDropsAtATime, drops);
       std::vector<Depths> depths(static_cast<std::size_t>(last - first));
-      const double start = thread_cpu_s();
-      for (int i = first; i < last; ++i) depths[i - first] = fall(cases[i]);
-      time_s[name] += thread_cpu_s() - start;
+      time_s[name] += cpu_time_s([&] {
+        for (int i = first; i < last; ++i) depths[i - first] = fall(cases[i]);
+      });
       for (const Depths& d : depths) {
         if (!(std::fabs(d.final_m - d.before_m) < kRest_m)) {
           throw std::runtime_error(fmt::format(

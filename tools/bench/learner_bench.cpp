@@ -106,23 +106,22 @@ const Pass kPasses[] = {
 };
 
 double peak_gflops(void (*fma_loop)(long) noexcept, int lanes) {
-  const double flops_per_loop = 2.0 * kPeakRegisters * lanes;
-  const double start = thread_cpu_s();
-  fma_loop(std::lround(kFlopsPerRun / flops_per_loop));
-  return 1e-9 * kFlopsPerRun / (thread_cpu_s() - start);
+  const long loops = std::lround(kFlopsPerRun / (2.0 * kPeakRegisters * lanes));
+  return 1e-9 * kFlopsPerRun / cpu_time_s([&] { fma_loop(loops); });
 }
 
 template <typename Run>
 double gflops(std::vector<Layer>& layers, const Run& run) {
   double flops = 0.0;
-  const double start = thread_cpu_s();
-  while (flops < kFlopsPerRun) {
-    for (Layer& layer : layers) {
-      run(layer);
-      flops += layer.flops();
+  const double time_s = cpu_time_s([&] {
+    while (flops < kFlopsPerRun) {
+      for (Layer& layer : layers) {
+        run(layer);
+        flops += layer.flops();
+      }
     }
-  }
-  return 1e-9 * flops / (thread_cpu_s() - start);
+  });
+  return 1e-9 * flops / time_s;
 }
 
 void require_agreement(const Kernels<float>& kernels) {

@@ -16,10 +16,11 @@
 #include "policy/eight_floats.h"
 #include "policy/network.h"
 #include "policy/perceptron.h"
+#include "rt/base/clock_ns.h"
 #include "rt/base/processor_name.h"
 #include "rt/core/processor.h"
+#include "rt/realtime/setup.h"
 #include "tools/bench/benches.h"
-#include "tools/bench/clock.h"
 
 namespace sandrunner::bench {
 namespace {
@@ -44,11 +45,7 @@ class RealtimeScope {
     pthread_getschedparam(pthread_self(), &policy_, &priority_);
     cpu_set_t one;
     CPU_ZERO(&one);
-    for (int core = CPU_SETSIZE - 1; core >= 0; --core) {
-      if (!CPU_ISSET(core, &cores_)) continue;
-      CPU_SET(core, &one);
-      break;
-    }
+    CPU_SET(allowed_cpus().back(), &one);
     pinned_ = pthread_setaffinity_np(pthread_self(), sizeof(one), &one) == 0;
     const sched_param priority{.sched_priority = 20};
     fifo_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
@@ -180,9 +177,9 @@ Report run_policy_bench(int rounds) {
     for (std::size_t k = 0; k < times_s.size(); ++k) {
       if (candidate.walk) candidate.walk->read();
       if (candidate.touch) ours.back().touch_weights();
-      const double start = wall_s();
+      const double start_s = clock_s(CLOCK_MONOTONIC);
       candidate.step(static_cast<int>(k));
-      times_s[k] = wall_s() - start;
+      times_s[k] = clock_s(CLOCK_MONOTONIC) - start_s;
     }
     return quartiles(std::move(times_s)).median;
   };

@@ -3,10 +3,25 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "rt/base/quantile.h"
+
 namespace sandrunner::bench {
+
+Quartiles quartiles(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75), values.size()};
+}
+
+void add_percentiles(Samples& samples_us, const std::string& name, const LogHistogram& times,
+                     std::span<const Percentile> percentiles) {
+  for (const auto& [percentile, share] : percentiles) {
+    samples_us[fmt::format("{}_{}_us", name, percentile)].push_back(
+        1e-3 * static_cast<double>(times.quantile_ns(share)));
+  }
+}
 
 void add_ratio(Report& report, const std::string& name, const Samples& samples,
                const std::string& above, const std::string& below) {

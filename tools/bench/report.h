@@ -2,17 +2,35 @@
 // What a benchmark found, as a table and as JSON.
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tools/bench/quartiles.h"
+#include "rt/core/log_histogram.h"
 
 namespace sandrunner::bench {
 
+/// Median and quartiles of what the rounds gave.
+struct Quartiles {
+  double median = 0.0, q1 = 0.0, q3 = 0.0;
+  std::size_t runs = 0;
+};
+
+/// Quartiles of at least one value, linear between neighbours.
+Quartiles quartiles(std::vector<double> values);
+
 /// What each candidate had in each round.
 using Samples = std::map<std::string, std::vector<double>>;
+
+/// A share of durations, 0..1, and its name: {"p99", 0.99}.
+using Percentile = std::pair<const char*, double>;
+
+/// Adds what a round gave of these: `name`_p99_us and so on, in us.
+void add_percentiles(Samples& samples_us, const std::string& name, const LogHistogram& times,
+                     std::span<const Percentile> percentiles);
 
 struct Report {
   std::vector<std::pair<std::string, std::string>> facts;  ///< what was measured, on what

@@ -20,12 +20,6 @@ constexpr double kStretch_rad = 0.2;
 constexpr double kSweep_rad = 0.18;
 constexpr double kLean_rad = 0.1;
 
-sim::TerrainDescription dry_sand() {
-  ConfigTree config;
-  sim::add_terrain_layer(config, "dry-sand");
-  return sim::read_terrain(config);
-}
-
 }  // namespace
 
 JointArray<double> trot_targets(const JointArray<double>& nominal_rad, double time_s,
@@ -53,11 +47,12 @@ JointArray<double> trot_targets(const JointArray<double>& nominal_rad, double ti
 
 TrottingBatch::TrottingBatch(const sim::Robot& robot, int robots, sim::BatchWidth width)
     : nominal_rad_(robot.nominal_rad),
-      batch_(robots, sim::make_foot_profile(dry_sand(), robot.model), {}, width),
+      batch_(robots, sim::make_foot_profile(sim::terrain_preset("dry-sand"), robot.model), {},
+             width),
       drives_(static_cast<std::size_t>(robots)),
       phases_(static_cast<std::size_t>(robots)),
       pack_periods_(static_cast<std::size_t>(batch_.packs())) {
-  const sim::TerrainDescription sand = dry_sand();
+  const sim::TerrainDescription sand = sim::terrain_preset("dry-sand");
   const auto terrain = sim::convert_terrain<float>(
       sim::make_terrain(sand, sim::make_foot_profile(sand, robot.model), robot.model));
   for (int i = 0; i < robots; ++i) {
@@ -120,7 +115,7 @@ double TrottingBatch::mean_contacts() const {
 }
 
 TrottingRobot::TrottingRobot(const sim::Robot& robot) : robot_(robot) {
-  const sim::TerrainDescription sand = dry_sand();
+  const sim::TerrainDescription sand = sim::terrain_preset("dry-sand");
   foot_ = sim::make_foot_profile(sand, robot.model);
   terrain_ = sim::make_terrain(sand, foot_, robot.model);
   state_.rigid.position.z = robot.nominal_height_m;

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "policy/policy_file.h"
@@ -21,6 +15,7 @@
 #include "sim/ground/terrain_description.h"
 #include "tools/bench/benches.h"
 #include "tools/bench/simulator_beside.h"
+#include "tools/hil/controller_process.h"
 
 namespace sandrunner::bench {
 namespace {
@@ -30,46 +25,23 @@ constexpr int kTries = 4;
 constexpr int kRobotPriority = 60;  // that of sandrunner-hil
 constexpr const char* kTerrain = "dry-sand";
 constexpr const char* kNetwork[] = {"hardware.unitree.interface=lo", "hardware.unitree.domain=75"};
-constexpr std::array kShares = {0.5, 0.99, 0.999};
-constexpr std::array kNames = {"p50", "p99", "p999"};
-/// Of the whole tick, at kShares, us.
-using TickTimes = std::array<double, kShares.size()>;
+constexpr Percentile kPercentiles[] = {{"p50", 0.5}, {"p99", 0.99}, {"p999", 0.999}};
 
-/// `sandrunner-hil`, the program beside this one; killed with this object.
-class EmulatedRobot {
- public:
-  explicit EmulatedRobot(const std::string& hardware) {
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
-    const std::string program = self.parent_path() / "sandrunner-hil";
-    std::vector<const char*> words = {program.c_str(), "--hardware", hardware.c_str()};
-    for (const char* setting : kNetwork) words.insert(words.end(), {"--set", setting});
-    words.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-    const int error = posix_spawn(&pid_, program.c_str(), &files, nullptr,
-                                  const_cast<char**>(words.data()), environ);
-    posix_spawn_file_actions_destroy(&files);
-    if (error != 0) throw InputError(fmt::format("{}: {}", program, std::strerror(error)));
-  }
-  ~EmulatedRobot() {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
-  EmulatedRobot(const EmulatedRobot&) = delete;
-  EmulatedRobot& operator=(const EmulatedRobot&) = delete;
-
- private:
-  pid_t pid_ = 0;
-};
+/// `sandrunner-hil`, the program beside this one; killed with the object.
+hil::ControllerProcess emulated_robot(const std::string& hardware) {
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+  std::vector<std::string> command = {self.parent_path() / "sandrunner-hil", "--hardware",
+                                      hardware};
+  for (const char* setting : kNetwork) command.insert(command.end(), {"--set", setting});
+  return hil::ControllerProcess(command, ".", "/dev/null");
+}
 
 struct DidNotWalk : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Stands up, walks and lies down. Throws DidNotWalk.
-TickTimes ticks_of(RobotIo& robot, const ProcessConfig& config, PolicyRunner& policy) {
+/// Times of the whole tick. The robot stands up, walks and lies down. Throws DidNotWalk.
+LogHistogram ticks_of(RobotIo& robot, const ProcessConfig& config, PolicyRunner& policy) {
   const CommandSource command("0.5,0,0");
   RunScript script(command, {.walk_s = kWalk_s}, true);
   SystemClock clock;
@@ -79,16 +51,12 @@ TickTimes ticks_of(RobotIo& robot, const ProcessConfig& config, PolicyRunner& po
   if (script.fall_reason() != nullptr) {
     throw DidNotWalk(fmt::format("the robot did not walk: {}", script.fall_reason()));
   }
-  TickTimes ticks_us;
-  for (std::size_t i = 0; i < kShares.size(); ++i) {
-    ticks_us[i] = 1e-3 * static_cast<double>(end.report.control.busy.quantile_ns(kShares[i]));
-  }
-  return ticks_us;
+  return end.report.control.busy;
 }
 
 /// A computer that was held up for some ms has stopped the robot: once more.
 template <typename Run>
-TickTimes try_again(const Run& run) {
+LogHistogram try_again(const Run& run) {
   for (int left = kTries; --left > 0;) {
     try {
       return run();
@@ -98,14 +66,15 @@ TickTimes try_again(const Run& run) {
   return run();
 }
 
-TickTimes over_dds(const std::string& hardware, const ProcessConfig& config, PolicyRunner& policy) {
+LogHistogram over_dds(const std::string& hardware, const ProcessConfig& config,
+                      PolicyRunner& policy) {
   config.driver->fork_processes();
-  const EmulatedRobot emulated(hardware);
+  const hil::ControllerProcess emulated = emulated_robot(hardware);
   const std::unique_ptr<RobotIo> robot = config.driver->connect();
   return ticks_of(*robot, config, policy);
 }
 
-TickTimes without_dds(const ProcessConfig& config, PolicyRunner& policy) {
+LogHistogram without_dds(const ProcessConfig& config, PolicyRunner& policy) {
   SimulatorBeside robot(config.robot, config.simulator, kRobotPriority);
   return ticks_of(robot, config, policy);
 }
@@ -124,21 +93,17 @@ Report run_unitree_bench(const std::string& hardware, int rounds) {
   for (const char* setting : kNetwork) tree.set(setting);
   PolicyRunner policy(load_shipped_policy(shipped_policy_for(tree)));
   const ProcessConfig config = read_process_config(tree, policy.spec());
-  std::array<std::vector<double>, kShares.size()> with_us, without_us, ratio;
+  Samples ticks_us;
   for (int round = 0; round < rounds; ++round) {
     // They take turns to go first.
-    TickTimes with, without;
     const auto run_with = [&] {
-      with = try_again([&] { return over_dds(hardware, config, policy); });
+      add_percentiles(ticks_us, "tick_with_dds",
+                      try_again([&] { return over_dds(hardware, config, policy); }), kPercentiles);
     };
     if (round % 2 == 0) run_with();
-    without = try_again([&] { return without_dds(config, policy); });
+    add_percentiles(ticks_us, "tick_without_dds",
+                    try_again([&] { return without_dds(config, policy); }), kPercentiles);
     if (round % 2 != 0) run_with();
-    for (std::size_t i = 0; i < kShares.size(); ++i) {
-      with_us[i].push_back(with[i]);
-      without_us[i].push_back(without[i]);
-      ratio[i].push_back(with[i] / without[i]);
-    }
   }
   Report report;
   report.facts.emplace_back(
@@ -147,12 +112,11 @@ Report run_unitree_bench(const std::string& hardware, int rounds) {
                   "{} s at 0.5 m/s and lies down; with DDS: the robot is sandrunner-hil on "
                   "loopback; without: it is simulated in a thread beside the control thread",
                   config.robot.description.name, kTerrain, kWalk_s));
-  for (std::size_t i = 0; i < kShares.size(); ++i) {
-    report.rates.emplace_back(fmt::format("tick_with_dds_{}_us", kNames[i]), quartiles(with_us[i]));
-    report.rates.emplace_back(fmt::format("tick_without_dds_{}_us", kNames[i]),
-                              quartiles(without_us[i]));
-    report.ratios.emplace_back(fmt::format("tick_{}_with_vs_without_dds", kNames[i]),
-                               quartiles(ratio[i]));
+  for (const auto& [name, values] : ticks_us) report.rates.emplace_back(name, quartiles(values));
+  for (const auto& [name, share] : kPercentiles) {
+    add_ratio(report, fmt::format("tick_{}_with_vs_without_dds", name), ticks_us,
+              fmt::format("tick_with_dds_{}_us", name),
+              fmt::format("tick_without_dds_{}_us", name));
   }
   return report;
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t kQuestion_ns = 10'000'000;
 
-std::unique_ptr<Link> make_link(const ProcessConfig& config, const EmulatedRobot& robot,
+std::unique_ptr<Link> make_link(const ProcessConfig& config, const sim::Simulator& robot,
                                 const std::string& imu_device, std::span<const TimedFault> script) {
   if (const auto* const can = dynamic_cast<const CanDriver*>(config.driver.get())) {
     return std::make_unique<CanLink>(can->config(), config.robot.description, robot, imu_device,
@@ -29,8 +29,19 @@ std::unique_ptr<Link> make_link(const ProcessConfig& config, const EmulatedRobot
                                        config.robot, config.simulator, script);
 }
 
-Place place_of(const EmulatedRobot& robot) {
-  return {robot.state().position.x, robot.state().position.y};
+/// On its belly.
+std::unique_ptr<sim::Simulator> lying_robot(const ProcessConfig& config) {
+  sim::SimulatorConfig bounded = config.simulator;
+  // One that lies on base, knees and feet would take longer than a tick on the emulated machine.
+  bounded.step.max_sweeps = std::min(bounded.step.max_sweeps, 20);
+  auto robot = std::make_unique<sim::Simulator>(config.robot, bounded);
+  robot->reset_lying();
+  return robot;
+}
+
+Place place_of(const sim::Simulator& robot) {
+  const sim::Vec3<double>& position = robot.state().robot.rigid.position;
+  return {position.x, position.y};
 }
 
 constexpr auto kProcessFaults = std::to_array<FaultKind>({
@@ -91,11 +102,11 @@ std::vector<TimedFault> read_faults(const ProcessConfig& config,
 
 Bench::Bench(const ProcessConfig& config, const std::string& imu_device,
              std::vector<TimedFault> script, double walk_s)
-    : robot_(config.robot, config.simulator),
-      link_(make_link(config, robot_, imu_device, script)),
+    : robot_(lying_robot(config)),
+      link_(make_link(config, *robot_, imu_device, script)),
       faults_(std::move(script)),
       board_(1e-9 * static_cast<double>(link_->cycle_ns()), walk_s,
-             config.controller.walk.kp_nmprad, place_of(robot_)) {}
+             config.controller.walk.kp_nmprad, place_of(*robot_)) {}
 
 BenchReport Bench::play(const std::function<bool()>& more, pid_t controller,
                         const std::function<void()>& second) {
@@ -110,8 +121,8 @@ BenchReport Bench::play(const std::function<bool()>& more, pid_t controller,
       if (!link_->make(*fault, now_s)) make_process_fault(fault->kind, controller, second);
       board_.fault_made(fault->text, now_s);
     }
-    const JointArray<DriveMoment>& drives = link_->step(now_s, robot_);
-    board_.note(now_s, drives, place_of(robot_), robot_.base_contact());
+    const JointArray<DriveMoment>& drives = link_->step(now_s, *robot_);
+    board_.note(now_s, drives, place_of(*robot_), robot_->report().base_contact > 0.0);
     report.late_longest_s =
         std::max(report.late_longest_s, link_->now_s() - 1e-9 * static_cast<double>(time_ns));
   }

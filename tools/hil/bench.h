@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "rt/run/process_config.h"
-#include "tools/hil/emulated_robot.h"
+#include "sim/simulator.h"
 #include "tools/hil/fault_clock.h"
 #include "tools/hil/link.h"
 #include "tools/hil/scoreboard.h"
@@ -55,7 +55,7 @@ class Bench {
   double silent_s() const noexcept { return link_->silent_s(); }
 
  private:
-  EmulatedRobot robot_;
+  std::unique_ptr<sim::Simulator> robot_;
   std::unique_ptr<Link> link_;
   FaultClock faults_;
   Scoreboard board_;

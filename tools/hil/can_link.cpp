@@ -39,15 +39,16 @@ const char* name_of(EmulatedDrive::State state) noexcept {
 }  // namespace
 
 CanLink::CanLink(const HardwareConfig& hardware, const RobotDescription& description,
-                 const EmulatedRobot& robot, const std::string& imu_device,
+                 const sim::Simulator& robot, const std::string& imu_device,
                  std::span<const TimedFault> script)
     : hardware_(hardware), description_(description), imu_(imu_device, hardware.imu) {
   for (const BusConfig& bus : hardware_.buses) {
     buses_.push_back({.interface = bus.interface, .socket = open_bus(bus), .foreign = nullptr});
   }
+  const sim::RigidState<double>& x = robot.state().robot.rigid;
   for (int j = 0; j < kNumJoints; ++j) {
     drives_.emplace_back(hardware_.drives[j], hardware_.drive_timeout_s);
-    drives_[j].measure(robot.state().q[j], robot.state().qd[j]);
+    drives_[j].measure(x.q[j], x.qd[j]);
   }
   for (const TimedFault& fault : script) {
     if (fault.kind != "queue-full") continue;
@@ -230,7 +231,8 @@ void CanLink::send_foreign() {
   }
 }
 
-void CanLink::turn_on_stand(const EmulatedRobot& robot) {
+void CanLink::turn_on_stand(const sim::Simulator& robot) {
+  const sim::RigidState<double>& x = robot.state().robot.rigid;
   for (int j = 0; j < kNumJoints; ++j) {
     const double most = kHand_radps * kControlPeriod_s;
     double turned = std::clamp(hand_target_rad_[j] - hand_rad_[j], -most, most);
@@ -241,12 +243,11 @@ void CanLink::turn_on_stand(const EmulatedRobot& robot) {
       turned = hand_radps_[j] * kControlPeriod_s;
     }
     hand_rad_[j] += turned;
-    drives_[j].measure(robot.state().q[j] + hand_rad_[j],
-                       robot.state().qd[j] + turned / kControlPeriod_s);
+    drives_[j].measure(x.q[j] + hand_rad_[j], x.qd[j] + turned / kControlPeriod_s);
   }
 }
 
-const JointArray<DriveMoment>& CanLink::step(double now_s, EmulatedRobot& robot) {
+const JointArray<DriveMoment>& CanLink::step(double now_s, sim::Simulator& robot) {
   send_foreign();
   JointArray<double> torque_nm;
   for (int j = 0; j < kNumJoints; ++j) {

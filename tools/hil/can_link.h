@@ -22,7 +22,7 @@ class CanLink final : public Link {
  public:
   /// Opens the buses and makes the IMU's line (ImuLine). Throws InputError.
   CanLink(const HardwareConfig& hardware, const RobotDescription& description,
-          const EmulatedRobot& robot, const std::string& imu_device,
+          const sim::Simulator& robot, const std::string& imu_device,
           std::span<const TimedFault> script);
   /// Sets interfaces up again, and takes away queues.
   ~CanLink() override;
@@ -33,7 +33,7 @@ class CanLink final : public Link {
   std::int64_t cycle_ns() const noexcept override { return kControlPeriod_ns; }
   double exchange(std::int64_t end_ns) override;
   bool make(const TimedFault& fault, double now_s) override;
-  const JointArray<DriveMoment>& step(double now_s, EmulatedRobot& robot) override;
+  const JointArray<DriveMoment>& step(double now_s, sim::Simulator& robot) override;
   LinkFigures figures(bool was_enabled) const override;
 
  private:
@@ -54,7 +54,7 @@ class CanLink final : public Link {
   void die();
   void end_faults(double now_s);
   void send_foreign();
-  void turn_on_stand(const EmulatedRobot& robot);
+  void turn_on_stand(const sim::Simulator& robot);
 
   const HardwareConfig hardware_;
   const RobotDescription description_;

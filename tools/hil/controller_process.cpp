@@ -32,7 +32,7 @@ void see_stopped_thread(int options) {
 }  // namespace
 
 ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
-                                     const std::string& folder) {
+                                     const std::string& folder, const char* log) {
   // A path is one from here, not from the folder; a name is looked for in PATH.
   const bool is_path = command[0].find('/') != std::string::npos;
   const std::string program = is_path ? std::filesystem::absolute(command[0]).string() : command[0];
@@ -43,8 +43,7 @@ ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "log.txt", O_WRONLY | O_CREAT | O_TRUNC,
-                                   0666);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   // Not the bench's priority: the controller has its own.
   posix_spawnattr_t attributes;
@@ -59,7 +58,7 @@ ControllerProcess::ControllerProcess(const std::vector<std::string>& command,
   posix_spawnattr_destroy(&attributes);
   if (error != 0) {
     pid_ = 0;
-    throw InputError(fmt::format("controller {}: {}", command[0], strerror(error)));
+    throw InputError(fmt::format("{}: cannot be started ({})", program, strerror(error)));
   }
 }
 

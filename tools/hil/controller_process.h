@@ -9,13 +9,14 @@
 
 namespace sandrunner::hil {
 
-/// The controller as a process of its own.
+/// The controller as a process of its own; in sandrunner-bench, the emulated robot.
 class ControllerProcess {
  public:
   /// Starts it in `folder`. A program with a slash in its name is a path from the caller's own
-  /// folder, one without is looked for in PATH. What it prints goes into log.txt in `folder`.
-  /// Throws InputError.
-  ControllerProcess(const std::vector<std::string>& command, const std::string& folder);
+  /// folder, one without is looked for in PATH. What it prints goes into `log`, a path from
+  /// `folder`. Throws InputError.
+  ControllerProcess(const std::vector<std::string>& command, const std::string& folder,
+                    const char* log = "log.txt");
   /// Kills it if it still runs.
   ~ControllerProcess();
   ControllerProcess(const ControllerProcess&) = delete;

@@ -7,7 +7,7 @@
 
 #include "rt/base/clock_ns.h"
 #include "rt/core/messages.h"
-#include "tools/hil/emulated_robot.h"
+#include "sim/simulator.h"
 #include "tools/hil/fault_script.h"
 #include "tools/hil/scoreboard.h"
 
@@ -37,8 +37,8 @@ class Link {
   virtual double exchange(std::int64_t end_ns) = 0;
   /// False: it is none of this link.
   virtual bool make(const TimedFault& fault, double now_s) = 0;
-  /// Moves the robot on by a cycle. Returns what its drives do.
-  virtual const JointArray<DriveMoment>& step(double now_s, EmulatedRobot& robot) = 0;
+  /// Moves the robot on by a cycle, under its drives' torques. Returns what these do.
+  virtual const JointArray<DriveMoment>& step(double now_s, sim::Simulator& robot) = 0;
 
   virtual LinkFigures figures(bool was_enabled) const = 0;
   /// Since the start.

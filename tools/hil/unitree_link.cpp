@@ -142,10 +142,10 @@ bool UnitreeLink::make(const TimedFault& fault, double now_s) {
   return make_fault(faults(), *this, fault);
 }
 
-const JointArray<DriveMoment>& UnitreeLink::step(double now_s, EmulatedRobot& robot) {
+const JointArray<DriveMoment>& UnitreeLink::step(double now_s, sim::Simulator& robot) {
   JointArray<double> torque_nm;
   for (int tick = 0; tick < kTicksPerCycle; ++tick) {
-    const sim::RigidState<double>& x = robot.state();
+    const sim::RigidState<double>& x = robot.state().robot.rigid;
     for (int j = 0; j < kNumJoints; ++j) {
       const Drive& d = drives_[j];
       torque_nm[j] = sim::drive_torque<double>(
@@ -179,8 +179,8 @@ void UnitreeLink::send_foreign() {
   if (foreign_left_ > 0) --foreign_left_;
 }
 
-void UnitreeLink::send_state(const EmulatedRobot& robot, double now_s) {
-  const sim::RigidState<double>& x = robot.state();
+void UnitreeLink::send_state(const sim::Simulator& robot, double now_s) {
+  const sim::RigidState<double>& x = robot.state().robot.rigid;
   for (int j = 0; j < kNumJoints; ++j) {
     if (j == lost_joint_) {
       ++state_.lost[j];

@@ -29,7 +29,7 @@ class UnitreeLink final : public Link {
   std::int64_t cycle_ns() const noexcept override;
   double exchange(std::int64_t end_ns) override;
   bool make(const TimedFault& fault, double now_s) override;
-  const JointArray<DriveMoment>& step(double now_s, EmulatedRobot& robot) override;
+  const JointArray<DriveMoment>& step(double now_s, sim::Simulator& robot) override;
   LinkFigures figures(bool was_enabled) const override;
 
  private:
@@ -45,7 +45,7 @@ class UnitreeLink final : public Link {
   void follow(const unitree::LowCmd& command);
   void damp_by_itself();
   void send_foreign();
-  void send_state(const EmulatedRobot& robot, double now_s);
+  void send_state(const sim::Simulator& robot, double now_s);
   void send_due(std::int64_t now_ns);
 
   const UnitreeConfig config_;

@@ -12,10 +12,14 @@
 namespace sandrunner::python {
 namespace {
 
+/// The method's rows as an array of numpy, which keeps the robots alive.
 template <typename Record>
-py::array records(std::vector<Record>& values, const py::dtype& type, const py::object& owner) {
-  return py::array(type, {static_cast<py::ssize_t>(values.size())}, {sizeof(Record)}, values.data(),
-                   owner);
+auto records(std::vector<Record>& (Robots::*method)(), py::dtype (*type)()) {
+  return [=](const py::object& self) {
+    std::vector<Record>& rows = (self.cast<Robots&>().*method)();
+    return py::array(type(), {static_cast<py::ssize_t>(rows.size())}, {sizeof(Record)}, rows.data(),
+                     self);
+  };
 }
 
 /// Copies the rows of an array of this type; throws InputError for another type or count.
@@ -41,16 +45,15 @@ std::vector<Record> rows_of(const char* name, const py::object& object, const py
   return rows;
 }
 
-void set_states(Robots& robots, const py::object& array, const std::vector<int>& indices) {
-  const auto rows = rows_of<sim::RobotState<float>>("state", array, state_type(), indices.size());
-  const OneAtATime lock(robots.busy());
-  for (std::size_t i = 0; i < rows.size(); ++i) robots.set_state(indices[i], rows[i]);
-}
-
-void set_models(Robots& robots, const py::object& array, const std::vector<int>& indices) {
-  const auto rows = rows_of<sim::RobotModel<float>>("model", array, model_type(), indices.size());
-  const OneAtATime lock(robots.busy());
-  for (std::size_t i = 0; i < rows.size(); ++i) robots.set_model(indices[i], rows[i]);
+/// The method, which takes a robot and its row, for an array of rows and the robots' indices.
+template <typename Record>
+auto for_each_row(void (Robots::*method)(int, const Record&), const char* name,
+                  py::dtype (*type)()) {
+  return [=](Robots& robots, const py::object& array, const std::vector<int>& indices) {
+    const auto rows = rows_of<Record>(name, array, type(), indices.size());
+    const OneAtATime lock(robots.busy());
+    for (std::size_t i = 0; i < rows.size(); ++i) (robots.*method)(indices[i], rows[i]);
+  };
 }
 
 py::array models(const Robots& robots) {
@@ -67,42 +70,16 @@ void bind_batch(py::module_& module) {
                     double, int>(),
            py::kw_only(), py::arg("robot"), py::arg("count"), py::arg("ground"),
            py::arg("settings"), py::arg("step_hz"), py::arg("threads"))
-      .def("states",
-           [](const py::object& self) {
-             return records(self.cast<Robots&>().states(), state_type(), self);
-           })
-      .def("drives",
-           [](const py::object& self) {
-             return records(self.cast<Robots&>().drives(), drive_type(), self);
-           })
-      .def("reports",
-           [](const py::object& self) {
-             return records(self.cast<Robots&>().reports(), report_type(), self);
-           })
-      .def("sums",
-           [](const py::object& self) {
-             return records(self.cast<Robots&>().sums(), sums_type(), self);
-           })
+      .def("states", records(&Robots::states, &state_type))
+      .def("drives", records(&Robots::drives, &drive_type))
+      .def("reports", records(&Robots::reports, &report_type))
+      .def("sums", records(&Robots::sums, &sums_type))
       .def("models", &models)
-      .def("set_states", &set_states)
-      .def("set_models", &set_models)
-      .def("set_ground",
-           [](Robots& robots, const std::string& ground, const std::vector<std::string>& settings,
-              const std::vector<int>& indices) {
-             const OneAtATime lock(robots.busy());
-             robots.set_ground(ground, settings, indices);
-           })
-      .def("stand",
-           [](Robots& robots, const std::vector<int>& indices) {
-             const OneAtATime lock(robots.busy());
-             robots.stand(indices);
-           })
-      .def("advance",
-           [](Robots& robots, int ticks) {
-             const py::gil_scoped_release release;
-             const OneAtATime lock(robots.busy());
-             robots.advance(ticks);
-           })
+      .def("set_states", for_each_row(&Robots::set_state, "state", &state_type))
+      .def("set_models", for_each_row(&Robots::set_model, "model", &model_type))
+      .def("set_ground", alone(&Robots::set_ground))
+      .def("stand", alone(&Robots::stand))
+      .def("advance", alone(&Robots::advance), py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("robot_name",
                              [](const Robots& robots) { return robots.robot().description.name; })
       .def_property_readonly("nominal_rad",

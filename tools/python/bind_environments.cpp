@@ -119,19 +119,9 @@ void bind_environments(py::module_& module) {
            py::arg("config_file"), py::arg("settings"), py::arg("in_joints"), py::arg("width"))
       .def("arrays", &arrays)
       .def("step", &step, py::arg("actions"))
-      .def(
-          "restart",
-          [](Environments& e, std::uint64_t seed) {
-            const py::gil_scoped_release release;
-            const OneAtATime lock(e.busy());
-            e.restart(seed);
-          },
-          py::arg("seed"))
-      .def("set_moves",
-           [](Environments& e, bool moves) {
-             const OneAtATime lock(e.busy());
-             e.set_moves(moves);
-           })
+      .def("restart", alone(&Environments::restart), py::call_guard<py::gil_scoped_release>(),
+           py::arg("seed"))
+      .def("set_moves", alone(&Environments::set_moves))
       .def("progress", &progress)
       .def("set_progress", &set_progress, py::kw_only(), py::arg("speed_mps"), py::arg("ground"),
            py::arg("transitions"), py::arg("late"))

@@ -25,4 +25,13 @@ class OneAtATime {
   std::atomic<bool>& busy_;
 };
 
+/// The method, as a function for Python that refuses to run while another call is in progress.
+template <typename Object, typename... Arguments>
+auto alone(void (Object::*method)(Arguments...)) {
+  return [method](Object& object, Arguments... arguments) {
+    const OneAtATime lock(object.busy());
+    (object.*method)(arguments...);
+  };
+}
+
 }  // namespace sandrunner::python

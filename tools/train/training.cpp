@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "rt/base/build.h"
+#include "rt/base/clock_ns.h"
 #include "rt/base/config_tree.h"
 #include "rt/base/errors.h"
 #include "rt/base/output_files.h"
@@ -32,15 +31,8 @@ constexpr int kMostFallbacks = 5;
 /// A policy that does so in its battery walks; whatever the thresholds of the gate are.
 constexpr double kWalksAlive = 0.8, kWalksError = 0.2;
 
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double cpu_seconds() { return clock_s(CLOCK_PROCESS_CPUTIME_ID); }
+double wall_seconds() { return clock_s(CLOCK_MONOTONIC); }
 
 // Of the figures by which a robot moves: another one would not continue to the same weights.
 std::uint64_t hash_of(const sim::Robot& robot) {
