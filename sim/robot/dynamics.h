@@ -133,11 +133,10 @@ class Dynamics {
   /// Base motion L^-T D^-1/2 y.
   void back_solve(const std::array<S, 6>& y, Vec3<S>& linear, Vec3<S>& angular) const noexcept;
 
-  /// Dense row-major 18x18 mass matrix and 18-vector bias (force needed for zero acceleration,
-  /// gravity included), in the coordinates of Motion. For tests and tools.
-  void dense(std::array<S, 324>& mass_matrix, std::array<S, 18>& bias) const noexcept;
-
  private:
+  template <typename>
+  friend struct DenseDynamics;  // of tests
+
   struct Leg {
     LegPose<S> pose;
     Sym3<S> mass;  // M_ll with rotor inertia
@@ -408,47 +407,6 @@ Motion<S> Dynamics<S>::free_acceleration(
     for (int j = 0; j < 3; ++j) f.joint[3 * l + j] = torque_nm[3 * l + j] - legs_[l].bias[j];
   }
   return solve(f);
-}
-
-template <typename S>
-void Dynamics<S>::dense(std::array<S, 324>& mass_matrix, std::array<S, 18>& bias) const noexcept {
-  mass_matrix.fill(S(0.0));
-  const auto put = [&](int r, int c, S v) {
-    mass_matrix[18 * r + c] = v;
-    mass_matrix[18 * c + r] = v;
-  };
-  for (int i = 0; i < 3; ++i) put(i, i, mass_);
-  put(3, 1, -moment_.z);
-  put(3, 2, moment_.y);
-  put(4, 0, moment_.z);
-  put(4, 2, -moment_.x);
-  put(5, 0, -moment_.y);
-  put(5, 1, moment_.x);
-  put(3, 3, inertia_.xx);
-  put(4, 3, inertia_.xy);
-  put(5, 3, inertia_.xz);
-  put(4, 4, inertia_.yy);
-  put(5, 4, inertia_.yz);
-  put(5, 5, inertia_.zz);
-  const auto store = [&](int i, const Vec3<S>& v) {
-    bias[i] = v.x;
-    bias[i + 1] = v.y;
-    bias[i + 2] = v.z;
-  };
-  store(0, bias_force_);
-  store(3, bias_torque_);
-  for (int l = 0; l < kNumLegs; ++l) {
-    const Leg& leg = legs_[l];
-    const int o = 6 + 3 * l;
-    const Sym3<S>& m = leg.mass;
-    const std::array<std::array<S, 3>, 3> block{
-        {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}}};
-    for (int j = 0; j < 3; ++j) {
-      for (int k = 0; k < 3; ++k) mass_matrix[18 * (o + j) + o + k] = block[j][k];
-      for (int k = 0; k < 6; ++k) put(k, o + j, leg.coupling[j][k]);
-      bias[o + j] = leg.bias[j];
-    }
-  }
 }
 
 }  // namespace sandrunner::sim

@@ -9,33 +9,12 @@
 #include <limits>
 
 #include "rt/loop/lockstep.h"
+#include "tests/rt/loop/faulty_robot.h"
 #include "tests/rt/support.h"
 #include "tests/rt/telemetry/example_tick.h"
 
 namespace sandrunner {
 namespace {
-
-/// A simulated robot with an encoder that can break.
-class BreakableRobot final : public RobotIo {
- public:
-  explicit BreakableRobot(sim::Simulator& simulator) : simulator_(simulator) {}
-  void read(std::uint64_t tick, SensorFrame& frame) noexcept override {
-    simulator_.read(tick, frame);
-    if (broken) frame.joints.position_rad[4] = std::numeric_limits<double>::quiet_NaN();
-  }
-  void write(const SafeCommand& command) noexcept override { simulator_.write(command); }
-  void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
-    simulator_.skip(ticks, held);
-  }
-  void cut_drives() noexcept override { simulator_.cut_drives(); }
-  void shut_down() noexcept override {}
-  bool truth(RobotTruth& truth) const noexcept override { return simulator_.truth(truth); }
-
-  bool broken = false;
-
- private:
-  sim::Simulator& simulator_;
-};
 
 /// Lies, stands up, walks, stops, walks again, breaks an encoder and falls.
 class Day {
@@ -44,7 +23,7 @@ class Day {
       : policy_(load_shipped_policy()),
         config_(config_of(terrain, {}, policy_.spec())),
         simulator_(config_.robot, config_.simulator),
-        robot_(simulator_),
+        robot_(simulator_, Drives::kGains),
         loop_(robot_, config_.controller, Mode::kPassive, policy_),
         odometry_(config_.robot.description) {
     simulator_.reset_lying();
@@ -63,10 +42,12 @@ class Day {
     wait(1.0, look);
     ask(ModeRequest::kWalk, Mode::kWalk, look);
     wait(1.0, look);
-    robot_.broken = true;
+    robot_.spoil = [](SensorFrame& frame, const SensorFrame&, std::uint64_t) {
+      frame.joints.position_rad[4] = std::numeric_limits<double>::quiet_NaN();
+    };
     wait(0.1, look);
     EXPECT_EQ(loop_.record().output.mode, Mode::kFault);
-    robot_.broken = false;
+    robot_.spoil = nullptr;
     wait(3.0, look);
   }
 
@@ -91,7 +72,7 @@ class Day {
   PolicyRunner policy_;
   const ProcessConfig config_;
   sim::Simulator simulator_;
-  BreakableRobot robot_;
+  FaultyRobot robot_;
   Lockstep loop_;
   Odometry odometry_;
   OperatorCommand command_;

@@ -17,6 +17,7 @@
 #include "tests/policy/allocation_counter.h"
 #include "tests/policy/random_policy.h"
 #include "tests/support/csv.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner {
 namespace {
@@ -226,12 +227,8 @@ TEST(NetworkTest, KernelMovesNoWeightsOnceTheyAreLoaded) {
 TEST(NetworkTest, RefusesParametersOfAnotherSize) {
   NetworkParameters parameters = random_policy_file().parameters;
   parameters.actor[1].weight.pop_back();
-  try {
-    require_runnable(parameters);
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "network: tensor 'actor.1.weight' has 32767 values, expected 32768");
-  }
+  EXPECT_EQ(error_of([&] { require_runnable(parameters); }),
+            "network: tensor 'actor.1.weight' has 32767 values, expected 32768");
 }
 
 }  // namespace

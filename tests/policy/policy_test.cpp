@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "rt/base/errors.h"
 #include "tests/policy/allocation_counter.h"
 #include "tests/policy/random_policy.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner {
 namespace {
@@ -33,15 +33,10 @@ TEST_F(PolicyTest, IsRefusedForARobotWithOtherJoints) {
   robot.joint_names = file_.spec.joint_names;
   EXPECT_NO_THROW(require_joints(file_.spec, robot));
   std::swap(robot.joint_names[3], robot.joint_names[4]);
-  try {
-    require_joints(file_.spec, robot);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "policy 'random' is for another robot: found joint 4 'RF_HAA', expected 'RF_HFE' "
-                 "of robot 'cart'; train one with sandrunner-train --robot FILE, or let it only "
-                 "stand with --policy none");
-  }
+  EXPECT_EQ(error_of([&] { require_joints(file_.spec, robot); }),
+            "policy 'random' is for another robot: found joint 4 'RF_HAA', expected 'RF_HFE' "
+            "of robot 'cart'; train one with sandrunner-train --robot FILE, or let it only "
+            "stand with --policy none");
 }
 
 TEST_F(PolicyTest, TargetIsNominalPlusScaledAction) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -92,6 +93,42 @@ double relative_error(const A& a, const B& b) {
   return std::sqrt(difference / size);
 }
 
+/// What a Dynamics has computed, in the coordinates of Motion.
+template <typename S>
+struct DenseDynamics {
+  explicit DenseDynamics(const Dynamics<S>& d)
+      : bias{d.bias_force_.x,  d.bias_force_.y,  d.bias_force_.z,
+             d.bias_torque_.x, d.bias_torque_.y, d.bias_torque_.z} {
+    const auto put = [&](int r, int c, S v) { mass[18 * r + c] = mass[18 * c + r] = v; };
+    for (int i = 0; i < 3; ++i) put(i, i, d.mass_);
+    put(3, 1, -d.moment_.z);
+    put(3, 2, d.moment_.y);
+    put(4, 0, d.moment_.z);
+    put(4, 2, -d.moment_.x);
+    put(5, 0, -d.moment_.y);
+    put(5, 1, d.moment_.x);
+    put_block(3, d.inertia_);
+    for (int l = 0; l < kNumLegs; ++l) {
+      const auto& leg = d.legs_[l];
+      const int o = 6 + 3 * l;
+      put_block(o, leg.mass);
+      for (int j = 0; j < 3; ++j) {
+        for (int k = 0; k < 6; ++k) put(k, o + j, leg.coupling[j][k]);
+        bias[o + j] = leg.bias[j];
+      }
+    }
+  }
+
+  std::array<S, 324> mass{};  ///< row-major 18x18
+  std::array<S, 18> bias;     ///< force needed for zero acceleration, gravity included
+
+ private:
+  void put_block(int at, const Sym3<S>& m) {
+    const S block[3][3] = {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}};
+    for (int r = 0; r < 3; ++r) std::copy_n(block[r], 3, &mass[18 * (at + r) + at]);
+  }
+};
+
 /// Kinetic and potential energy, and momenta about the centre of mass, in world axes.
 struct Invariants {
   double energy_j;
@@ -100,9 +137,7 @@ struct Invariants {
 inline Invariants invariants(const RobotModel<double>& model, const RigidState<double>& x) {
   Dynamics<double> dynamics;
   dynamics.update(model, x);
-  std::array<double, 324> mass;
-  std::array<double, 18> bias;
-  dynamics.dense(mass, bias);
+  const std::array<double, 324> mass = DenseDynamics<double>(dynamics).mass;
   const Mat3<double> r = rotation_matrix(x.orientation);
   Motion<double> velocity;
   velocity.linear = transposed_times(r, x.velocity);

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "drivers/imu/imu.h"
-#include "rt/base/errors.h"
 #include "tests/drivers/imu/pty.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/hil/emulated/mip_device.h"
 #include "tools/hil/emulated/xsens_device.h"
@@ -71,12 +71,7 @@ class ImuTest : public testing::Test {
   }
   std::string refusal(const ImuConfig& config) {
     const std::jthread server([this](const std::stop_token& stop) { serve(stop); });
-    try {
-      const Imu imu(config);
-      return "set up";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return error_of([&] { const Imu imu(config); });
   }
 
   /// The next one: at rest, level, a period later on the device's clock.

@@ -37,6 +37,15 @@ TEST_P(EveryImuTest, IsSetUpAndStreams) {
   EXPECT_EQ(imu->counters().wrong_length, 0U);
 }
 
+TEST_P(EveryImuTest, DeviceThatDoesNotAnswerIsRefused) {
+  mute_ = true;
+  const std::string last_baud = is_mip() ? "3000000" : "2000000";
+  const std::string sensor = is_mip() ? "a MicroStrain" : "an Xsens";
+  EXPECT_EQ(refusal(config()), "IMU " + link_ + ": no answer at 115200, 230400, 460800, 921600, " +
+                                   last_baud + " baud, 0 bytes heard; is it " + sensor +
+                                   " sensor, powered, RX to TX?");
+}
+
 TEST_P(EveryImuTest, CommandThatGoesUnansweredIsRepeated) {
   forgotten_ = is_mip() ? mip::k3dmCommands : xsens::kOutputs;
   const auto imu = set_up(config());

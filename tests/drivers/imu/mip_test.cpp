@@ -6,14 +6,13 @@
 #include <random>
 #include <vector>
 
+#include "tests/drivers/imu/found_frames.h"
 #include "tools/hil/emulated/mip_device.h"
 
 namespace sandrunner::mip {
 namespace {
 
-using ByteVector = std::vector<std::uint8_t>;
-
-ByteVector bytes_of(const Packet& packet) { return {packet.bytes().begin(), packet.bytes().end()}; }
+using Found = FoundFrames<Parser>;
 
 SensorData full_data(std::uint64_t time_ns) {
   SensorData data;
@@ -25,29 +24,6 @@ SensorData full_data(std::uint64_t time_ns) {
 }
 
 ImuReading full_reading() { return to_reading(full_data(1)); }
-
-/// What a parser finds in a stream that is given to it in chunks of one size.
-struct Found {
-  explicit Found(const ByteVector& stream, std::size_t chunk = SIZE_MAX) {
-    for (std::size_t at = 0; at < stream.size(); at += std::min(chunk, stream.size() - at)) {
-      feed(Bytes(stream).subspan(at, std::min(chunk, stream.size() - at)));
-    }
-  }
-  void feed(Bytes bytes) {
-    parser.feed(bytes, 0, [this](const PacketView& packet) {
-      sets.push_back(packet.descriptor_set);
-      payloads.emplace_back(packet.payload.begin(), packet.payload.end());
-    });
-  }
-  Parser parser;
-  std::vector<std::uint8_t> sets;
-  std::vector<ByteVector> payloads;
-};
-
-ByteVector operator+(ByteVector a, const ByteVector& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 // The CV7 and GX5 manuals' examples, and frames whose checksums were computed by another program.
 TEST(MipCommandTest, CommandsAreTheManualsBytes) {
@@ -156,102 +132,12 @@ TEST(MipDataTest, FieldThatDoesNotFitItsPayloadIsCountedAndEndsIt) {
   }
 }
 
-TEST(MipParserTest, PacketSplitAnywhereIsFound) {
-  const ByteVector packet = bytes_of(encode_sensor_data(full_data(5)));
-  for (std::size_t cut = 0; cut <= packet.size(); ++cut) {
-    Found found({});
-    found.feed(Bytes(packet).first(cut));
-    found.feed(Bytes(packet).subspan(cut));
-    ASSERT_EQ(found.payloads.size(), 1U) << cut;
-    EXPECT_EQ(decode_sensor_data(found.payloads[0]), full_data(5));
-  }
-  EXPECT_EQ(Found(packet, 1).payloads.size(), 1U);
-}
-
-TEST(MipParserTest, RepliesAndDataInOneReadAreAllFound) {
-  const Found found(bytes_of(encode_sensor_data(full_data(1))) +
-                    bytes_of(acknowledge(kBaseCommands, kPing, 0)) +
-                    bytes_of(encode_sensor_data(full_data(2))));
-  EXPECT_EQ(found.sets, (std::vector<std::uint8_t>{kSensorData, kBaseCommands, kSensorData}));
-  EXPECT_EQ(found.parser.skipped_bytes(), 0U);
-}
-
-TEST(MipParserTest, GarbageBetweenPacketsIsCounted) {
-  const ByteVector packet = bytes_of(ping());
-  const ByteVector garbage{0x00, 0x75, 0x75, 0xff, 0x65};
-  for (const std::size_t chunk : {1, 2, 3, 100}) {
-    const Found found(garbage + packet + garbage + packet, chunk);
-    EXPECT_EQ(found.payloads.size(), 2U);
-    EXPECT_EQ(found.parser.skipped_bytes(), 10U);
-    EXPECT_EQ(found.parser.bad_checksums(), 0U);
-  }
-}
-
-TEST(MipParserTest, EveryBrokenByteCostsOnlyItsOwnPacket) {
-  const ByteVector packet = bytes_of(encode_sensor_data(full_data(5)));
-  ByteVector rest;
-  for (int i = 0; i < 5; ++i) rest = rest + packet;  // what a false length of 255 waits for
-  for (std::size_t at = 0; at < packet.size(); ++at) {
-    ByteVector broken = packet;
-    broken[at] ^= 0x55;
-    const Found found(packet + broken + rest);
-    EXPECT_EQ(found.payloads.size(), 6U) << at;
-    EXPECT_EQ(found.parser.skipped_bytes(), packet.size()) << at;
-    EXPECT_EQ(found.parser.bad_checksums(), at < 2 ? 0U : 1U) << at;
-  }
-}
-
-TEST(MipParserTest, PacketInsideAFalseOneIsFound) {
-  // A beginning that claims 255 bytes swallows four packets; all of them are there.
-  ByteVector stream{kSync1, kSync2, kSensorData, 255};
-  for (std::uint64_t i = 0; i < 5; ++i)
-    stream = stream + bytes_of(encode_sensor_data(full_data(i)));
-  const Found found(stream);
-  ASSERT_EQ(found.payloads.size(), 5U);
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    EXPECT_EQ(decode_sensor_data(found.payloads[i]).reference_time_ns, i);
-  }
-  EXPECT_EQ(found.parser.skipped_bytes(), 4U);
-}
-
-TEST(MipParserTest, PacketHasTheTimeOfItsFirstByte) {
-  const ByteVector stream = ByteVector{1, 2, 3} + bytes_of(ping()) + bytes_of(ping());
-  for (std::size_t cut = 1; cut < stream.size(); ++cut) {
-    Parser parser;
-    std::vector<std::int64_t> times;
-    const auto note = [&](const PacketView& packet) { times.push_back(packet.first_byte_ns); };
-    parser.feed(Bytes(stream).first(cut), 10, note);
-    parser.feed(Bytes(stream).subspan(cut), 20, note);
-    EXPECT_EQ(times, (std::vector<std::int64_t>{cut > 3 ? 10 : 20, cut > 11 ? 10 : 20})) << cut;
-  }
-}
-
-TEST(MipParserTest, RandomBytesLoseNothingThatFollows) {
-  std::mt19937 random(3);
-  const ByteVector packet = bytes_of(encode_sensor_data(full_data(9)));
-  ByteVector tail;
-  for (int i = 0; i < 10; ++i) tail = tail + packet;
-  for (int round = 0; round < 200; ++round) {
-    ByteVector noise(random() % 600);
-    for (auto& byte : noise) {
-      const unsigned kind = random() % 4;
-      byte = kind == 0 ? kSync1 : kind == 1 ? kSync2 : static_cast<std::uint8_t>(random());
-    }
-    const Found found(noise + tail, 1 + random() % 70);
-    // A false length in the noise's end may still wait for more than the tail has.
-    EXPECT_GE(found.payloads.size(), 6U);
-    for (const ByteVector& payload : found.payloads) {
-      EXPECT_EQ(decode_sensor_data(payload), full_data(9));
-    }
-  }
-}
-
 TEST(MipDeviceTest, StreamsWhatItIsToldToAtTheDecimatedRates) {
   Device device(1000, 115200);
   const auto tell = [&device](const Packet& command) {
     Found replies(device.receive(command.bytes()));
-    ASSERT_EQ(replies.payloads.size(), 1U);
-    const auto reply = find_reply(replies.payloads[0], command.payload()[1]);
+    ASSERT_EQ(replies.datas.size(), 1U);
+    const auto reply = find_reply(replies.datas[0], command.payload()[1]);
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->code, kAckOk);
   };
@@ -266,7 +152,7 @@ TEST(MipDeviceTest, StreamsWhatItIsToldToAtTheDecimatedRates) {
   int packets = 0, quaternions = 0;
   for (int i = 0; i < 40; ++i) {
     const Found sent(device.tick(full_reading()));
-    for (const ByteVector& payload : sent.payloads) {
+    for (const ByteVector& payload : sent.datas) {
       ++packets;
       quaternions += decode_sensor_data(payload).quaternion_wxyz ? 1 : 0;
     }
@@ -281,7 +167,7 @@ TEST(MipDeviceTest, RefusesWhatItDoesNotKnow) {
   Device device(1000, 115200);
   const auto code = [&device](const Packet& command) {
     Found replies(device.receive(command.bytes()));
-    return find_reply(replies.payloads.at(0), command.payload()[1])->code;
+    return find_reply(replies.datas.at(0), command.payload()[1])->code;
   };
   const std::array<DecimatedField, 1> magnetometer{{{0x06, 1}}};
   EXPECT_EQ(code(message_format(kSensorData, magnetometer)), kNackParameter);

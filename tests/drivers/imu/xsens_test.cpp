@@ -6,16 +6,13 @@
 #include <random>
 #include <vector>
 
+#include "tests/drivers/imu/found_frames.h"
 #include "tools/hil/emulated/xsens_device.h"
 
 namespace sandrunner::xsens {
 namespace {
 
-using ByteVector = std::vector<std::uint8_t>;
-
-ByteVector bytes_of(const Message& message) {
-  return {message.bytes().begin(), message.bytes().end()};
-}
+using Found = FoundFrames<Parser>;
 
 SensorData full_data(std::uint32_t time) {
   SensorData data;
@@ -24,29 +21,6 @@ SensorData full_data(std::uint32_t time) {
   data.acceleration_mps2 = {0.125F, -0.25F, 9.75F};
   data.rate_of_turn_radps = {1.5F, -2.5F, 0.0625F};
   return data;
-}
-
-/// What a parser finds in a stream that is given to it in chunks of one size.
-struct Found {
-  explicit Found(const ByteVector& stream, std::size_t chunk = SIZE_MAX) {
-    for (std::size_t at = 0; at < stream.size(); at += std::min(chunk, stream.size() - at)) {
-      feed(Bytes(stream).subspan(at, std::min(chunk, stream.size() - at)));
-    }
-  }
-  void feed(Bytes bytes) {
-    parser.feed(bytes, 0, [this](const MessageView& message) {
-      ids.push_back(message.id);
-      datas.emplace_back(message.data.begin(), message.data.end());
-    });
-  }
-  Parser parser;
-  std::vector<std::uint8_t> ids;
-  std::vector<ByteVector> datas;
-};
-
-ByteVector operator+(ByteVector a, const ByteVector& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 // The first two as the maker's documentation prints them (mtidocs.movella.com, "MT low level
@@ -82,7 +56,7 @@ TEST(XsensDataTest, DocumentedMessageIsRead) {
                            0x0C, 0xBB, 0xAA, 0x5C, 0x80, 0x3B, 0x8C, 0x55, 0x01, 0xBB, 0x81,
                            0x33, 0x00, 0xE0, 0x20, 0x04, 0x00, 0x00, 0x00, 0x81, 0x45};
   const Found found(message);
-  ASSERT_EQ(found.ids, ByteVector{kSensorData});
+  ASSERT_EQ(found.kinds, ByteVector{kSensorData});
   const SensorData data = decode_sensor_data(found.datas[0]);
   EXPECT_EQ(data.sample_time, 4562336U);
   EXPECT_FALSE(data.quaternion_wxyz);
@@ -151,18 +125,6 @@ TEST(XsensDataTest, FieldThatDoesNotFitItsMessageIsCountedAndEndsIt) {
   }
 }
 
-TEST(XsensParserTest, MessageSplitAnywhereIsFound) {
-  const ByteVector message = bytes_of(encode_sensor_data(full_data(5)));
-  for (std::size_t cut = 0; cut <= message.size(); ++cut) {
-    Found found({});
-    found.feed(Bytes(message).first(cut));
-    found.feed(Bytes(message).subspan(cut));
-    ASSERT_EQ(found.datas.size(), 1U) << cut;
-    EXPECT_EQ(decode_sensor_data(found.datas[0]), full_data(5));
-  }
-  EXPECT_EQ(Found(message, 1).datas.size(), 1U);
-}
-
 // A length of 255 or more takes three bytes: FF and the number.
 TEST(XsensParserTest, LongMessageIsFound) {
   for (const std::size_t size : {254, 255, 256, 2048}) {
@@ -194,66 +156,6 @@ TEST(XsensParserTest, LengthThatNoMessageHasIsNotWaitedFor) {
   }
 }
 
-TEST(XsensParserTest, GarbageBetweenMessagesIsCounted) {
-  const ByteVector message = bytes_of(Message(kGoToMeasurement));
-  const ByteVector garbage{0x00, 0xFA, 0xFA, 0x36, 0xFF};
-  for (const std::size_t chunk : {1, 2, 3, 100}) {
-    const Found found(garbage + message + garbage + message, chunk);
-    EXPECT_EQ(found.datas.size(), 2U);
-    EXPECT_EQ(found.parser.skipped_bytes(), 10U);
-    EXPECT_EQ(found.parser.bad_checksums(), 0U);
-  }
-}
-
-TEST(XsensParserTest, EveryBrokenByteCostsOnlyItsOwnMessage) {
-  const ByteVector message = bytes_of(encode_sensor_data(full_data(5)));
-  ByteVector rest;
-  for (int i = 0; i < 5; ++i) rest = rest + message;  // what a false length of 254 waits for
-  for (std::size_t at = 0; at < message.size(); ++at) {
-    ByteVector broken = message;
-    broken[at] ^= 0x55;
-    const Found found(message + broken + rest);
-    EXPECT_EQ(found.datas.size(), 6U) << at;
-    EXPECT_EQ(found.parser.skipped_bytes(), message.size()) << at;
-    EXPECT_EQ(found.parser.bad_checksums(), at < 2 ? 0U : 1U) << at;
-  }
-}
-
-TEST(XsensParserTest, MessageInsideAFalseOneIsFound) {
-  ByteVector stream{kPreamble, kBus, kSensorData, 254};
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    stream = stream + bytes_of(encode_sensor_data(full_data(i)));
-  }
-  const Found found(stream);
-  ASSERT_EQ(found.datas.size(), 5U);
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    EXPECT_EQ(decode_sensor_data(found.datas[i]).sample_time, i);
-  }
-  EXPECT_EQ(found.parser.skipped_bytes(), 4U);
-}
-
-TEST(XsensParserTest, RandomBytesLoseNothingThatFollows) {
-  std::mt19937 random(3);
-  const ByteVector message = bytes_of(encode_sensor_data(full_data(9)));
-  ByteVector tail;
-  for (int i = 0; i < 50; ++i) tail = tail + message;
-  for (int round = 0; round < 200; ++round) {
-    ByteVector noise(random() % 600);
-    for (auto& byte : noise) {
-      const unsigned kind = random() % 4;
-      byte = kind == 0 ? kPreamble : kind == 1 ? kBus : static_cast<std::uint8_t>(random());
-    }
-    const Found found(noise + tail, 1 + random() % 70);
-    // A false length in the noise's end may still wait for more than the tail has.
-    EXPECT_GE(found.datas.size(), 16U);
-    for (const ByteVector& data : found.datas) {
-      if (data.size() == 56) {
-        EXPECT_EQ(decode_sensor_data(data), full_data(9));
-      }
-    }
-  }
-}
-
 TEST(XsensClockTest, GoesOnWhereTheDevicesTimeBeginsAnew) {
   SampleClock clock;
   const std::uint64_t first = clock.update(0xFFFFFFF0);
@@ -279,7 +181,7 @@ TEST(XsensDeviceTest, SendsWhatItGrantedAtItsRates) {
   EXPECT_TRUE(device.streaming()) << "after power-up";
   const auto tell = [&device](const Message& message) {
     const Found answers(device.receive(message.bytes()));
-    EXPECT_EQ(answers.ids, ByteVector{static_cast<std::uint8_t>(message.id() + 1)});
+    EXPECT_EQ(answers.kinds, ByteVector{static_cast<std::uint8_t>(message.id() + 1)});
     return answers.datas.empty() ? ByteVector{} : answers.datas[0];
   };
   tell(Message(kGoToConfig));
@@ -314,7 +216,7 @@ TEST(XsensDeviceTest, RefusesWhatItDoesNotKnowOrNotNow) {
   Device device(400, 115200);
   const auto error = [&device](const Message& message) {
     const Found answers(device.receive(message.bytes()));
-    return answers.ids == ByteVector{kError} ? answers.datas.at(0).at(0) : 0;
+    return answers.kinds == ByteVector{kError} ? answers.datas.at(0).at(0) : 0;
   };
   EXPECT_EQ(error(Message(kProductCode)), kInvalidMessage) << "it measures";
   device.receive(Message(kGoToConfig).bytes());

@@ -14,6 +14,7 @@
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
 #include "tests/drivers/robot/example.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner {
 namespace {
@@ -129,12 +130,7 @@ TEST_F(CanGuardTest, WhereDrivesAreOffNothingIsSent) {
 
 TEST_F(CanGuardTest, ABusThatItCannotOpenIsARefusedStart) {
   CanGuard guard({}, kTimeout_s, []() -> CanGuard::Send { throw InputError("can7: no bus"); });
-  try {
-    guard.start();
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "can7: no bus");
-  }
+  EXPECT_EQ(error_of([&] { guard.start(); }), "can7: no bus");
 }
 
 TEST(OffFramesTest, AGuardIsForDrivesWhoseTimeOutNobodyCanVerify) {

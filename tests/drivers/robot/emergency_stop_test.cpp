@@ -8,7 +8,7 @@
 #include <string>
 
 #include "rt/base/clock_ns.h"
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/wait_until.h"
 
 namespace sandrunner {
@@ -72,12 +72,8 @@ TEST(EmergencyStopTest, ALineThatIsNotReadAnyMoreStops) {
 
 TEST(StopLineTest, AChipThatIsNoneIsRefusedWithItsName) {
   for (const char* chip : {"/dev/nosuch", "/dev/null"}) {
-    try {
-      const StopLine line({.chip = chip, .line = 4});
-      FAIL() << chip;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(std::string(chip) + " line 4"), std::string::npos);
-    }
+    const std::string error = error_of([&] { StopLine({.chip = chip, .line = 4}); });
+    EXPECT_NE(error.find(std::string(chip) + " line 4"), std::string::npos) << error;
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "rt/base/errors.h"
 #include "tests/drivers/robot/example.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner {
 namespace {
@@ -32,14 +33,10 @@ std::string refusal(const std::string& name, const std::string& from, const std:
   ConfigTree tree;
   tree.add_text(text, "test.toml");
   if (!assignment.empty()) tree.set(assignment);
-  try {
+  return error_of([&] {
     read_hardware_config(tree, example_robot(), example_gate());
     tree.reject_unknown();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "taken";
+  });
 }
 
 TEST(HardwareConfigTest, ExamplesNameEveryJointOnce) {
@@ -135,12 +132,8 @@ TEST(HardwareConfigTest, AJointWithoutADriveIsNamed) {
   text.resize(text.rfind("[[hardware.drive]]"));
   ConfigTree tree;
   tree.add_text(text, "test.toml");
-  try {
-    read_hardware_config(tree, example_robot(), example_gate());
-    FAIL() << "taken";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("found none of joint RH_KFE"));
-  }
+  EXPECT_THAT(error_of([&] { read_hardware_config(tree, example_robot(), example_gate()); }),
+              HasSubstr("found none of joint RH_KFE"));
 }
 
 TEST(HardwareConfigTest, AgesOfTheGateFollowTheRateOfTheExchange) {
@@ -198,7 +191,7 @@ TEST(HardwareConfigTest, EveryTorqueCommandOfAScaledRobotFitsASmallerDrive) {
   const char* const own = "max_torque_nm = 65.0";
   const char* const smaller = "max_torque_nm = 13.0";
   EXPECT_THAT(refusal("moteus", own, smaller), HasSubstr("torque up to 63.45 N m needed, 13"));
-  EXPECT_EQ(refusal("moteus", own, smaller, "hardware.torque_scale=0.2"), "taken");
+  EXPECT_EQ(refusal("moteus", own, smaller, "hardware.torque_scale=0.2"), "");
 }
 
 }  // namespace

@@ -33,6 +33,14 @@ class CommandWatchTest : public testing::Test {
   static ControllerSigns silent_since(std::int64_t since_ms, std::int64_t ms) {
     return alive(std::min(since_ms, ms));
   }
+  /// Alive, with this sign from 10 ms on.
+  static Controller from_10_ms(bool ControllerSigns::* sign) {
+    return [sign](std::int64_t ms) {
+      ControllerSigns signs = alive(ms);
+      signs.*sign = ms >= 10;
+      return signs;
+    };
+  }
 
   Action next(std::int64_t ms, const ControllerSigns& signs) {
     return watch_.next(ms * kMs, signs);
@@ -82,11 +90,7 @@ TEST_F(CommandWatchTest, AControllerThatComesBackIsNotFollowed) {
 }
 
 TEST_F(CommandWatchTest, CutDrivesAreDampedAtOnceThenOff) {
-  const auto cut = [](std::int64_t ms) {
-    ControllerSigns signs = alive(ms);
-    signs.cut = ms >= 10;
-    return signs;
-  };
+  const Controller cut = from_10_ms(&ControllerSigns::cut);
   EXPECT_EQ(end_of(Action::kFollow, 0, cut), 10);
   EXPECT_EQ(last_, Action::kDamp);
   EXPECT_EQ(end_of(Action::kDamp, 12, cut), 2010);
@@ -106,11 +110,7 @@ TEST_F(CommandWatchTest, DrivesThatWereOffStayOff) {
 }
 
 TEST_F(CommandWatchTest, AnEndedControllerIsSwitchedOffWithoutDamping) {
-  const auto ended = [](std::int64_t ms) {
-    ControllerSigns signs = alive(ms);
-    signs.ended = ms >= 10;
-    return signs;
-  };
+  const Controller ended = from_10_ms(&ControllerSigns::ended);
   EXPECT_EQ(end_of(Action::kFollow, 0, ended), 10);
   EXPECT_EQ(last_, Action::kOff);
   EXPECT_EQ(end_of(Action::kOff, 12, ended), 30);
@@ -118,11 +118,7 @@ TEST_F(CommandWatchTest, AnEndedControllerIsSwitchedOffWithoutDamping) {
 }
 
 TEST_F(CommandWatchTest, AnotherProgramsCommandsEndOursAfterAMomentOfDamping) {
-  const auto foreign = [](std::int64_t ms) {
-    ControllerSigns signs = alive(ms);
-    signs.foreign = ms >= 10;
-    return signs;
-  };
+  const Controller foreign = from_10_ms(&ControllerSigns::foreign);
   EXPECT_EQ(end_of(Action::kFollow, 0, foreign), 10);
   EXPECT_EQ(last_, Action::kDamp);
   EXPECT_EQ(end_of(Action::kDamp, 12, foreign), 20);

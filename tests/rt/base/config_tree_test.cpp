@@ -6,12 +6,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
 
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner {
@@ -21,19 +20,6 @@ ConfigTree from(const std::string& toml, const std::string& origin = "a.toml") {
   ConfigTree config;
   config.add_text(toml, origin);
   return config;
-}
-
-/// The message of the InputError that `action` must throw.
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    std::string message = error.what();
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    return message;
-  }
-  ADD_FAILURE() << "no InputError";
-  return {};
 }
 
 std::string number_error(const std::string& value, double min, double max) {

@@ -7,20 +7,11 @@
 #include <filesystem>
 #include <string>
 
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {
-
-std::string error_of_reading(const std::string& path) {
-  try {
-    read_input_file(path, "a list");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 TEST(InputFileTest, BytesComeBackAsTheyAre) {
   const TemporaryFolder folder;
@@ -34,11 +25,11 @@ TEST(InputFileTest, BytesComeBackAsTheyAre) {
 TEST(InputFileTest, WhatIsNoRegularFileIsRefused) {
   const TemporaryFolder folder;
   const std::string absent = folder.path("absent"), pipe = folder.path("pipe");
-  EXPECT_EQ(error_of_reading(absent),
+  EXPECT_EQ(error_of([&] { read_input_file(absent, "a list"); }),
             absent + ": cannot be read (No such file or directory), expected a list");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string& path : {folder.path(""), std::string("/dev/zero"), pipe}) {
-    EXPECT_EQ(error_of_reading(path),
+    EXPECT_EQ(error_of([&] { read_input_file(path, "a list"); }),
               path + ": cannot be read (not a regular file), expected a list");
   }
 }
@@ -50,7 +41,7 @@ TEST(InputFileTest, AHugeFileIsRefused) {
   std::filesystem::resize_file(path, kLargestInputFile_bytes);
   EXPECT_EQ(read_input_file(path, "a list").size(), kLargestInputFile_bytes);
   std::filesystem::resize_file(path, kLargestInputFile_bytes + 1);
-  EXPECT_EQ(error_of_reading(path),
+  EXPECT_EQ(error_of([&] { read_input_file(path, "a list"); }),
             path + ": cannot be read (more than 67108864 bytes), expected a list");
 }
 

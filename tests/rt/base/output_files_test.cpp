@@ -8,20 +8,11 @@
 #include <filesystem>
 #include <string>
 
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {
-
-std::string error_of_write(const std::string& path, std::string_view bytes = "new") {
-  try {
-    write_file(path, bytes);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 TEST(WriteFileTest, BytesComeBackAsTheyAre) {
   const TemporaryFolder folder;
@@ -35,9 +26,11 @@ TEST(WriteFileTest, BytesComeBackAsTheyAre) {
 TEST(WriteFileTest, PathAndReasonAreNamedAndNothingIsLeft) {
   const TemporaryFolder folder;
   const std::string absent = folder.path("absent/file");
-  EXPECT_EQ(error_of_write(absent), absent + ": cannot be written (No such file or directory)");
-  EXPECT_EQ(error_of_write("/dev/full"), "/dev/full: cannot be written (not a regular file)");
-  EXPECT_EQ(error_of_write(folder.path("")),
+  EXPECT_EQ(error_of([&] { write_file(absent, "new"); }),
+            absent + ": cannot be written (No such file or directory)");
+  EXPECT_EQ(error_of([] { write_file("/dev/full", "new"); }),
+            "/dev/full: cannot be written (not a regular file)");
+  EXPECT_EQ(error_of([&] { write_file(folder.path(""), "new"); }),
             folder.path("") + ": cannot be written (not a regular file)");
   EXPECT_EQ(folder.number_of_files(), 0u);
 }
@@ -59,7 +52,7 @@ TEST(WriteFileTest, OldContentSurvivesADiskThatIsFull) {
   getrlimit(RLIMIT_FSIZE, &limit);
   const rlimit small{4096, limit.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  const std::string error = error_of_write(path, std::string(8192, 'x'));
+  const std::string error = error_of([&] { write_file(path, std::string(8192, 'x')); });
   setrlimit(RLIMIT_FSIZE, &limit);
   signal(SIGXFSZ, old_handler);
   EXPECT_EQ(error, path + ": cannot be written (File too large)");

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner {
 namespace {
@@ -68,12 +68,7 @@ TEST(SettingsTest, ValuesBeyondARowAreRefusedByFileLineAndKey) {
     ConfigTree tree;
     tree.add_text("\n" + text, "test.toml");
     Some some;
-    try {
-      read_settings(tree, "", kSome, some);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return error_of([&] { read_settings(tree, "", kSome, some); });
   };
   EXPECT_EQ(refusal("speed_mps = 2.1"),
             "test.toml:2: speed_mps: found 2.1, expected a finite number from 0 to 2");

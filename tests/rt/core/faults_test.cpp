@@ -257,8 +257,7 @@ TEST_F(ResetTest, OtherRequestsDoNothing) {
 TEST_F(ResetTest, SecondFaultIsAddedButTheFirstStaysFirst) {
   loop.spoil = [](ControllerInput& seen) { seen.sensors.joints.position_rad[0] = kNan; };
   loop.tick();
-  EXPECT_EQ(loop.output.faults, static_cast<std::uint64_t>(Fault::kJointSpeed) |
-                                    static_cast<std::uint64_t>(Fault::kNonFiniteJoint));
+  EXPECT_EQ(loop.output.faults, fault_bit(Fault::kJointSpeed) | fault_bit(Fault::kNonFiniteJoint));
   EXPECT_EQ(loop.controller.state().gate.first_fault, Fault::kJointSpeed);
   EXPECT_TRUE(only_brakes(loop.output.command));
 }

@@ -73,28 +73,19 @@ TEST_F(ImuJudgeTest, AnImuAtRestHasNoFault) {
   EXPECT_EQ(run_s(3.0), 0u);
 }
 
-TEST_F(ImuJudgeTest, EachAxisOfTheGyroscopeEndsAtItsRange) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double sign : {-1.0, 1.0}) {
-      memory = {};
-      imu.angular_velocity_radps = {};
-      imu.angular_velocity_radps[axis] = sign * kGyroRange_radps;
-      EXPECT_EQ(judge() & kRange, 0u) << axis;
-      imu.angular_velocity_radps[axis] = sign * std::nextafter(kGyroRange_radps, 1e9);
-      EXPECT_EQ(judge() & kRange, kRange) << axis;
-    }
-  }
-}
-
-TEST_F(ImuJudgeTest, EachAxisOfTheAccelerometerEndsAtItsRange) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double sign : {-1.0, 1.0}) {
-      memory = {};
-      imu.linear_acceleration_mps2 = {};
-      imu.linear_acceleration_mps2[axis] = sign * kAccelerometerRange_mps2;
-      EXPECT_EQ(judge() & kRange, 0u) << axis;
-      imu.linear_acceleration_mps2[axis] = sign * std::nextafter(kAccelerometerRange_mps2, 1e9);
-      EXPECT_EQ(judge() & kRange, kRange) << axis;
+TEST_F(ImuJudgeTest, EachAxisOfGyroscopeAndAccelerometerEndsAtItsRange) {
+  for (const auto& [sensor, range] :
+       {std::pair{&ImuSample::angular_velocity_radps, kGyroRange_radps},
+        std::pair{&ImuSample::linear_acceleration_mps2, kAccelerometerRange_mps2}}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        memory = {};
+        imu = {};
+        (imu.*sensor)[axis] = sign * range;
+        EXPECT_EQ(judge() & kRange, 0u) << axis << ", " << range;
+        (imu.*sensor)[axis] = sign * std::nextafter(range, 1e9);
+        EXPECT_EQ(judge() & kRange, kRange) << axis << ", " << range;
+      }
     }
   }
 }

@@ -28,8 +28,8 @@ class LostZeroTest : public testing::Test {
     returned = true;
     loop.run_s(0.01);
   }
-  void expect_not_armed() {
-    EXPECT_EQ(loop.output.mode, Mode::kFault);
+  void expect_arm_refused() {
+    request(ModeRequest::kArm, Mode::kFault);
     EXPECT_EQ(loop.output.first_fault, Fault::kJointMisplaced)
         << fault_name(loop.output.first_fault);
     EXPECT_FALSE(loop.output.command.enabled());
@@ -48,15 +48,13 @@ TEST_F(LostZeroTest, IsFoundIfArmFollowsTheResetAfterAWhile) {
   returns();
   request(ModeRequest::kResetFault, Mode::kPassive);
   loop.run_s(0.01);
-  request(ModeRequest::kArm, Mode::kFault);
-  expect_not_armed();
+  expect_arm_refused();
 }
 
 TEST_F(LostZeroTest, IsFoundIfArmFollowsTheResetInTheNextTick) {
   returns();
   request(ModeRequest::kResetFault, Mode::kPassive);
-  request(ModeRequest::kArm, Mode::kFault);
-  expect_not_armed();
+  expect_arm_refused();
 }
 
 TEST_F(LostZeroTest, IsFoundAfterARefusedResetAndAnotherInTheNextTick) {
@@ -66,27 +64,24 @@ TEST_F(LostZeroTest, IsFoundAfterARefusedResetAndAnotherInTheNextTick) {
   pressed = false;
   request(ModeRequest::kResetFault, Mode::kPassive);
   loop.run_s(0.01);
-  request(ModeRequest::kArm, Mode::kFault);
-  expect_not_armed();
+  expect_arm_refused();
 }
 
 TEST_F(LostZeroTest, IsFoundIfTheJointReturnsInTheTickOfTheReset) {
   returned = true;
   request(ModeRequest::kResetFault, Mode::kPassive);
   loop.run_s(0.01);
-  request(ModeRequest::kArm, Mode::kFault);
-  expect_not_armed();
+  expect_arm_refused();
 }
 
 TEST_F(LostZeroTest, IsFoundAgainIfTheResetFollowsTheRefusedArmInTheNextTick) {
   returns();
   request(ModeRequest::kResetFault, Mode::kPassive);
   loop.run_s(0.01);
-  request(ModeRequest::kArm, Mode::kFault);
+  expect_arm_refused();
   request(ModeRequest::kResetFault, Mode::kPassive);
   loop.run_s(0.01);
-  request(ModeRequest::kArm, Mode::kFault);
-  expect_not_armed();
+  expect_arm_refused();
 }
 
 TEST_F(LostZeroTest, IsForgivenOnceTheJointWasWhereItShouldBe) {

@@ -51,11 +51,27 @@ class SafetyGateTest : public testing::Test {
   SafeCommand pass(const JointCommand& to_pass, bool enabled = true) {
     return gate.pass(to_pass, enabled, sensors.joints, state);
   }
+  /// The drives then report the torques that were commanded.
+  void pass_and_follow() {
+    pass(wanted);
+    sensors.joints.torque_nm = state.joints.commanded_nm;
+  }
+  /// A tick in Stand; from then on joint 4 is commanded to `target_rad`.
+  std::uint64_t stand_at(double target_rad) {
+    const std::uint64_t found = judge(Mode::kStand);
+    wanted.position_rad[4] = target_rad;
+    pass_and_follow();
+    return found;
+  }
+  void stamp(std::uint64_t tick, std::uint64_t joints_tick, std::uint64_t imu_tick) {
+    sensors.tick = tick;
+    sensors.joints.tick.fill(joints_tick);
+    sensors.imu.tick = imu_tick;
+  }
   /// The next tick is this many too late, with fresh samples.
   void stall(std::uint64_t missed) {
-    sensors.tick = state.tick + 1 + missed;
-    sensors.joints.tick.fill(sensors.tick);
-    sensors.imu.tick = sensors.tick;
+    const std::uint64_t tick = state.tick + 1 + missed;
+    stamp(tick, tick, tick);
   }
   void tilt(double angle_deg) {
     const double half_rad = angle_deg * std::numbers::pi / 360.0;
@@ -95,7 +111,7 @@ TEST_F(SafetyGateTest, AfterAFaultAJointWhoseEncoderFreezesIsNoLongerBrakedByIts
   EXPECT_EQ(pass(wanted).blind_joints(), 1u << 4);
   for (int n = 0; n < 4000; ++n) judge(Mode::kFault);
   EXPECT_EQ(pass(wanted).blind_joints(), 1u << 4);
-  EXPECT_EQ(state.faults, static_cast<std::uint64_t>(Fault::kEmergencyStop));
+  EXPECT_EQ(state.faults, fault_bit(Fault::kEmergencyStop));
 }
 
 TEST_F(SafetyGateTest, AJointInDampingWhoseEncoderFreezesIsAFaultUnlessItRests) {
@@ -103,40 +119,26 @@ TEST_F(SafetyGateTest, AJointInDampingWhoseEncoderFreezesIsAFaultUnlessItRests) 
   for (int n = 0; n < 4000; ++n) ASSERT_EQ(judge(Mode::kDamping), 0u);
   sensors.joints.velocity_radps[4] = 3.0;
   for (int n = 0; n < 7; ++n) ASSERT_EQ(judge(Mode::kDamping), 0u);  // less than 0.005 rad
-  EXPECT_EQ(judge(Mode::kDamping), static_cast<std::uint64_t>(Fault::kEncoderFrozen));
+  EXPECT_EQ(judge(Mode::kDamping), fault_bit(Fault::kEncoderFrozen));
   EXPECT_EQ(pass(wanted).blind_joints(), 1u << 4);
 }
 
 TEST_F(SafetyGateTest, AnEncoderThatFreezesInStandIsAFaultOnceTheJointIsToldToMove) {
   sensors.joints.velocity_radps.fill(0.02);  // at rest, by a coarse drive
-  const auto stand_at = [&](double target_rad) {
-    const std::uint64_t found = judge(Mode::kStand);
-    wanted.position_rad[4] = target_rad;
-    pass(wanted);
-    sensors.joints.torque_nm = state.joints.commanded_nm;
-    return found;
-  };
   wanted.kp_nmprad.fill(100.0);
   for (int n = 0; n < 4000; ++n) ASSERT_EQ(stand_at(0.6), 0u);
   double target_rad = 0.6;
   std::uint64_t found = 0;
   while (found == 0 && target_rad < 2.0) found = stand_at(target_rad += 1e-3);
-  EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kEncoderFrozen));
+  EXPECT_EQ(found, fault_bit(Fault::kEncoderFrozen));
   const double later_rad = 1e-3 * static_cast<double>(config.frozen_ticks);
   EXPECT_NEAR(target_rad, 0.6 + config.frozen_commanded_rad + later_rad, 0.01);
 }
 
 TEST_F(SafetyGateTest, AJointThatHasRestedForLongHasTimeToFollowATargetThatMovesAtOnce) {
-  const auto stand_at = [&](double target_rad) {
-    const std::uint64_t found = judge(Mode::kStand);
-    wanted.position_rad[4] = target_rad;
-    pass(wanted);
-    sensors.joints.torque_nm = state.joints.commanded_nm;
-    return found;
-  };
   for (int n = 0; n < 4000; ++n) ASSERT_EQ(stand_at(0.6), 0u);
   for (std::uint64_t n = 0; n < config.frozen_ticks; ++n) ASSERT_EQ(stand_at(1.2), 0u) << n;
-  EXPECT_EQ(stand_at(1.2), static_cast<std::uint64_t>(Fault::kEncoderFrozen));
+  EXPECT_EQ(stand_at(1.2), fault_bit(Fault::kEncoderFrozen));
 }
 
 TEST_F(SafetyGateTest, OneJointMayRestWhileTheOthersAndTheBodyMove) {
@@ -150,13 +152,12 @@ TEST_F(SafetyGateTest, OneJointMayRestWhileTheOthersAndTheBodyMove) {
     return judge(Mode::kStand);
   };
   for (int n = 0; n < 4000; ++n) {
-    pass(wanted);
-    sensors.joints.torque_nm = state.joints.commanded_nm;
+    pass_and_follow();
     ASSERT_EQ(stand(kNumJoints - 1), 0u) << n;
   }
   std::uint64_t found = 0;
   for (int n = 0; n < 1000 && found == 0; ++n) found = stand(kNumJoints);
-  EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kEncoderFrozen));
+  EXPECT_EQ(found, fault_bit(Fault::kEncoderFrozen));
 }
 
 TEST_F(SafetyGateTest, AnAttitudeThatIsSentWithEveryTenthSampleMayBeLostOnce) {
@@ -166,8 +167,7 @@ TEST_F(SafetyGateTest, AnAttitudeThatIsSentWithEveryTenthSampleMayBeLostOnce) {
   const auto stand = [&] {
     sensors.imu.angular_velocity_radps[2] = sensors.tick % 2 == 0 ? 1e-6 : -1e-6;
     sensors.imu.linear_acceleration_mps2[2] = kGravity_mps2 + sensors.imu.angular_velocity_radps[2];
-    pass(wanted);
-    sensors.joints.torque_nm = state.joints.commanded_nm;
+    pass_and_follow();
     return judge(rare, Mode::kStand);
   };
   for (int n = 0; n < 28; ++n) ASSERT_EQ(stand(), 0u) << n;
@@ -178,8 +178,7 @@ TEST_F(SafetyGateTest, WhatIsFoundAfterAStallIsTheStallsDoing) {
   judge(Mode::kWalk);
   stall(config.stall_fault_ticks + 1);
   sensors.joints.velocity_radps[2] = 2.0 * config.speed_fault_radps[2];
-  EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kLoopStalled) |
-                                    static_cast<std::uint64_t>(Fault::kJointSpeed));
+  EXPECT_EQ(judge(Mode::kWalk), fault_bit(Fault::kLoopStalled) | fault_bit(Fault::kJointSpeed));
   EXPECT_EQ(state.first_fault, Fault::kLoopStalled);
 }
 
@@ -188,8 +187,7 @@ TEST_F(SafetyGateTest, DrivesThatWereCutComeBeforeTheStallThatLedToIt) {
   judge(Mode::kWalk);
   stall(config.stall_fault_ticks + 1);
   sensors.drives_cut = 1;
-  EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kLoopStalled) |
-                                    static_cast<std::uint64_t>(Fault::kDrivesCut));
+  EXPECT_EQ(judge(Mode::kWalk), fault_bit(Fault::kLoopStalled) | fault_bit(Fault::kDrivesCut));
   EXPECT_EQ(state.first_fault, Fault::kDrivesCut);
 }
 
@@ -209,7 +207,7 @@ TEST_F(SafetyGateTest, AStallOfTicksInManyPiecesIsAFaultUnlessTheLoopRanAsLong) 
   for (int n = 0; n < 20; ++n) ASSERT_EQ(after(100, 100), 0u) << n;
   EXPECT_EQ(after(90, 100), 0u);
   EXPECT_EQ(after(90, 100), 0u);
-  EXPECT_EQ(after(90, 100), static_cast<std::uint64_t>(Fault::kLoopStalled));
+  EXPECT_EQ(after(90, 100), fault_bit(Fault::kLoopStalled));
 }
 
 TEST_F(SafetyGateTest, WhatTheLoopMissedInPassiveIsSoonOver) {
@@ -326,13 +324,11 @@ TEST_F(SafetyGateTest, NoSettingPutsAThresholdBeyondItsCeiling) {
   config.kp_limit_nmprad = 1e300;
   const SafetyGate loose(config, {2.0, 2.0, 2.0});
   tilt(80.1);
-  EXPECT_EQ(judge(loose, Mode::kStand), static_cast<std::uint64_t>(Fault::kTilt));
+  EXPECT_EQ(judge(loose, Mode::kStand), fault_bit(Fault::kTilt));
   state = {};
   tilt(0.0);
-  sensors.tick = 100;
-  sensors.imu.tick = 100;
-  sensors.joints.tick.fill(100 - 41);
-  EXPECT_EQ(judge(loose, Mode::kStand), static_cast<std::uint64_t>(Fault::kJointsStale));
+  stamp(100, 100 - 41, 100);
+  EXPECT_EQ(judge(loose, Mode::kStand), fault_bit(Fault::kJointsStale));
   state = {};
   wanted.kp_nmprad.fill(1e6);
   EXPECT_EQ(loose.pass(wanted, true, sensors.joints, state).joints().kp_nmprad[0], 1000.0);
@@ -364,7 +360,7 @@ TEST_F(SafetyGateTest, EachJointOfALegHasItsOwnSpeedAndItsOwnContinuousTorque) {
   gate = SafetyGate(config, {2.0, 2.0, 2.0});
   sensors.joints.velocity_radps[4] = sensors.joints.velocity_radps[5] = 35.0;
   sensors.joints.torque_nm[8] = 15.0;
-  EXPECT_EQ(judge(Mode::kWalk), static_cast<std::uint64_t>(Fault::kJointSpeed));
+  EXPECT_EQ(judge(Mode::kWalk), fault_bit(Fault::kJointSpeed));
   EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 5);
   state = {};
   sensors.joints.velocity_radps.fill(0.0);
@@ -373,7 +369,7 @@ TEST_F(SafetyGateTest, EachJointOfALegHasItsOwnSpeedAndItsOwnContinuousTorque) {
   EXPECT_EQ(found, 0u);
   sensors.joints.torque_nm[7] = 15.0;
   for (int n = 0; n < 10 && found == 0; ++n) found = judge(Mode::kWalk);
-  EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kOverload));
+  EXPECT_EQ(found, fault_bit(Fault::kOverload));
   EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 7);
 }
 
@@ -410,9 +406,7 @@ TEST_F(SafetyGateTest, LimitsAreCountedWithoutAFault) {
   sensors.joints.position_rad[5] = 0.1;
   sensors.joints.velocity_radps[4] = -60.0;
   tilt(59.999);
-  sensors.tick = 40;
-  sensors.joints.tick.fill(40 - 8);
-  sensors.imu.tick = 0;
+  stamp(40, 40 - 8, 0);
   EXPECT_EQ(judge(Mode::kWalk), 0u);
   EXPECT_EQ(state.counters.joint_past_stop, 1u);
   EXPECT_EQ(state.counters.joint_too_fast, 1u);
@@ -426,9 +420,7 @@ TEST_F(SafetyGateTest, NothingIsCountedWithinLimits) {
   sensors.joints.position_rad[2] = 0.0;
   sensors.joints.velocity_radps[4] = 25.0;
   tilt(44.999);
-  sensors.tick = 10;
-  sensors.joints.tick.fill(8);
-  sensors.imu.tick = 2;
+  stamp(10, 8, 2);
   EXPECT_EQ(judge(Mode::kWalk), 0u);
   EXPECT_EQ(state.counters.joint_past_stop + state.counters.joint_too_fast + state.counters.tilted +
                 state.counters.joints_late + state.counters.imu_late,
@@ -441,11 +433,11 @@ TEST_F(SafetyGateTest, TiltIsJudgedOnlyWhereTheRobotCarriesItself) {
   EXPECT_EQ(judge(Mode::kDamping), 0u);
   EXPECT_EQ(judge(Mode::kPassive), 0u);
   for (const Mode mode : {Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
-    EXPECT_EQ(judge(mode), static_cast<std::uint64_t>(Fault::kTilt));
+    EXPECT_EQ(judge(mode), fault_bit(Fault::kTilt));
   }
   state = {};
   tilt(179.0);
-  EXPECT_EQ(judge(Mode::kStand), static_cast<std::uint64_t>(Fault::kTilt));
+  EXPECT_EQ(judge(Mode::kStand), fault_bit(Fault::kTilt));
 }
 
 TEST_F(SafetyGateTest, TiltThresholdMatchesItsAngle) {
@@ -471,7 +463,7 @@ TEST_F(SafetyGateTest, TorqueFaultNeedsTwentySamplesOfOneJointInARow) {
   EXPECT_EQ(sample(2, 72.0), 0u);  // 1.2 * 60
   for (int n = 0; n < 100; ++n) EXPECT_EQ(sample(n % 2, 77.0), 0u);
   for (int n = 0; n < 19; ++n) EXPECT_EQ(sample(8, 77.0), 0u);
-  EXPECT_EQ(sample(8, 77.0), static_cast<std::uint64_t>(Fault::kJointTorque));
+  EXPECT_EQ(sample(8, 77.0), fault_bit(Fault::kJointTorque));
 }
 
 TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
@@ -495,15 +487,13 @@ TEST_F(SafetyGateTest, EachJointIsJudgedByItsOwnLimits) {
   }
   sensors.joints.torque_nm[2] = 40.0;
   for (int n = 0; n < 20; ++n) judge(other, Mode::kStand);
-  EXPECT_EQ(state.faults, static_cast<std::uint64_t>(Fault::kJointTorque));
+  EXPECT_EQ(state.faults, fault_bit(Fault::kJointTorque));
 }
 
 TEST_F(SafetyGateTest, SilentDriveIsToldFromAllTheOthers) {
-  sensors.tick = 100;
-  sensors.joints.tick.fill(100);
-  sensors.imu.tick = 100;
+  stamp(100, 100, 100);
   sensors.joints.tick[7] = 100 - config.joints_fault_ticks - 1;
-  EXPECT_EQ(judge(Mode::kPassive), static_cast<std::uint64_t>(Fault::kJointsStale));
+  EXPECT_EQ(judge(Mode::kPassive), fault_bit(Fault::kJointsStale));
   EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 7);
   EXPECT_EQ(state.counters.joints_late, 1u);
 }
@@ -515,7 +505,7 @@ TEST_F(SafetyGateTest, FaultOfADriveIsAFaultInEveryModeAndNamesItsJoint) {
     EXPECT_EQ(judge(mode), 0u);
     sensors.joints.drive_fault[2] = 33;
     sensors.joints.drive_fault[10] = 1;
-    EXPECT_EQ(judge(mode), static_cast<std::uint64_t>(Fault::kDriveFault));
+    EXPECT_EQ(judge(mode), fault_bit(Fault::kDriveFault));
     EXPECT_EQ(state.first_fault, Fault::kDriveFault);
     EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 2 | std::uint64_t{1} << 10);
   }
@@ -537,21 +527,18 @@ TEST_F(SafetyGateTest, EveryJointAtFaultIsNamedUntilTheNextLatch) {
 }
 
 TEST_F(SafetyGateTest, SampleFromTheFutureIsStale) {
-  sensors.tick = 100;
-  sensors.joints.tick.fill(101);
-  sensors.imu.tick = 101;
+  stamp(100, 101, 101);
   const std::uint64_t found = judge(Mode::kPassive);
-  EXPECT_EQ(found, static_cast<std::uint64_t>(Fault::kJointsStale) |
-                       static_cast<std::uint64_t>(Fault::kImuStale));
+  EXPECT_EQ(found, fault_bit(Fault::kJointsStale) | fault_bit(Fault::kImuStale));
   EXPECT_EQ(state.first_fault, Fault::kJointsStale);
   EXPECT_EQ(state.first_fault_tick, 100u);
 }
 
 TEST_F(SafetyGateTest, QuaternionThatIsNoRotationIsUnusable) {
   sensors.imu.orientation_wxyz = {0.0, 0.0, 0.0, 0.0};
-  EXPECT_EQ(judge(Mode::kStand), static_cast<std::uint64_t>(Fault::kNonFiniteImu));
+  EXPECT_EQ(judge(Mode::kStand), fault_bit(Fault::kNonFiniteImu));
   sensors.imu.orientation_wxyz = {1e200, 1e200, 0.0, 0.0};
-  EXPECT_EQ(judge(Mode::kStand), static_cast<std::uint64_t>(Fault::kNonFiniteImu));
+  EXPECT_EQ(judge(Mode::kStand), fault_bit(Fault::kNonFiniteImu));
 }
 
 TEST(FaultTest, NamesAreStable) {

@@ -64,13 +64,16 @@ class FaultyRobot final : public RobotIo {
     simulator_.skip(ticks, as_driven());
   }
   void cut_drives() noexcept override { simulator_.cut_drives(); }
-  bool truth(RobotTruth& truth) const noexcept override { return simulator_.truth(truth); }
+  bool truth(RobotTruth& truth) const noexcept override {
+    return has_truth && simulator_.truth(truth);
+  }
   void shut_down() noexcept override {}
 
   /// What happens to the values of each tick before they are sampled; `good` are the last ones
   /// before, `n` counts from 0.
   std::function<void(SensorFrame& fresh, const SensorFrame& good, std::uint64_t n)> spoil;
   SampleRates rates;
+  bool has_truth = true;  ///< a real robot has none
   SafeCommand last;
   /// Joints whose drive closes its own loop on the spoilt values too, bit j for joint j: the defect
   /// is in the encoder, not on the way from the drive.

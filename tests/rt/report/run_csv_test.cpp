@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/joint_names.h"
 #include "tests/support/temporary_folder.h"
 
@@ -103,13 +103,8 @@ TEST(RunCsvTest, ColumnsHaveTheNamesThatUsersKnow) {
 TEST(RunCsvTest, AnUnwritablePathIsNamed) {
   const TemporaryFolder folder;
   const std::string path = folder.path("no such folder/file");
-  try {
-    write_csv({}, path);
-    ADD_FAILURE() << "no InputError";
-  } catch (const InputError& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with(path + ": cannot be written ("))
-        << error.what();
-  }
+  const std::string error = error_of([&] { write_csv({}, path); });
+  EXPECT_TRUE(error.starts_with(path + ": cannot be written (")) << error;
 }
 
 }  // namespace

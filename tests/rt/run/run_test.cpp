@@ -13,6 +13,7 @@
 
 #include "rt/report/run_csv.h"
 #include "rt/report/summary.h"
+#include "tests/rt/loop/faulty_robot.h"
 #include "tests/rt/support.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
@@ -217,29 +218,13 @@ TEST(RunTest, InterruptLiesDownAndIsNoFall) {
   }
 }
 
-/// The simulated robot without its truth: what a real one shows.
-class RealRobot final : public RobotIo {
- public:
-  explicit RealRobot(const ProcessConfig& config) : simulator_(config.robot, config.simulator) {}
-  void read(std::uint64_t tick, SensorFrame& frame) noexcept override {
-    simulator_.read(tick, frame);
-  }
-  void write(const SafeCommand& command) noexcept override { simulator_.write(command); }
-  void skip(std::uint64_t ticks, const SafeCommand& held) noexcept override {
-    simulator_.skip(ticks, held);
-  }
-  void cut_drives() noexcept override { simulator_.cut_drives(); }
-  void shut_down() noexcept override {}
-
- private:
-  sim::Simulator simulator_;
-};
-
 TEST(RunTest, FiguresThatNeedTheTruthAreAbsentWithoutIt) {
   PolicyRunner policy(load_shipped_policy());
   const ProcessConfig config = config_of("dry-sand", {}, policy.spec());
   const CommandSource command("1,0,0");
-  RealRobot robot(config);
+  sim::Simulator simulator(config.robot, config.simulator);
+  FaultyRobot robot(simulator, Drives::kGains);
+  robot.has_truth = false;
   RunScript script(command, {.walk_s = 1.0, .start_walking = true}, true);
   RunResult result = run_in_lockstep({.robot = robot,
                                       .controller = config.controller,

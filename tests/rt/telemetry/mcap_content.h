@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "mcap_sample.h"
-#include "rt/base/errors.h"
 #include "rt/telemetry/mcap/mcap_reader.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner {
 
@@ -34,13 +34,13 @@ struct Content {
 };
 
 inline void read_into(Content& content, McapReader& reader) {
-  try {
+  content.error = error_of([&] {
     while (const McapMessage* message = reader.next()) {
       content.messages.push_back(
           {*message, {reinterpret_cast<const char*>(message->data.data()), message->data.size()}});
     }
-  } catch (const InputError& error) {
-    content.error = error.what();
+  });
+  if (!content.error.empty()) {
     EXPECT_EQ(reader.next(), nullptr) << "after an error";
   }
   content.attachments = reader.attachments();
@@ -54,12 +54,11 @@ inline void read_into(Content& content, McapReader& reader) {
 inline Content read_bytes(const std::string& bytes) {
   Content content;
   std::istringstream stream(bytes);
-  try {
+  const std::string error = error_of([&] {
     McapReader reader(stream, "some.mcap");
     read_into(content, reader);
-  } catch (const InputError& error) {
-    content.error = error.what();
-  }
+  });
+  if (!error.empty()) content.error = error;
   return content;
 }
 

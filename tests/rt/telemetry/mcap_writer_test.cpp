@@ -14,6 +14,7 @@
 #include "mcap_bytes.h"
 #include "mcap_content.h"
 #include "mcap_sample.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
@@ -148,15 +149,6 @@ TEST(McapWriterTest, WriterThatIsNotClosedLeavesACutFileWithAllMessages) {
   EXPECT_EQ(content.error, "");
   EXPECT_FALSE(content.complete);
   EXPECT_TRUE(is_whole_sample(content, 100));
-}
-
-std::string error_of(const auto& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(McapWriterTest, FileThatCannotBeOpenedIsNamed) {

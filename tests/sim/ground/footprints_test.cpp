@@ -9,7 +9,7 @@
 #include "sim/batch/batch.h"
 #include "sim/lanes/random.h"
 #include "sim/simulator.h"
-#include "tests/sim/support.h"
+#include "tests/sim/ground/granular_foot.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -86,27 +86,22 @@ TEST(FootprintsTest, TheSquareGoesWithTheRobotAndForgetsWhatItLeaves) {
 TEST(FootprintsTest, TheGroundUnderAPrintIsAsStrongAsAtThatDepth) {
   GroundParameters sand = ground_of_kind(GroundKind::kGranular);
   sand.inertial_drag = sand.added_mass = sand.filter = false;
-  const Robot robot = load_raibo();
-  const FootProfile<double> foot = make_foot_profile({}, robot.model);
-  const Ground<double> ground = derive_ground(sand, foot, robot.model.foot_radius_m);
-  FootContact<double> contact;
-  const FootForce<double> force =
-      foot_force(ground, foot, {.z = 0.001, .v = 0.1, .pressed = 0.04}, 4000.0, contact);
-  EXPECT_NEAR(force.raw, quasistatic_force(ground, foot, 0.041), 1e-9);
+  Foot foot(sand);
+  const FootForce<double> force = foot_force(
+      foot.ground, foot.profile, {.z = 0.001, .v = 0.1, .pressed = 0.04}, 4000.0, foot.contact);
+  EXPECT_NEAR(force.raw, foot.quasistatic(0.041), 1e-9);
 }
 
 TEST(FootprintsTest, MudUnderAPrintIsAsStrongAsAtThatDepth) {
   GroundParameters mud = ground_of_kind(GroundKind::kMud);
   mud.strength_pa = 1.0;
-  const Robot robot = load_raibo();
-  const FootProfile<double> foot = make_foot_profile({}, robot.model);
-  const Ground<double> ground = derive_ground(mud, foot, robot.model.foot_radius_m);
   // Pushed in slowly; strength grows with depth from next to nothing.
   const auto force_at = [&](double z, double pressed) {
-    FootContact<double> contact;
+    Foot foot(mud);
     double force = 0.0;
     for (double at = 0.0; at < z; at += 1e-6) {
-      force = foot_force(ground, foot, {.z = at, .v = 1e-3, .pressed = pressed}, 4000.0, contact)
+      force = foot_force(foot.ground, foot.profile, {.z = at, .v = 1e-3, .pressed = pressed},
+                         4000.0, foot.contact)
                   .normal;
     }
     return force;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "tests/sim/ground/granular_foot.h"
@@ -139,22 +138,6 @@ TEST(GranularTest, StrokeResistanceActsOutwardsIntoFreshGroundWhenBuried) {
   // Risen to less than a foot radius deep: not buried.
   foot.move(at, {0.08, 0, 0.0290}, 50);
   EXPECT_EQ(foot.move(at, {0.10, 0, 0.0290}, 50).stroke, 0.0);
-}
-
-TEST(GranularTest, StrokeResistanceIsTheSameInAllDirections) {
-  const auto push = [](double angle) {
-    Foot foot({});
-    Point at{0.3, -0.2, -0.001};
-    foot.move(at, {0.3, -0.2, 0.06}, 400);
-    return foot.move(at, {0.3 + 0.08 * std::cos(angle), -0.2 + 0.08 * std::sin(angle), 0.06}, 300);
-  };
-  const double along_x = push(0.0).stroke;
-  for (const double angle : {0.7, std::numbers::pi / 2.0, 2.5, -2.0}) {
-    const FootForce<double> f = push(angle);
-    EXPECT_NEAR(f.stroke, along_x, 1e-9);
-    EXPECT_NEAR(f.direction_x, std::cos(angle), 1e-9);
-    EXPECT_NEAR(f.direction_y, std::sin(angle), 1e-9);
-  }
 }
 
 TEST(GranularTest, HealingLetsTheFootClimbOutOfItsCrater) {

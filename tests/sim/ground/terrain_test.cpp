@@ -10,6 +10,7 @@
 #include "sim/ground/terrain_description.h"
 #include "sim/simulator.h"
 #include "tests/sim/support.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -22,18 +23,9 @@ TerrainDescription read(const std::string& toml) {
   return t;
 }
 
-std::string refusal_of(const std::string& toml) {
-  try {
-    read(toml);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
 void expect_names(const std::string& toml, const std::string& key) {
-  const std::string what = refusal_of(toml);
+  const std::string what = error_of([&] { read(toml); });
   EXPECT_NE(what.find(key), std::string::npos) << what;
-  EXPECT_EQ(what.find('\n'), std::string::npos) << what;
 }
 
 TEST(TerrainTest, PresetsHaveTheirFigures) {
@@ -175,13 +167,11 @@ TEST(TerrainTest, SimulatorTableRefusesBadValues) {
   const auto refused = [](const std::string& toml) {
     ConfigTree config;
     config.add_text(toml, "my.toml");
-    try {
+    const std::string error = error_of([&] {
       read_simulator_config(config, load_raibo());
       config.reject_unknown();
-    } catch (const InputError&) {
-      return true;
-    }
-    return false;
+    });
+    return !error.empty();
   };
   EXPECT_FALSE(refused("[sim]\nsensor_delay_ticks = 63\n[sim.noise]\njoint_position_rad = 0.01"));
   EXPECT_TRUE(refused("[sim]\nsensor_delay_ticks = 64"));

@@ -36,14 +36,10 @@ TEST(DynamicsTest, FloatAgreesWithDouble) {
     Dynamics<float> narrow_dynamics;
     wide_dynamics.update(model, x);
     narrow_dynamics.update(narrow, y);
-    std::array<double, 324> mass;
-    std::array<double, 18> bias;
-    std::array<float, 324> narrow_mass;
-    std::array<float, 18> narrow_bias;
-    wide_dynamics.dense(mass, bias);
-    narrow_dynamics.dense(narrow_mass, narrow_bias);
-    mass_error = std::fmax(mass_error, relative_error(narrow_mass, mass));
-    bias_error = std::fmax(bias_error, relative_error(narrow_bias, bias));
+    const DenseDynamics<double> wide_dense(wide_dynamics);
+    const DenseDynamics<float> narrow_dense(narrow_dynamics);
+    mass_error = std::fmax(mass_error, relative_error(narrow_dense.mass, wide_dense.mass));
+    bias_error = std::fmax(bias_error, relative_error(narrow_dense.bias, wide_dense.bias));
     acceleration_error = std::fmax(
         acceleration_error, relative_error(flat(narrow_dynamics.free_acceleration(narrow_torque)),
                                            flat(wide_dynamics.free_acceleration(torque))));

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string>
 
-#include "rt/base/errors.h"
 #include "sim/robot/dynamics.h"
 #include "sim/robot/embedded.h"
 #include "tests/sim/support.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -105,32 +105,23 @@ TEST(NewRobotTest, NamesWithoutAPatternAreListed) {
 }
 
 TEST(NewRobotTest, ARobotThatIsNoneOfOursIsRefusedWithItsCause) {
-  const auto refusal = [](const std::string& urdf) {
-    try {
-      new_robot(urdf, "my.urdf", "my.urdf");
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+  const auto expect_refused = [](const std::string& urdf, const std::string& cause) {
+    const std::string what = error_of([&] { new_robot(urdf, "my.urdf", "my.urdf"); });
+    EXPECT_NE(what.find(cause), std::string::npos) << what;
   };
   const std::string wheel =
       "<link name=\"w\"/><joint name=\"wheel\" type=\"continuous\"><parent link=\"LF_FOOT\"/>"
       "<child link=\"w\"/><axis xyz=\"0 1 0\"/></joint></robot>";
-  EXPECT_NE(refusal(edited(kRaibo, "</robot>", "</robot>", wheel)).find("'LF_HAA' and 3 behind it"),
-            std::string::npos);
+  expect_refused(edited(kRaibo, "</robot>", "</robot>", wheel), "'LF_HAA' and 3 behind it");
   const std::string circle =
       "<joint name=\"back\" type=\"revolute\"><parent link=\"LF_SHANK\"/>"
       "<child link=\"LF_HIP\"/><axis xyz=\"0 1 0\"/>"
       "<limit lower=\"-1\" upper=\"1\" effort=\"9\" velocity=\"9\"/></joint></robot>";
-  EXPECT_NE(
-      refusal(edited(kRaibo, "</robot>", "</robot>", circle)).find("two joints carry the link"),
-      std::string::npos);
-  EXPECT_NE(refusal(edited(kRaibo, "joint name=\"LF_HAA\"", "upper=\"", "upper=\"-9\" old=\""))
-                .find("expected lower < upper"),
-            std::string::npos);
-  EXPECT_NE(refusal(edited(kRaibo, "joint name=\"LF_KFE\"", "revolute", "fixed"))
-                .find("'LF_HAA' and 1 behind it"),
-            std::string::npos);
+  expect_refused(edited(kRaibo, "</robot>", "</robot>", circle), "two joints carry the link");
+  expect_refused(edited(kRaibo, "joint name=\"LF_HAA\"", "upper=\"", "upper=\"-9\" old=\""),
+                 "expected lower < upper");
+  expect_refused(edited(kRaibo, "joint name=\"LF_KFE\"", "revolute", "fixed"),
+                 "'LF_HAA' and 1 behind it");
 }
 
 }  // namespace

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "estimator/kinematics.h"
-#include "rt/base/errors.h"
 #include "sim/robot/clearance.h"
 #include "sim/robot/embedded.h"
 #include "sim/robot/robot_model.h"
 #include "tests/sim/support.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner::sim::frames {
 namespace {
@@ -24,13 +24,10 @@ Robot read(const std::string& urdf, const std::string& map = kMap) {
   return parse_robot(map, "my.toml", urdf, "my.urdf");
 }
 
-std::string refusal(const std::string& urdf, const std::string& map = kMap) {
-  try {
-    read(urdf, map);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(accepted)";
+void expect_refused(const std::string& urdf, const std::string& cause,
+                    const std::string& map = kMap) {
+  const std::string what = error_of([&] { read(urdf, map); });
+  EXPECT_NE(what.find(cause), std::string::npos) << what;
 }
 
 void expect_near(const Vec3<double>& a, const Vec3<double>& b) {
@@ -143,14 +140,11 @@ TEST(UrdfFramesTest, AJointThatTurnsTheOtherWayIsTheSameRobotWithTheOtherSign) {
 }
 
 TEST(UrdfFramesTest, AnAxisIsAlongXOrYWithAllJointsAtZero) {
-  EXPECT_NE(
-      refusal(edited(kUrdf, "joint name=\"LF_HAA\"", "axis xyz=\"1 0 0\"", "axis xyz=\"0 1 0\""))
-          .find(
-              "joint 'LF_HAA': found axis 0 1 0 in the axes of 'base', expected 1 0 0, either way"),
-      std::string::npos);
-  EXPECT_NE(refusal(edited(kUrdf, "joint name=\"LF_KFE\"", "rpy=\"0 0 0\"", "rpy=\"0.1 0 0\""))
-                .find("LF_KFE"),
-            std::string::npos);
+  expect_refused(
+      edited(kUrdf, "joint name=\"LF_HAA\"", "axis xyz=\"1 0 0\"", "axis xyz=\"0 1 0\""),
+      "joint 'LF_HAA': found axis 0 1 0 in the axes of 'base', expected 1 0 0, either way");
+  expect_refused(edited(kUrdf, "joint name=\"LF_KFE\"", "rpy=\"0 0 0\"", "rpy=\"0.1 0 0\""),
+                 "LF_KFE");
 }
 
 std::string foot_shape(const std::string& shape) {
@@ -186,32 +180,29 @@ TEST(UrdfFramesTest, ACoverNextToABallIsNoTyre) {
   EXPECT_EQ(robot.model.foot_radius_m, 0.03);
   EXPECT_EQ(robot.model.foot_width_m, 0.0);
   const std::string alone = "<geometry><cylinder radius=\"0.02\" length=\"0.3\"/></geometry>";
-  EXPECT_NE(refusal(foot_shape(alone))
-                .find("link 'LF_FOOT': found a cylinder along 0 0 1, expected a collision sphere, "
-                      "cylinder along y or box, or collision.foot_radius_m"),
-            std::string::npos);
+  expect_refused(foot_shape(alone),
+                 "link 'LF_FOOT': found a cylinder along 0 0 1, expected a collision sphere, "
+                 "cylinder along y or box, or collision.foot_radius_m");
 }
 
 TEST(UrdfFramesTest, MeshesNeedABoxAndARadiusInTheRobotFile) {
   const std::string mesh = "<geometry><mesh filename=\"foot.stl\"/></geometry>";
   std::string urdf = foot_shape(mesh);
-  EXPECT_NE(refusal(urdf).find("link 'LF_FOOT': found a mesh"), std::string::npos);
+  expect_refused(urdf, "link 'LF_FOOT': found a mesh");
   urdf = edited(urdf, "link name=\"base\"", "<box size=\"0.7104 0.276 0.12\"/>",
                 "<mesh filename=\"base.stl\"/>");
   const auto box = urdf.find("<box size=\"0.7104 0.276 0.12\"/>");  // of the collision
   if (box != std::string::npos) urdf.replace(box, 31, "<mesh filename=\"base.stl\"/>");
   const std::string with_foot =
       edited(kMap, "[collision]", "[collision]", "[collision]\nfoot_radius_m = 0.025");
-  EXPECT_NE(refusal(urdf, with_foot).find("link 'base' has no collision box"), std::string::npos)
-      << refusal(urdf, with_foot);
+  expect_refused(urdf, "link 'base' has no collision box", with_foot);
   const Robot robot = read(
       urdf,
       edited(with_foot, "[collision]", "[collision]",
              "[collision]\nbase_box_m = [0.6, 0.2, 0.1]\nbase_box_centre_m = [0.0, 0.0, 0.01]"));
-  EXPECT_NE(refusal(urdf, edited(with_foot, "[collision]", "[collision]",
-                                 "[collision]\nbase_box_m = [0.6, 0.2, 0.0]"))
-                .find("collision.base_box_m: found 0.6 0.2 0, expected three above 0"),
-            std::string::npos);
+  expect_refused(
+      urdf, "collision.base_box_m: found 0.6 0.2 0, expected three above 0",
+      edited(with_foot, "[collision]", "[collision]", "[collision]\nbase_box_m = [0.6, 0.2, 0.0]"));
   EXPECT_EQ(robot.model.foot_radius_m, 0.025);
   expect_near(robot.model.base_box_half_m, {0.3, 0.1, 0.05});
   expect_near(robot.model.base_box_centre_m, {0.0, 0.0, 0.01});
@@ -244,7 +235,7 @@ TEST(UrdfFramesTest, LimitsThatTheUrdfLacksAreTheRobotFiles) {
   const auto limit = urdf.find("<limit", urdf.find("joint name=\"LF_HFE\""));
   urdf.erase(limit, urdf.find("/>", limit) + 2 - limit);
   urdf = edited(urdf, "joint name=\"LF_HFE\"", "revolute", "continuous");
-  EXPECT_NE(refusal(urdf).find("joint 'LF_HFE' lacks limits effort > 0"), std::string::npos);
+  expect_refused(urdf, "joint 'LF_HFE' lacks limits effort > 0");
   const Robot robot =
       read(urdf, edited(kMap, "[joints]", "[joints]",
                         "[joints]\ntorque_limit_nm = 20.0\nspeed_limit_radps = 30.0"));
@@ -269,14 +260,10 @@ TEST(UrdfFramesTest, LegsThatAreNotWhereTheirNamesSayAreRefused) {
     return edited(edited(first, "[legs]", "\"" + b + "\"", "\"" + a + "\""), "[legs]", "\"?\"",
                   "\"" + b + "\"");
   };
-  EXPECT_NE(refusal(kUrdf, swapped("LF", "RF"))
-                .find("my.toml: legs.left_front: the URDF has 'RF' at y = -0.169 m"),
-            std::string::npos)
-      << refusal(kUrdf, swapped("LF", "RF"));
-  EXPECT_NE(refusal(kUrdf, swapped("LF", "LH"))
-                .find("my.toml: legs.left_front: the URDF has 'LH' at x = -0.307 m"),
-            std::string::npos)
-      << refusal(kUrdf, swapped("LF", "LH"));
+  expect_refused(kUrdf, "my.toml: legs.left_front: the URDF has 'RF' at y = -0.169 m",
+                 swapped("LF", "RF"));
+  expect_refused(kUrdf, "my.toml: legs.left_front: the URDF has 'LH' at x = -0.307 m",
+                 swapped("LF", "LH"));
 }
 
 TEST(UrdfFramesTest, ASensorWithoutAnInertiaIsPartOfWhatCarriesIt) {
@@ -305,8 +292,7 @@ TEST(UrdfFramesTest, ARootAboveTheBaseBelongsToItAndAFloatingJointIsNone) {
   EXPECT_NEAR(base.mass, plain.mass + 0.01, 1e-12);
   EXPECT_NEAR(base.com.z, (plain.mass * plain.com.z - 0.01 * 0.5) / base.mass,
               1e-12);  // it is below
-  EXPECT_NE(refusal(root("floating")).find("'root' has a mass but is neither base nor leg"),
-            std::string::npos);
+  expect_refused(root("floating"), "'root' has a mass but is neither base nor leg");
   const std::string world =
       edited(kUrdf, "</robot>", "</robot>",
              "<link name=\"world\"/><joint name=\"free\" type=\"floating\"><parent link=\"world\"/>"
@@ -319,11 +305,9 @@ TEST(UrdfFramesTest, JointsOfNoLegAreNamed) {
       "<link name=\"arm\"/><joint name=\"shoulder\" type=\"revolute\"><parent link=\"base\"/>"
       "<child link=\"arm\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" "
       "velocity=\"1\"/></joint></robot>";
-  EXPECT_NE(
-      refusal(edited(kUrdf, "</robot>", "</robot>", arm))
-          .find(
-              "has 13 moving joints, expected 12, four legs of HAA, HFE, KFE; of no leg: shoulder"),
-      std::string::npos);
+  expect_refused(
+      edited(kUrdf, "</robot>", "</robot>", arm),
+      "has 13 moving joints, expected 12, four legs of HAA, HFE, KFE; of no leg: shoulder");
 }
 
 }  // namespace

@@ -8,15 +8,13 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/ground/ground.h"
-#include "tests/sim/support.h"
+#include "tests/sim/ground/granular_foot.h"
 #include "tests/support/csv.h"
 
 namespace sandrunner::sim {
 namespace {
 
 constexpr double kMass_kg = 5.0;
-constexpr double kFootRadius_m = 0.0295;
 
 struct Drop {
   double max_depth_m = 0.0, final_depth_m = 0.0, peak_force_n = 0.0;
@@ -38,17 +36,16 @@ Drop drop(const DropSettings& s) {
   parameters.sigma_cone_npm3 = 1e6 * s.sigma_cone_mnpm3;
   parameters.inertial_drag = parameters.added_mass = !s.quasistatic;
   parameters.filter = s.filter;
-  const FootProfile<double> foot = fit_foot_profile(FootShape::kTyre, kFootRadius_m, 0.025, 4.0);
-  Ground<double> ground = derive_ground(parameters, foot, kFootRadius_m);
-  if (s.filter) ground.filter_step = 100.0 * s.dt_s;  // c_r = 100/f_sim at this rate
+  Foot foot(parameters);
+  if (s.filter) foot.ground.filter_step = 100.0 * s.dt_s;  // c_r = 100/f_sim at this rate
   Drop d;
-  FootContact<double> contact;
   double z = kFootRadius_m - s.centre_height_m, v = 0.0;
   const int steps = static_cast<int>(std::lround(2.0 / s.dt_s)), half = steps / 2;
   double sum = 0.0, square = 0.0, first = 0.0, last = 0.0;
   const int window = steps / 20;  // 0.1 s: means over it do not see the limit cycle
   for (int i = 0; i < steps; ++i) {
-    const double force = foot_force(ground, foot, {.z = z, .v = v}, 1.0 / s.dt_s, contact).normal;
+    const double force =
+        foot_force(foot.ground, foot.profile, {.z = z, .v = v}, 1.0 / s.dt_s, foot.contact).normal;
     EXPECT_GE(force, 0.0);
     d.peak_force_n = std::fmax(d.peak_force_n, force);
     if (i >= half) {
@@ -90,12 +87,10 @@ TEST(DropTest, WithoutInertiaTheQuasistaticForceTakesAllOfTheFall) {
       GroundParameters parameters;
       parameters.sigma_flat_npm3 = 1e6 * flat;
       parameters.sigma_cone_npm3 = 1e6 * cone;
-      const FootProfile<double> foot =
-          fit_foot_profile(FootShape::kTyre, kFootRadius_m, 0.025, 4.0);
-      const Ground<double> ground = derive_ground(parameters, foot, kFootRadius_m);
+      const Foot foot(parameters);
       double depth_m = 0.0, work_j = 0.0;
       do {
-        work_j += 1e-6 * quasistatic_force(ground, foot, depth_m + 0.5e-6);
+        work_j += 1e-6 * foot.quasistatic(depth_m + 0.5e-6);
         depth_m += 1e-6;
       } while (work_j < kMass_kg * kGravity_mps2 * (height_m + depth_m));
       DropSettings settings{flat, cone, kFootRadius_m + height_m, true, false, 0.05e-3};
@@ -140,15 +135,12 @@ TEST(DropTest, SlowLoadingSinksToTheStaticDepth) {
     GroundParameters parameters;
     parameters.sigma_flat_npm3 = 1e6 * row.at("sigma_flat_mnpm3");
     parameters.sigma_cone_npm3 = 1e6 * row.at("sigma_cone_mnpm3");
-    const FootProfile<double> foot = fit_foot_profile(FootShape::kTyre, kFootRadius_m, 0.025, 4.0);
-    const Ground<double> ground = derive_ground(parameters, foot, kFootRadius_m);
-    FootContact<double> contact;
-    const double dt_s = 0.25e-3;
+    Foot foot(parameters);
     double z = -0.001, v = 0.0;
     for (int n = 0; n < 80000; ++n) {
-      const double force = foot_force(ground, foot, {.z = z, .v = v}, 1.0 / dt_s, contact).normal;
-      v = (v + dt_s * (kGravity_mps2 - force / mass_kg)) / (1.0 + dt_s * 200.0);
-      z += dt_s * v;
+      const double force = foot.step({.z = z, .v = v}).normal;
+      v = (v + kDt_s * (kGravity_mps2 - force / mass_kg)) / (1.0 + kDt_s * 200.0);
+      z += kDt_s * v;
     }
     EXPECT_NEAR(1e3 * z, row.at("depth_mm"), 0.1);
   }

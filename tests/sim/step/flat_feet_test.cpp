@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "rt/base/errors.h"
 #include "tests/sim/support.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner::sim {
 namespace {
@@ -66,21 +66,13 @@ TEST(FlatFeetTest, ARobotsFileMayAskForFewerOrMore) {
   const auto places = patches_of(on_edges, on_edges.nominal_rad, 0);
   ASSERT_EQ(places.size(), 2u);
   EXPECT_NEAR(places[0].y - places[1].y, 0.025 / std::sqrt(3.0), 1e-9);
-  const auto refusal = [](const auto& load) {
-    try {
-      load();
-    } catch (const InputError& e) {
-      return std::string(e.what());
-    }
-    return std::string();
-  };
-  EXPECT_EQ(refusal([] { robot_on_soles("foot_patches = 2\n"); }),
+  EXPECT_EQ(error_of([] { robot_on_soles("foot_patches = 2\n"); }),
             "soles.toml: collision.foot_patches: found 2, expected 1 or 4 of the box of link "
             "'LF_FOOT'");
-  EXPECT_EQ(refusal([&] { raibo("foot_patches = 4\n"); }),
+  EXPECT_EQ(error_of([&] { raibo("foot_patches = 4\n"); }),
             "r.toml: collision.foot_patches: found 4, expected 1 or 2 of the cylinder of link "
             "'LF_FOOT'");
-  EXPECT_EQ(refusal([&] { raibo("foot_radius_m = 0.03\nfoot_patches = 2\n"); }),
+  EXPECT_EQ(error_of([&] { raibo("foot_radius_m = 0.03\nfoot_patches = 2\n"); }),
             "r.toml: collision.foot_patches: found 2, expected 1 of the ball of link 'LF_FOOT'");
 }
 

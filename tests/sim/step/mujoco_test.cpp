@@ -60,9 +60,7 @@ TEST_F(MujocoTest, MassMatrixBiasAndAccelerationAgreeOnRandomStates) {
     for (double& t : torque_nm) t = draw(-60.0, 60.0);
     evaluate(x, torque_nm);
 
-    std::array<double, 324> mass;
-    std::array<double, 18> bias;
-    dynamics_.dense(mass, bias);
+    const DenseDynamics<double> dense(dynamics_);
     std::array<double, 324> world_mass, expected_mass;
     mj_fullM(model_, world_mass.data(), data_->qM);
     for (int r = 0; r < 18; ++r) {  // M T by rows, then T^T (M T) by columns, M symmetric
@@ -75,8 +73,8 @@ TEST_F(MujocoTest, MassMatrixBiasAndAccelerationAgreeOnRandomStates) {
       column = to_ours(column.data());
       for (int r = 0; r < 18; ++r) expected_mass[18 * r + c] = column[r];
     }
-    worst_mass = std::fmax(worst_mass, relative_error(mass, expected_mass));
-    worst_bias = std::fmax(worst_bias, relative_error(bias, to_ours(data_->qfrc_bias)));
+    worst_mass = std::fmax(worst_mass, relative_error(dense.mass, expected_mass));
+    worst_bias = std::fmax(worst_bias, relative_error(dense.bias, to_ours(data_->qfrc_bias)));
     worst_acceleration = std::fmax(
         worst_acceleration,
         relative_error(flat(dynamics_.free_acceleration(torque_nm)), to_ours(data_->qacc)));

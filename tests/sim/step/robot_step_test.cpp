@@ -196,9 +196,8 @@ BaseImpulse impulse_on_base(const Bench& bench, const RigidState<double>& before
   for (int j = 0; j < kNumJoints; ++j)
     change.joint[j] = after.qd[j] - before.qd[j] - dt * a.joint[j];
   const std::array<double, 18> v = flat(change);
-  std::array<double, 324> mass;
-  std::array<double, 18> bias, p{};
-  dynamics.dense(mass, bias);
+  const std::array<double, 324> mass = DenseDynamics<double>(dynamics).mass;
+  std::array<double, 18> p{};
   for (int i = 0; i < 18; ++i) {
     for (int k = 0; k < 18; ++k) p[i] += mass[18 * i + k] * v[k];
   }

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/tools/hil/bench_examples.h"
 #include "tools/hil/fault_clock.h"
 
@@ -15,12 +15,7 @@ TimedFault fault(const std::string& text, const std::string& example = "moteus")
 }
 
 std::string refusal(const std::string& text, const std::string& example = "moteus") {
-  try {
-    fault(text, example);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { fault(text, example); });
 }
 
 TEST(FaultScriptTest, SaysWhenWhatAndWhere) {

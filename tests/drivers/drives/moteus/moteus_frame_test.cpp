@@ -24,6 +24,24 @@ std::string item_text(const MoteusItem& item) {
   return text;
 }
 
+/// A frame of one value.
+CanFrame frame_of_value(MoteusOperation operation, MoteusFormat format, MoteusRegister number,
+                        double value) {
+  CanFrame frame;
+  MoteusWriter writer(frame);
+  writer.values(operation, format, number, std::array{value});
+  EXPECT_TRUE(writer.finish());
+  return frame;
+}
+
+/// The first value in a frame.
+double value_in(const CanFrame& frame) {
+  MoteusReader reader(frame);
+  MoteusItem item;
+  EXPECT_TRUE(reader.next(item));
+  return item.value;
+}
+
 // Everything that a frame holds, a line each.
 std::string content(const CanFrame& frame) {
   std::string text;
@@ -111,10 +129,7 @@ TEST(MoteusFrameTest, TheMakersOwnFramesAreMadeAlike) {
   EXPECT_TRUE(position.finish());
   EXPECT_EQ(hex(frame), "01000a0e200000000000000000505050");
 
-  MoteusWriter write(frame);
-  write.values(MoteusOperation::kWrite, MoteusFormat::kFloat, MoteusRegister{0x130},
-               std::array{2.0});
-  EXPECT_TRUE(write.finish());
+  frame = frame_of_value(MoteusOperation::kWrite, MoteusFormat::kFloat, MoteusRegister{0x130}, 2.0);
   EXPECT_EQ(hex(frame), "0db00200000040") << "a register number of two bytes";
 
   MoteusWriter most(frame);
@@ -132,22 +147,14 @@ TEST(MoteusFrameTest, EveryCodeSurvivesTheRoundTripInEveryUnit) {
     if (number > 0x60 && number < 0x130) continue;  // all whole numbers
     for (const auto format : {MoteusFormat::kInt8, MoteusFormat::kInt16}) {
       const int bytes = format == MoteusFormat::kInt8 ? 1 : 2;
+      const CanFrame zero = frame_of_value(MoteusOperation::kReply, format, r, 0.0);
       for (int code = 0; code < 1 << 8 * bytes; ++code) {
-        CanFrame frame;
-        MoteusWriter writer(frame);
-        writer.values(MoteusOperation::kReply, format, r, std::array{0.0});
-        ASSERT_TRUE(writer.finish());
+        CanFrame frame = zero;
         const int at = number < 0x80 ? 2 : 3;
         for (int i = 0; i < bytes; ++i) {
           frame.data[at + i] = static_cast<std::uint8_t>(code >> 8 * i);
         }
-        MoteusReader reader(frame);
-        MoteusItem item;
-        ASSERT_TRUE(reader.next(item));
-        CanFrame again;
-        MoteusWriter second(again);
-        second.values(MoteusOperation::kReply, format, r, std::array{item.value});
-        ASSERT_TRUE(second.finish());
+        const CanFrame again = frame_of_value(MoteusOperation::kReply, format, r, value_in(frame));
         ASSERT_EQ(again.data, frame.data) << number << " " << code;
       }
     }
@@ -159,20 +166,11 @@ TEST(MoteusFrameTest, CodesOf32BitsSurviveTheRoundTrip) {
   for (int i = 0; i < 200'000; ++i) {
     const auto format = i % 2 == 0 ? MoteusFormat::kInt32 : MoteusFormat::kFloat;
     const auto r = static_cast<MoteusRegister>(random() % 0x40);
-    CanFrame frame;
-    MoteusWriter writer(frame);
-    writer.values(MoteusOperation::kWrite, format, r, std::array{0.0});
-    ASSERT_TRUE(writer.finish());
+    CanFrame frame = frame_of_value(MoteusOperation::kWrite, format, r, 0.0);
     for (int k = 2; k < 6; ++k) frame.data[k] = static_cast<std::uint8_t>(random());
-    MoteusReader reader(frame);
-    MoteusItem item;
-    ASSERT_TRUE(reader.next(item));
-    if (!std::isfinite(item.value)) continue;
-    CanFrame again;
-    MoteusWriter second(again);
-    second.values(MoteusOperation::kWrite, format, r, std::array{item.value});
-    ASSERT_TRUE(second.finish());
-    ASSERT_EQ(again.data, frame.data);
+    const double value = value_in(frame);
+    if (!std::isfinite(value)) continue;
+    ASSERT_EQ(frame_of_value(MoteusOperation::kWrite, format, r, value).data, frame.data);
   }
 }
 
@@ -185,26 +183,17 @@ TEST(MoteusFrameTest, MostNegativeIntegerAndNotANumberAreUnset) {
        {Row{MoteusFormat::kInt8, "012080"}, Row{MoteusFormat::kInt16, "05200080"},
         Row{MoteusFormat::kInt32, "092000000080"}, Row{MoteusFormat::kFloat, "0d200000c07f"}}) {
     for (const double unset : {kNan, kInf}) {
-      CanFrame frame;
-      MoteusWriter writer(frame);
-      writer.values(MoteusOperation::kWrite, row.format, reg::kCommandPosition, std::array{unset});
-      EXPECT_TRUE(writer.finish());
+      const CanFrame frame =
+          frame_of_value(MoteusOperation::kWrite, row.format, reg::kCommandPosition, unset);
       EXPECT_EQ(hex(frame), row.bytes);
-      MoteusReader reader(frame);
-      MoteusItem item;
-      ASSERT_TRUE(reader.next(item));
-      EXPECT_TRUE(std::isnan(item.value));
+      EXPECT_TRUE(std::isnan(value_in(frame)));
     }
   }
 }
 
 TEST(MoteusFrameTest, ValuesBeyondAFormatAreClampedAndNeverUnset) {
   const auto bytes = [](MoteusFormat format, double value) {
-    CanFrame frame;
-    MoteusWriter writer(frame);
-    writer.values(MoteusOperation::kWrite, format, reg::kCommandPosition, std::array{value});
-    EXPECT_TRUE(writer.finish());
-    return hex(frame);
+    return hex(frame_of_value(MoteusOperation::kWrite, format, reg::kCommandPosition, value));
   };
   EXPECT_EQ(bytes(MoteusFormat::kInt8, -1e300), "012081");
   EXPECT_EQ(bytes(MoteusFormat::kInt16, -1e300), "05200180");

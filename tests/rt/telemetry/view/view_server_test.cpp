@@ -12,10 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "rt/base/errors.h"
 #include "rt/telemetry/view/view_rules.h"
 #include "tests/rt/telemetry/example_tick.h"
 #include "tests/rt/telemetry/view/web_page.h"
+#include "tests/support/error_of.h"
 
 namespace sandrunner {
 namespace {
@@ -318,16 +318,11 @@ TEST_F(FoxgloveTest, ItsPlacesAreThoseOfPagesWithoutTheKey) {
 }
 
 TEST_F(ViewServerTest, APortThatIsTakenIsSaidInOneLine) {
-  try {
-    const ViewServer second(port, {.feed = feed});
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_EQ(
-        std::string(error.what()),
-        "view.port: " + std::to_string(port) +
-            " of 127.0.0.1: Address already in use, expected a port that is free, as any is with "
-            "--set view.port=0");
-  }
+  EXPECT_EQ(
+      error_of([&] { const ViewServer second(port, {.feed = feed}); }),
+      "view.port: " + std::to_string(port) +
+          " of 127.0.0.1: Address already in use, expected a port that is free, as any is with "
+          "--set view.port=0");
 }
 
 TEST(ViewPaceTest, APauseHoldsTheTicksAndStepsLetSoManyPass) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "policy/policy_file.h"
-#include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tools/study/random_model.h"
 #include "tools/study/experiments/experiments.h"
@@ -23,12 +23,7 @@ class ModelsTest : public testing::Test {
     return names;
   }
   std::string refusal() const {
-    try {
-      load();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return error_of([&] { load(); });
   }
   const TemporaryFolder folder_;
   const sim::Robot robot_ = sim::load_raibo();

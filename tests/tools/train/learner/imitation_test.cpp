@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "rt/base/errors.h"
+#include "tests/support/error_of.h"
 #include "toy_task.h"
 
 namespace sandrunner::learner {
@@ -92,14 +93,8 @@ TEST(ImitationTest, ATeacherOfAnotherSizeIsRefused) {
   NetworkSizes wider = toy_config().network;
   wider.actor = {40, 32};
   const ParameterLayout layout(wider, kToyPrivileged);
-  try {
-    learner.set_teacher(layout, std::vector<float>(layout.size()));
-    FAIL() << "was taken";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "teacher: found encoding and actor of sizes 16-49-40-32-12, expected "
-                 "16-49-32-32-12");
-  }
+  EXPECT_EQ(error_of([&] { learner.set_teacher(layout, std::vector<float>(layout.size())); }),
+            "teacher: found encoding and actor of sizes 16-49-40-32-12, expected 16-49-32-32-12");
 }
 
 TEST(ImitationTest, ResumesToTheSameWeightsWithTheSameTeacherOnly) {

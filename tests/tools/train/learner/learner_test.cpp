@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "rt/base/errors.h"
 #include "rt/core/processor.h"
 #include "rt/core/state_hash.h"
+#include "tests/support/error_of.h"
 #include "tests/tools/train/data/thread_ranks.h"
 #include "toy_task.h"
 
@@ -203,16 +203,10 @@ TEST(LearnerTest, RefusesACheckpointOfAnotherArchitecture) {
   config.network.actor = {16, 16};
   Training other(1, 1, config);
   const std::vector<float> before = other.learner.parameters();
-  try {
-    other.learner.load(checkpoint);
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "a.bin: checkpoint is for envs 64 of 8, privileged 3, hidden 12, estimator 10, actor "
-        "16-12, critic 14; expected envs 64 of 8, privileged 3, hidden 12, estimator 10, "
-        "actor 16-16, critic 14");
-  }
+  EXPECT_EQ(error_of([&] { other.learner.load(checkpoint); }),
+            "a.bin: checkpoint is for envs 64 of 8, privileged 3, hidden 12, estimator 10, actor "
+            "16-12, critic 14; expected envs 64 of 8, privileged 3, hidden 12, estimator 10, "
+            "actor 16-16, critic 14");
   EXPECT_EQ(other.learner.parameters(), before);
 }
 
@@ -304,13 +298,8 @@ TEST(LearnerTest, DeviationStopsAtItsFloor) {
 
 TEST(LearnerTest, NamesTheSettingThatDoesNotFitTheOthers) {
   WorkerPool pool(1);
-  const auto message = [&](const LearnerConfig& config, const RolloutShape& shape) -> std::string {
-    try {
-      const Learner learner(config, shape, 1, pool);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [&](const LearnerConfig& config, const RolloutShape& shape) {
+    return error_of([&] { const Learner learner(config, shape, 1, pool); });
   };
   LearnerConfig config = small_config();
   EXPECT_EQ(message(config, kSmallShape), "");
