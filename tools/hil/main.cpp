@@ -102,7 +102,7 @@ int play_can_runs(const Arguments& a) {
 // Another try of the same run has a domain of its own: the wire of the one before may still damp.
 // So has another process: a second list of runs on this computer is another program in a domain.
 constexpr int kFirstDomain = 100, kDomains = 130;
-// A busy computer may hold several tries in a row up; ten are no chance.
+// A busy computer may hold up several tries in a row; ten are no chance.
 constexpr int kTries = 10;
 
 int play_unitree_runs(const Arguments& a) {
