@@ -27,7 +27,7 @@ std::string shipped_map() { return std::string(embedded_robot_file("raibo.toml")
 std::string refusal(const std::string& urdf, const std::string& map = shipped_map()) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  const std::string what = error_of([&] { parse_robot(map, "my.toml", urdf, "my.urdf"); });
+  std::string what = error_of([&] { parse_robot(map, "my.toml", urdf, "my.urdf"); });
   const std::string printed =
       testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout();
   EXPECT_EQ(printed, "") << what;

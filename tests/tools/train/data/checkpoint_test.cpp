@@ -28,7 +28,7 @@ class CheckpointTest : public testing::Test {
   /// The message with which loading these bytes is refused; "" if it is not.
   std::string refusal(const std::string& bytes) const {
     write_file(path_, bytes);
-    const std::string message = error_of([&] { load_checkpoint(path_); });
+    std::string message = error_of([&] { load_checkpoint(path_); });
     EXPECT_TRUE(message.empty() || message.starts_with(path_)) << message;
     return message;
   }
