@@ -98,7 +98,6 @@ void check(ConfigTree& tree) {
 }  // namespace sandrunner
 
 /// The first byte says what the rest is: a whole file, a splice of an example, or assignments.
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace sandrunner;  // NOLINT(google-build-using-namespace)
   static const std::array<std::string, 2> kExamples = {example("mit.toml"), example("moteus.toml")};

@@ -35,7 +35,6 @@ bool same_bytes(Bytes a, Bytes b) { return std::equal(a.begin(), a.end(), b.begi
 /// The first byte is the size of the chunks in which the rest is read. Where it is odd, the rest is
 /// taken as bare messages that are given their frame and checksum here: what lies behind a good
 /// checksum is else hardly reached.
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace sandrunner;  // NOLINT(google-build-using-namespace)
   if (size == 0) return 0;

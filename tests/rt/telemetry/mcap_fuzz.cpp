@@ -37,7 +37,6 @@ void read_everywhere(const std::string& bytes) {
 }  // namespace
 }  // namespace sandrunner
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   sandrunner::read_everywhere({reinterpret_cast<const char*>(data), size});
   return 0;

@@ -97,7 +97,6 @@ void tell_foxglove(std::string_view text) {
 }  // namespace
 }  // namespace sandrunner
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   std::visit(sandrunner::WithinBounds(), sandrunner::parse_page_message(text));
