@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "rt/core/mode_machine.h"
 #include "rt/loop/tick_fields.h"
@@ -18,24 +20,75 @@ constexpr const char* kEventIdl =
     "module sandrunner {\n  struct Event {\n    unsigned long long tick;\n    string kind;\n"
     "    string text;\n  };\n};\n";
 
-RunTopicInfo ros(const RosTopic& topic, bool once = false) {
-  return {topic.topic, topic.schema, "ros2msg", topic.text, once};
+const std::string kRule(80, '=');
+
+/// A definition followed by those of its parts, as `ros2msg` requires.
+std::string with_parts(std::string text, const std::vector<std::array<const char*, 2>>& parts) {
+  for (const auto& [name, definition] : parts) {
+    text += kRule + "\nMSG: " + name + "\n" + definition;
+  }
+  return text;
 }
+
+constexpr const char* kTime = "int32 sec\nuint32 nanosec\n";
+constexpr const char* kHeader = "builtin_interfaces/Time stamp\nstring frame_id\n";
+constexpr const char* kVector3 = "float64 x\nfloat64 y\nfloat64 z\n";
+constexpr const char* kQuaternion = "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
 
 }  // namespace
 
 const std::array<RunTopicInfo, kNumRunTopics>& run_topics() {
+  static const std::string transforms =
+      with_parts("geometry_msgs/TransformStamped[] transforms\n",
+                 {{"geometry_msgs/TransformStamped",
+                   "std_msgs/Header header\nstring child_frame_id\nTransform transform\n"},
+                  {"std_msgs/Header", kHeader},
+                  {"builtin_interfaces/Time", kTime},
+                  {"geometry_msgs/Transform", "Vector3 translation\nQuaternion rotation\n"},
+                  {"geometry_msgs/Vector3", kVector3},
+                  {"geometry_msgs/Quaternion", kQuaternion}});
   static const std::array<RunTopicInfo, kNumRunTopics> topics = {{
       {kTicksTopic, "sandrunner::TickRecordBatch", "omgidl", tick_idl()},
       {kStatesTopic, "sandrunner::ReplayState", "omgidl", kStateIdl},
       {kEventsTopic, "sandrunner::Event", "omgidl", kEventIdl},
-      ros(joint_state_topic()),
-      ros(imu_topic()),
-      ros(odometry_topic()),
-      ros(transforms_topic()),
-      ros(diagnostics_topic()),
-      ros(robot_description_topic(), true),
-      ros(fixed_transforms_topic(), true),
+      {"/joint_states", "sensor_msgs/msg/JointState", "ros2msg",
+       with_parts("std_msgs/Header header\nstring[] name\nfloat64[] position\n"
+                  "float64[] velocity\nfloat64[] effort\n",
+                  {{"std_msgs/Header", kHeader}, {"builtin_interfaces/Time", kTime}})},
+      {"/imu/data", "sensor_msgs/msg/Imu", "ros2msg",
+       with_parts("std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+                  "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+                  "float64[9] angular_velocity_covariance\n"
+                  "geometry_msgs/Vector3 linear_acceleration\n"
+                  "float64[9] linear_acceleration_covariance\n",
+                  {{"std_msgs/Header", kHeader},
+                   {"builtin_interfaces/Time", kTime},
+                   {"geometry_msgs/Quaternion", kQuaternion},
+                   {"geometry_msgs/Vector3", kVector3}})},
+      {"/odom", "nav_msgs/msg/Odometry", "ros2msg",
+       with_parts("std_msgs/Header header\nstring child_frame_id\n"
+                  "geometry_msgs/PoseWithCovariance pose\n"
+                  "geometry_msgs/TwistWithCovariance twist\n",
+                  {{"std_msgs/Header", kHeader},
+                   {"builtin_interfaces/Time", kTime},
+                   {"geometry_msgs/PoseWithCovariance", "Pose pose\nfloat64[36] covariance\n"},
+                   {"geometry_msgs/Pose", "Point position\nQuaternion orientation\n"},
+                   {"geometry_msgs/Point", kVector3},
+                   {"geometry_msgs/Quaternion", kQuaternion},
+                   {"geometry_msgs/TwistWithCovariance", "Twist twist\nfloat64[36] covariance\n"},
+                   {"geometry_msgs/Twist", "Vector3 linear\nVector3 angular\n"},
+                   {"geometry_msgs/Vector3", kVector3}})},
+      {"/tf", "tf2_msgs/msg/TFMessage", "ros2msg", transforms},
+      {"/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "ros2msg",
+       with_parts("std_msgs/Header header\nDiagnosticStatus[] status\n",
+                  {{"std_msgs/Header", kHeader},
+                   {"builtin_interfaces/Time", kTime},
+                   {"diagnostic_msgs/DiagnosticStatus",
+                    "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\nbyte level\n"
+                    "string name\nstring message\nstring hardware_id\nKeyValue[] values\n"},
+                   {"diagnostic_msgs/KeyValue", "string key\nstring value\n"}})},
+      {"/robot_description", "std_msgs/msg/String", "ros2msg", "string data\n", true},
+      {"/tf_static", "tf2_msgs/msg/TFMessage", "ros2msg", transforms, true},
   }};
   return topics;
 }

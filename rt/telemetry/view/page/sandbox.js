@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The other end of a live page, in the page itself: simulator, controller and policy as a WebAssembly module
-// (tools/sandbox). To live.js it is a socket, and it says what a server would (view_messages.h, view_orders.h).
+// (tools/sandbox). To live.js it is a socket, and it says what a server would (view_messages.h, page_session.h).
 import { inflate } from './file.js';
 
 const kEvery_ms = 16, kBudget_ms = 12, kState_ms = 200;
