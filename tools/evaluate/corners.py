@@ -53,12 +53,17 @@ def corners(forward, back, lateral, yaw, centripetal):
     return found
 
 
+def command_file(first, second):
+    """Name of the file with these commands, which have blanks in their own names."""
+    return f'{first}--{second}.csv'.replace(' ', '-')
+
+
 def run(programs, policy, robot, job, commands, folder):
     """Exit code of one run, how it ended, and how to repeat it."""
     ground, start, first, second = job
     a, b, zero = commands[first], commands[second], (0, 0, 0)
     rows = [(0.0, zero), (0.5, zero), (0.5, a), (3, a), (3, b), (5.5, b), (5.5, a), (7, a), (7, zero)]
-    file = folder / f'{first} {second}.csv'.replace(' ', '-')
+    file = folder / command_file(first, second)
     if not file.exists():
         # Two rows at one time are a step; the controller makes of it what the envelope's
         # accelerations allow.
