@@ -56,7 +56,8 @@ auto for_each_row(void (Robots::*method)(int, const Record&), const char* name,
   };
 }
 
-py::array models(const Robots& robots) {
+py::array models(Robots& robots) {
+  const OneAtATime lock(robots.busy());
   const auto all = robots.models();
   return py::array(model_type(), {static_cast<py::ssize_t>(all.size())},
                    {sizeof(sim::RobotModel<float>)}, all.data());
@@ -79,7 +80,7 @@ void bind_batch(py::module_& module) {
       .def("set_models", for_each_row(&Robots::set_model, "model", &model_type))
       .def("set_ground", alone(&Robots::set_ground))
       .def("stand", alone(&Robots::stand))
-      .def("advance", alone(&Robots::advance), py::call_guard<py::gil_scoped_release>())
+      .def("advance", alone_for_long(&Robots::advance))
       .def_property_readonly("robot_name",
                              [](const Robots& robots) { return robots.robot().description.name; })
       .def_property_readonly("nominal_rad",

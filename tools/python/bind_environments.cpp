@@ -38,12 +38,13 @@ py::dict arrays(const py::object& self) {
 void step(Environments& e, const py::object& actions) {
   const auto array = checked_array<float>("actions", actions, {e.envs(), kNumJoints});
   const float* const data = array.data();
-  const py::gil_scoped_release release;
   const OneAtATime lock(e.busy());
+  const py::gil_scoped_release release;
   e.step(data);
 }
 
-py::dict progress(const Environments& e) {
+py::dict progress(Environments& e) {
+  const OneAtATime lock(e.busy());
   const Progress p = e.progress();
   py::dict all;
   all["speed_mps"] = p.curriculum.speed_mps;
@@ -69,7 +70,8 @@ void set_progress(Environments& e, double speed_mps, double ground, double trans
 }
 
 /// Means of the latest window, as in the learning curve of sandrunner-train.
-py::dict statistics(const Environments& e) {
+py::dict statistics(Environments& e) {
+  const OneAtATime lock(e.busy());
   const train::WindowStats& w = e.window();
   py::dict all;
   all["reward"] = w.reward;
@@ -119,8 +121,7 @@ void bind_environments(py::module_& module) {
            py::arg("config_file"), py::arg("settings"), py::arg("in_joints"), py::arg("width"))
       .def("arrays", &arrays)
       .def("step", &step, py::arg("actions"))
-      .def("restart", alone(&Environments::restart), py::call_guard<py::gil_scoped_release>(),
-           py::arg("seed"))
+      .def("restart", alone_for_long(&Environments::restart), py::arg("seed"))
       .def("set_moves", alone(&Environments::set_moves))
       .def("progress", &progress)
       .def("set_progress", &set_progress, py::kw_only(), py::arg("speed_mps"), py::arg("ground"),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pybind11/pybind11.h>
+
 #include <atomic>
 
 #include "rt/base/errors.h"
@@ -30,6 +32,17 @@ template <typename Object, typename... Arguments>
 auto alone(void (Object::*method)(Arguments...)) {
   return [method](Object& object, Arguments... arguments) {
     const OneAtATime lock(object.busy());
+    (object.*method)(arguments...);
+  };
+}
+
+/// The same, and other Python threads run meanwhile. The lock is taken before they may: calls that
+/// keep them out are never in its way.
+template <typename Object, typename... Arguments>
+auto alone_for_long(void (Object::*method)(Arguments...)) {
+  return [method](Object& object, Arguments... arguments) {
+    const OneAtATime lock(object.busy());
+    const pybind11::gil_scoped_release release;
     (object.*method)(arguments...);
   };
 }

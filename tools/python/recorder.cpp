@@ -10,13 +10,15 @@
 #include "rt/telemetry/view/view_page.h"
 #include "sim/step/ground_truth.h"
 #include "tools/python/checks.h"
+#include "tools/python/one_at_a_time.h"
 
 namespace sandrunner::python {
 namespace {
 
 Vector3 vector_of(const sim::Vec3<float>& v) { return {v.x, v.y, v.z}; }
 
-RunScene scene_of(const Environments& environments, int env) {
+RunScene scene_of(Environments& environments, int env) {
+  const OneAtATime lock(environments.busy());
   RunScene scene = robot_scene(environments.robot(), environments.task().terrain(env));
   scene.terrain = "training ground";
   return scene;
@@ -88,6 +90,7 @@ void Recorder::add_row(const RunRow& row) {
 }
 
 bool Recorder::add() {
+  const OneAtATime lock(environments_.busy());
   over_ = over_ || environments_.ended()[static_cast<std::size_t>(env_)] != 0;
   if (over_) return false;
   if (const auto row = rows_.add(tick_now())) add_row(*row);

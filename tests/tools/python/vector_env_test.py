@@ -12,7 +12,7 @@ import unittest
 import numpy as np
 
 import sandrunner
-from sandrunner import VectorEnv
+from sandrunner import Recording, VectorEnv
 
 REFERENCE = pathlib.Path(os.environ["SANDRUNNER_BIN"], "rollout_reference")
 ENVS, STEPS, SEED = 256, 224, 7  # seven windows
@@ -129,6 +129,17 @@ class Arrays(unittest.TestCase):
         done = True
         thread.join()
         self.assertGreater(counts[True], 1000)
+
+    def test_what_a_step_writes_is_not_read_by_another_thread_during_it(self):
+        envs = VectorEnv(num_envs=4096)
+        native, actions = envs._native, np.zeros((4096, 12), np.float32)
+        for read in (native.statistics, native.progress, Recording(envs).add):
+            thread = threading.Thread(target=native.step, args=(actions,))
+            thread.start()
+            with self.assertRaisesRegex(ValueError, "expected one at a time"):
+                while thread.is_alive():
+                    read()
+            thread.join()
 
 
 class Contract(unittest.TestCase):
