@@ -88,16 +88,6 @@ TEST_F(StudyProgramTest, ThePublishedNetworkIsShownAndHasNoPartInTheVerdicts) {
   EXPECT_FALSE(json["experiments"]["fairness"].contains("published"));
 }
 
-TEST_F(StudyProgramTest, AKilledRunGoesOnAndEndsInTheSameBytes) {
-  const std::string common = "--from models --only E5 --runs 2 ";
-  ASSERT_EQ(run(common + "--out whole"), 0) << error();
-  ASSERT_NO_FATAL_FAILURE(
-      kill_after("killed/cache/fairness-ours-1.json", {"--only", "E5", "--runs", "2"}));
-  ASSERT_EQ(run(common + "--out killed"), 0) << error();
-  EXPECT_NE(output().find("taken from an earlier run"), std::string::npos) << output();
-  expect_as_whole({"report.html", "results.json", "claims.csv", "figures/fig3h.png"});
-}
-
 TEST_F(StudyProgramTest, ShowsWhatTheOraclesDependOnAndGoesOnWithTheSameBytes) {
   std::filesystem::create_directory(folder_.path("oracles"));
   write_random_model(folder_.path("oracles/oracle-h-1.safetensors"), "encoding, estimate, terrain");
@@ -128,6 +118,8 @@ TEST_F(StudyProgramTest, AGridThatIsKilledGoesOnAndEndsInTheSameBytesForAnyThrea
       kill_after("killed/cache/E7-ours-1.json",
                  {"--only", "E7", "--runs", "1", "--grid-runs", "16", "--grid-cells", "2"}));
   ASSERT_EQ(run(common + "2 --out killed"), 0) << error();
+  EXPECT_NE(output().find("fairness: 0 models run, 3 taken"), std::string::npos) << output();
+  EXPECT_EQ(output().find("E7: 3 models run"), std::string::npos) << output();
   expect_as_whole({"report.html", "results.json", "claims.csv", "figures/fig4ad.png",
                    "figures/fig4_lines.png"});
   const std::string page = read("whole/report.html");
@@ -147,7 +139,7 @@ TEST_F(StudyProgramTest, AnotherNumberOfRobotsRunsTheGridAgain) {
   EXPECT_NE(output().find("E7: 2 models run, 0 taken"), std::string::npos) << output();
 }
 
-TEST_F(StudyProgramTest, KeepsWhatIsDoneAndTakesADamagedFileAgain) {
+TEST_F(StudyProgramTest, KeepsWhatIsDoneAndTakesADamagedOrAnOldFileAgain) {
   const std::string line = "--from models --only E6 --runs 1 --out dir";
   ASSERT_EQ(run(line), 0) << error();
   const std::string before = read("dir/results.json");
@@ -155,17 +147,14 @@ TEST_F(StudyProgramTest, KeepsWhatIsDoneAndTakesADamagedFileAgain) {
   ASSERT_EQ(run(line), 0) << error();
   EXPECT_NE(output().find("E6: 1 models run, 1 taken"), std::string::npos) << output();
   EXPECT_EQ(read("dir/results.json"), before);
-}
-
-TEST_F(StudyProgramTest, TakesAMeasurementOfAnotherVersionAgain) {
-  const std::string line = "--from models --only E6 --runs 1 --out dir";
-  ASSERT_EQ(run(line), 0) << error();
+  // And one of another version.
   std::string measured = read("dir/cache/E6-ours-1.json");
   const std::string key = "{\"key\":\"version ";
   ASSERT_TRUE(measured.starts_with(key)) << measured.substr(0, 60);
   write_file(folder_.path("dir/cache/E6-ours-1.json"), measured.insert(key.size(), "9"));
+  write_file(folder_.path("dir/cache/E6-env-rigid-1.json"), "{\"key\": 5}");
   ASSERT_EQ(run(line), 0) << error();
-  EXPECT_NE(output().find("E6: 1 models run, 1 taken"), std::string::npos) << output();
+  EXPECT_NE(output().find("E6: 2 models run, 0 taken"), std::string::npos) << output();
 }
 
 TEST_F(StudyProgramTest, SaysWhereThePageCannotBeWrittenAndKeepsTheResults) {

@@ -31,9 +31,12 @@ std::string cache_key(const Options& options, const Experiment& experiment, cons
 // What the file holds under the key; nothing if it is absent, of another key or damaged.
 std::optional<Measured> read_cache(const std::string& path, const std::string& key) {
   std::ifstream file(path, std::ios::binary);
-  const Json json = Json::parse(file, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || json.value("key", "") != key) return std::nullopt;
-  return measured_from(json.at("measured"));
+  try {
+    const Json json = Json::parse(file);
+    if (json.at("key") == key) return measured_from(json.at("measured"));
+  } catch (const Json::exception&) {
+  }
+  return std::nullopt;
 }
 
 bool takes_part(const Experiment& experiment, const Model& model) {
