@@ -44,32 +44,28 @@ WireTime wire_time(const FrameShape& shape, const BusRates& rates) noexcept {
           bits.slow.worst / rates.nominal_hz + bits.fast.worst / rates.data_hz};
 }
 
-WireTime wire_time(const BusCycle& cycle, int motors, const BusRates& rates) noexcept {
+WireTime wire_time(std::span<const FrameShape> frames, const BusRates& rates) noexcept {
   WireTime sum;
-  const auto add = [&](std::span<const FrameShape> shapes, double times) {
-    for (const FrameShape& shape : shapes) {
-      const WireTime time = wire_time(shape, rates);
-      sum.nominal_s += times * time.nominal_s;
-      sum.worst_s += times * time.worst_s;
-    }
-  };
-  add(cycle.each_motor, motors);
-  add(cycle.once, 1.0);
+  for (const FrameShape& frame : frames) {
+    const WireTime time = wire_time(frame, rates);
+    sum.nominal_s += time.nominal_s;
+    sum.worst_s += time.worst_s;
+  }
   return sum;
 }
 
-BusLoad bus_load(const BusCycle& cycle, int motors, double cycle_hz,
+BusLoad bus_load(std::span<const FrameShape> frames, double cycle_hz,
                  const BusRates& rates) noexcept {
-  const WireTime time = wire_time(cycle, motors, rates);
+  const WireTime time = wire_time(frames, rates);
   return {time.nominal_s * cycle_hz, time.worst_s * cycle_hz};
 }
 
-int motors_that_fit(const BusCycle& cycle, double cycle_hz, const BusRates& rates) noexcept {
-  const double once_s = wire_time(cycle, 0, rates).worst_s;
-  const double each_s = wire_time(cycle, 1, rates).worst_s - once_s;
+int motors_that_fit(std::span<const FrameShape> each_motor, double cycle_hz,
+                    const BusRates& rates) noexcept {
+  const double each_s = wire_time(each_motor, rates).worst_s;
   if (!(each_s > 0.0 && cycle_hz > 0.0)) return 0;
   // A billionth more, so that rounding does not refuse what is exactly at the limit.
-  const double motors = std::floor((kMaxBusLoad / cycle_hz - once_s) / each_s + 1e-9);
+  const double motors = std::floor(kMaxBusLoad / cycle_hz / each_s + 1e-9);
   return static_cast<int>(std::clamp(motors, 0.0, 1e6));
 }
 

@@ -46,25 +46,22 @@ struct WireTime {
 };
 WireTime wire_time(const FrameShape& shape, const BusRates& rates) noexcept;
 
-/// What happens on a bus in one cycle.
-struct BusCycle {
-  std::span<const FrameShape> each_motor;  ///< its command and its reply
-  std::span<const FrameShape> once;        ///< such as a command to all, or a SYNC
-};
-WireTime wire_time(const BusCycle& cycle, int motors, const BusRates& rates) noexcept;
+WireTime wire_time(std::span<const FrameShape> frames, const BusRates& rates) noexcept;
 
-/// Share of the time for which a bus is busy.
+/// Share of the time for which a bus is busy, if these frames go over it in each cycle.
 struct BusLoad {
   double nominal = 0.0;
   double worst = 0.0;
 };
-BusLoad bus_load(const BusCycle& cycle, int motors, double cycle_hz,
+BusLoad bus_load(std::span<const FrameShape> frames, double cycle_hz,
                  const BusRates& rates) noexcept;
 
 /// Above this worst case no repeated frame fits and replies come late.
 inline constexpr double kMaxBusLoad = 0.8;
 
-/// The most motors whose worst case does not exceed kMaxBusLoad.
-int motors_that_fit(const BusCycle& cycle, double cycle_hz, const BusRates& rates) noexcept;
+/// The most motors whose worst case does not exceed kMaxBusLoad. `each_motor`: its command and its
+/// reply.
+int motors_that_fit(std::span<const FrameShape> each_motor, double cycle_hz,
+                    const BusRates& rates) noexcept;
 
 }  // namespace sandrunner

@@ -7,6 +7,7 @@
 // `ip link`. Its send queue must be no longer than a cycle's frames: what waits in it is stale.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -89,5 +90,18 @@ class CanSocket {
   std::uint32_t last_overflow_ = 0;
   std::uint64_t overflowed_ = 0;
 };
+
+/// Takes what has arrived, frame by frame, in at most `most_rounds` calls of receive: a bus may
+/// never fall silent. Returns whether nothing is left.
+template <typename Use>
+bool for_each_frame(CanSocket& socket, int most_rounds, const Use& use) {
+  std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
+  for (int round = 0; round < most_rounds; ++round) {
+    const int frames = socket.receive(received).frames;
+    for (int i = 0; i < frames; ++i) use(received[i]);
+    if (frames < CanSocket::kMaxFrames) return true;
+  }
+  return false;
+}
 
 }  // namespace sandrunner

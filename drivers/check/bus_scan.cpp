@@ -2,7 +2,6 @@
 #include "drivers/check/bus_scan.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <thread>
 
@@ -10,18 +9,6 @@ namespace sandrunner {
 namespace {
 
 constexpr std::chrono::milliseconds kAnswer{5};
-
-/// All that has arrived.
-template <typename Use>
-void for_each_frame(CanSocket& socket, const Use& use) {
-  std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
-  // A bus that never falls silent is no reason to stay for ever.
-  for (int round = 0; round < 100; ++round) {
-    const CanResult result = socket.receive(received);
-    for (int i = 0; i < result.frames; ++i) use(received[i].frame);
-    if (result.frames < CanSocket::kMaxFrames) return;
-  }
-}
 
 /// A drive as `like` with another id.
 AnyDrive with_id(const AnyDrive& like, int id, CanFormat format) {
@@ -64,11 +51,11 @@ std::vector<std::vector<ScannedDrive>> scan(const HardwareConfig& config,
     std::this_thread::sleep_for(kAnswer);
     for (std::size_t b = 0; b < sockets.size(); ++b) {
       if (!sockets[b]) continue;
-      for_each_frame(*sockets[b], [&](const CanFrame& frame) {
+      for_each_frame(*sockets[b], 100, [&](const ReceivedFrame& reply) {
         std::vector<ScannedDrive>& drives = answered[b];
         const bool known = !drives.empty() && drives.back().id == id;
-        if (known || !is_scan_reply(config, static_cast<int>(b), id, frame)) return;
-        drives.push_back({.id = id, .reply_id = frame.id});
+        if (known || !is_scan_reply(config, static_cast<int>(b), id, reply.frame)) return;
+        drives.push_back({.id = id, .reply_id = reply.frame.id});
       });
     }
   }

@@ -38,15 +38,9 @@ std::vector<BusTraffic> listen(const HardwareConfig& config, const CanSockets& s
   std::vector<BusTraffic> traffic(sockets.size());
   for (std::size_t b = 0; b < sockets.size(); ++b) {
     if (!sockets[b]) continue;
-    std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
-    int frames = CanSocket::kMaxFrames;
-    // A bus that never falls silent is no reason to stay for ever.
-    for (int round = 0; frames == CanSocket::kMaxFrames && round < 100; ++round) {
-      frames = sockets[b]->receive(received).frames;
-      for (int i = 0; i < frames; ++i) {
-        traffic[b].add(config, static_cast<int>(b), received[i].frame);
-      }
-    }
+    for_each_frame(*sockets[b], 100, [&](const ReceivedFrame& received) {
+      traffic[b].add(config, static_cast<int>(b), received.frame);
+    });
   }
   return traffic;
 }

@@ -30,7 +30,6 @@ std::vector<PlannedBus> plan_buses(const HardwareConfig& hardware) {
   std::vector<PlannedBus> plan;
   for (std::size_t b = 0; b < hardware.buses.size(); ++b) {
     const BusConfig& bus = hardware.buses[b];
-    // All frames of the bus as if of one motor: its drives may differ in their replies.
     std::vector<FrameShape> shapes;
     PlannedBus planned;
     planned.interface = bus.interface;
@@ -39,16 +38,15 @@ std::vector<PlannedBus> plan_buses(const HardwareConfig& hardware) {
       ++planned.drives;
       for (const FrameShape& shape : shapes_of(drive, hardware)) shapes.push_back(shape);
     }
-    const BusCycle cycle{.each_motor = shapes, .once = {}};
-    planned.load = bus_load(cycle, 1, hardware.rate_hz, bus.rates);
+    planned.load = bus_load(shapes, hardware.rate_hz, bus.rates);
     if (planned.drives > 0) {
-      const BusCycle one{.each_motor = std::span(shapes).first(2), .once = {}};
-      planned.most_drives = motors_that_fit(one, hardware.rate_hz, bus.rates);
+      planned.most_drives =
+          motors_that_fit(std::span(shapes).first(2), hardware.rate_hz, bus.rates);
     }
     for (int parts = 1; parts <= kControlHz / 100; ++parts) {
       if (kControlHz % parts != 0) continue;
       const double rate_hz = static_cast<double>(kControlHz) / parts;
-      if (bus_load(cycle, 1, rate_hz, bus.rates).worst > kMaxBusLoad) continue;
+      if (bus_load(shapes, rate_hz, bus.rates).worst > kMaxBusLoad) continue;
       planned.most_rate_hz = rate_hz;
       break;
     }

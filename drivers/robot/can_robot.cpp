@@ -16,7 +16,7 @@
 namespace sandrunner {
 namespace {
 
-constexpr int kMostFrames = 3 * CanSocket::kMaxFrames;  // of a bus in a tick
+constexpr int kMostRounds = 3;  // of reading a bus in a tick
 
 /// The tick in which something of `age_ns` happened, seen from `tick`.
 std::uint64_t tick_of(std::int64_t age_ns, std::uint64_t tick) noexcept {
@@ -97,22 +97,15 @@ void CanRobot::read(std::uint64_t tick, SensorFrame& frame) noexcept {
 }
 
 void CanRobot::receive(std::uint64_t tick) noexcept {
-  std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
   const std::int64_t now = clock_ns(CLOCK_REALTIME);  // of the kernel's stamps
   const std::int64_t monotonic = clock_ns(CLOCK_MONOTONIC);
   const std::int64_t longest = monotonic - emptied_ns_;
   bool emptied = true;
   for (std::size_t b = 0; b < sockets_.size(); ++b) {
-    int taken = 0;
-    while (taken < kMostFrames) {
-      const CanResult result = sockets_[b]->receive(received);
-      for (int i = 0; i < result.frames; ++i) {
-        take(static_cast<int>(b), received[i], tick, now, longest);
-      }
-      taken += result.frames;
-      if (result.frames < CanSocket::kMaxFrames) break;
-    }
-    emptied = emptied && taken < kMostFrames;
+    const bool all = for_each_frame(*sockets_[b], kMostRounds, [&](const ReceivedFrame& received) {
+      take(static_cast<int>(b), received, tick, now, longest);
+    });
+    emptied = emptied && all;
     counters_[b].overflowed = sockets_[b]->overflowed();
   }
   if (emptied) emptied_ns_ = monotonic;

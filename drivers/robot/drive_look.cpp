@@ -2,7 +2,6 @@
 #include "drivers/robot/drive_look.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <thread>
 
@@ -53,12 +52,7 @@ void DriveLook::receive(double wait_s) {
   std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
   for (std::size_t b = 0; b < sockets_.size(); ++b) {
     if (!sockets_[b]) continue;
-    std::array<ReceivedFrame, CanSocket::kMaxFrames> received;
-    int frames = CanSocket::kMaxFrames;
-    for (int round = 0; frames == CanSocket::kMaxFrames && round < 10; ++round) {
-      frames = sockets_[b]->receive(received).frames;
-      for (int i = 0; i < frames; ++i) take(b, received[i]);
-    }
+    for_each_frame(*sockets_[b], 10, [&](const ReceivedFrame& frame) { take(b, frame); });
   }
   for (int j = 0; j < kNumJoints; ++j) {
     found_[j].position_rad = drives_[j].position_rad();

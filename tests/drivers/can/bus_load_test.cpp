@@ -106,44 +106,19 @@ TEST(BusLoadTest, ExchangesTakeTheirTimesAndSoManyMotorsFit) {
            Row{"FD 1M/8M", {fd(8), fd(8)}, k1M8M, 84.0, 96.2, {8, 4, 2}},
        }) {
     SCOPED_TRACE(row.name);
-    const BusCycle cycle{row.exchange, {}};
-    const WireTime time = wire_time(cycle, 1, row.rates);
+    const WireTime time = wire_time(row.exchange, row.rates);
     EXPECT_NEAR(us(time.nominal_s), row.nominal_us, 0.051);
     EXPECT_NEAR(us(time.worst_s), row.worst_us, 0.051);
-    EXPECT_EQ(motors_that_fit(cycle, 1000.0, row.rates), row.motors[0]);
-    EXPECT_EQ(motors_that_fit(cycle, 2000.0, row.rates), row.motors[1]);
-    EXPECT_EQ(motors_that_fit(cycle, 4000.0, row.rates), row.motors[2]);
-  }
-}
-
-TEST(BusLoadTest, CommandToAllMotorsCountsOnce) {
-  const std::array reply = {fd(8)};
-  struct Row {
-    int motors, command_bytes;
-    BusRates rates;
-    double nominal_us, worst_us;
-    std::array<int, 3> percent;  // worst, at 1, 2, 4 kHz
-  };
-  for (const Row& row :
-       {Row{3, 6, k1M5M, 193.6, 222.4, {22, 44, 89}}, Row{3, 6, k1M8M, 166.0, 190.0, {19, 38, 76}},
-        Row{2, 4, k1M5M, 141.2, 161.8, {16, 32, 65}},
-        Row{2, 4, k1M8M, 122.0, 139.4, {14, 28, 56}}}) {
-    const std::array command = {fd(row.command_bytes)};
-    const BusCycle cycle{reply, command};
-    const WireTime time = wire_time(cycle, row.motors, row.rates);
-    EXPECT_NEAR(us(time.nominal_s), row.nominal_us, 0.051);
-    EXPECT_NEAR(us(time.worst_s), row.worst_us, 0.1);
-    for (int i = 0; i < 3; ++i) {
-      const double load = bus_load(cycle, row.motors, 1000.0 * (1 << i), row.rates).worst;
-      EXPECT_EQ(std::lround(100.0 * load), row.percent[i]) << i;
-    }
+    EXPECT_EQ(motors_that_fit(row.exchange, 1000.0, row.rates), row.motors[0]);
+    EXPECT_EQ(motors_that_fit(row.exchange, 2000.0, row.rates), row.motors[1]);
+    EXPECT_EQ(motors_that_fit(row.exchange, 4000.0, row.rates), row.motors[2]);
   }
 }
 
 TEST(BusLoadTest, LoadsOfThreeMotorsOnABus) {
   const auto percent = [](FrameShape command, FrameShape reply, double rate_hz) {
-    const std::array exchange = {command, reply};
-    return std::lround(100.0 * bus_load({exchange, {}}, 3, rate_hz, k1M5M).worst);
+    const std::array frames = {command, reply, command, reply, command, reply};
+    return std::lround(100.0 * bus_load(frames, rate_hz, k1M5M).worst);
   };
   EXPECT_EQ(percent(fd(8), fd(8), 1000.0), 34);
   EXPECT_EQ(percent(fd(24, true), fd(16), 1000.0), 56);
@@ -158,15 +133,15 @@ TEST(BusLoadTest, LoadsOfThreeMotorsOnABus) {
 TEST(BusLoadTest, ExactlyTheLimitFits) {
   const std::array exchange = {classic(8, true)};  // 160 bits at worst
   const BusRates rates{0.8e6, 0.8e6};              // 200 us
-  EXPECT_EQ(motors_that_fit({exchange, {}}, 1000.0, rates), 4);
-  EXPECT_EQ(motors_that_fit({exchange, {}}, 1001.0, rates), 3);
+  EXPECT_EQ(motors_that_fit(exchange, 1000.0, rates), 4);
+  EXPECT_EQ(motors_that_fit(exchange, 1001.0, rates), 3);
 }
 
 TEST(BusLoadTest, NothingFitsWhereNothingIsKnown) {
   EXPECT_EQ(motors_that_fit({}, 1000.0, k1M5M), 0);
   const std::array exchange = {classic(8)};
-  EXPECT_EQ(motors_that_fit({exchange, {}}, 0.0, k1M5M), 0);
-  EXPECT_EQ(motors_that_fit({exchange, exchange}, 1e6, k1M5M), 0);
+  EXPECT_EQ(motors_that_fit(exchange, 0.0, k1M5M), 0);
+  EXPECT_EQ(motors_that_fit(exchange, 1e6, k1M5M), 0);
 }
 
 }  // namespace
