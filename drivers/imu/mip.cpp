@@ -2,7 +2,6 @@
 #include "drivers/imu/mip.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace sandrunner::mip {
 
@@ -21,7 +20,6 @@ std::size_t sensor_field_length(std::uint8_t descriptor) noexcept {
   switch (descriptor) {
     case kAccel:
     case kGyro:
-    case kGpsTime:
       return 12;
     case kQuaternion:
       return 16;
@@ -171,11 +169,6 @@ SensorData decode_sensor_data(Bytes payload) noexcept {
       case kQuaternion:
         data.quaternion_wxyz = read_floats<4>(field.data);
         break;
-      case kGpsTime:
-        data.gps_time = {.time_of_week_s = std::bit_cast<double>(read_u64(field.data, 0)),
-                         .week = read_u16(field.data, 8),
-                         .flags = read_u16(field.data, 10)};
-        break;
       default:
         data.reference_time_ns = read_u64(field.data, 0);
     }
@@ -189,13 +182,6 @@ Packet encode_sensor_data(const SensorData& data) noexcept {
   if (data.accel_g) packet.add(kAccel, Writer().put(*data.accel_g).data());
   if (data.gyro_radps) packet.add(kGyro, Writer().put(*data.gyro_radps).data());
   if (data.quaternion_wxyz) packet.add(kQuaternion, Writer().put(*data.quaternion_wxyz).data());
-  if (data.gps_time) {
-    packet.add(kGpsTime, Writer()
-                             .put(std::bit_cast<std::uint64_t>(data.gps_time->time_of_week_s))
-                             .put(data.gps_time->week)
-                             .put(data.gps_time->flags)
-                             .data());
-  }
   if (data.reference_time_ns) {
     packet.add(kReferenceTime, Writer().put(*data.reference_time_ns).data());
   }

@@ -38,7 +38,7 @@ inline constexpr std::uint8_t kApply = 0x01;
 /// Fields of replies: what each command is answered with, and what kBaseRate brings besides.
 inline constexpr std::uint8_t kAck = 0xF1, kBaseRateReply = 0x8E;
 /// Fields of kSensorData.
-inline constexpr std::uint8_t kAccel = 0x04, kGyro = 0x05, kQuaternion = 0x0A, kGpsTime = 0x12,
+inline constexpr std::uint8_t kAccel = 0x04, kGyro = 0x05, kQuaternion = 0x0A,
                               kReferenceTime = 0xD5;
 
 /// Codes of kAck; others exist.
@@ -108,20 +108,12 @@ struct Reply {
 /// The answer to `command` in the payload of a reply; nothing where there is none.
 std::optional<Reply> find_reply(Bytes payload, std::uint8_t command) noexcept;
 
-struct GpsTime {
-  double time_of_week_s = 0.0;
-  std::uint16_t week = 0;
-  std::uint16_t flags = 0;
-  bool operator==(const GpsTime&) const = default;
-};
-
 /// A packet of kSensorData. All in the sensor's own axes: x forward, y right, z down (FRD).
 struct SensorData {
   std::optional<std::array<float, 3>> accel_g;  ///< specific force, 1 g = 9.80665 m/s^2
   std::optional<std::array<float, 3>> gyro_radps;
   /// Attitude q = (w, x, y, z) by the device's filter: p_sensor = q^-1 p_ned q.
   std::optional<std::array<float, 4>> quaternion_wxyz;
-  std::optional<GpsTime> gps_time;
   std::optional<std::uint64_t> reference_time_ns;  ///< device's clock when the sample was taken
   std::uint32_t unknown_fields = 0;                ///< skipped
   std::uint32_t wrong_length_fields = 0;           ///< skipped too

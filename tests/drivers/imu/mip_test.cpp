@@ -92,10 +92,6 @@ TEST(MipDataTest, WhatIsEncodedIsDecoded) {
     if (random() % 2) data.accel_g = three();
     if (random() % 2) data.gyro_radps = three();
     if (random() % 2) data.quaternion_wxyz = {number(random), number(random), 0.0F, -0.0F};
-    if (random() % 2) {
-      data.gps_time = {number(random), static_cast<std::uint16_t>(random()),
-                       static_cast<std::uint16_t>(random())};
-    }
     if (random() % 2) data.reference_time_ns = random();
     EXPECT_EQ(decode_sensor_data(encode_sensor_data(data).payload()), data);
   }
