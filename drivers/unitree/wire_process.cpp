@@ -13,7 +13,6 @@
 #include "drivers/unitree/command_watch.h"
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
-#include "rt/base/process_name.h"
 
 namespace sandrunner::unitree {
 namespace {

@@ -36,6 +36,13 @@ class Shared {
 /// fork(), while this process has one thread. Throws InputError, which begins with `key`.
 pid_t fork_process(const char* key);
 
+/// Renames this process: the kernel's name of it, which `pkill NAME` and `killall NAME` compare
+/// (its first 15 characters), and its command line, which `pkill -f` and `ps` show. For a forked
+/// process that must survive what ends the program it comes from. The program file behind it keeps
+/// its name: `pidof` and `fuser` find it still. Overwrites the strings of main()'s argv. To be
+/// called while the process has one thread.
+void rename_process(const char* name) noexcept;
+
 /// Makes a forked child, which has one thread, a process that survives what ends its parent: a name
 /// and a command line of its own (rename_process), a session of its own, and no signal that asks
 /// for an end. SIGKILL to the process itself or to its control group ends it.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // In a child process (death test): the test keeps its own name.
-#include "rt/base/process_name.h"
+#include "rt/base/guard_process.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
