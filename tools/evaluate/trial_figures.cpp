@@ -7,6 +7,7 @@
 
 #include "estimator/cost_of_transport.h"
 #include "estimator/heading.h"
+#include "rt/base/add_members.h"
 #include "rt/base/quantile.h"
 
 namespace sandrunner::evaluate {
@@ -93,18 +94,7 @@ void TrialRecorder::steady_figures(const RobotFacts& facts, TrialFigures& f) con
   std::array<std::vector<double>, kNumLegs> heights;
   for (std::size_t i = begin; i < end; ++i) {
     const Period& p = periods_[i];
-    sum.vx += p.vx;
-    sum.vy += p.vy;
-    sum.yaw_rate += p.yaw_rate;
-    sum.height += p.height;
-    sum.tilt2 += p.tilt2;
-    sum.action_change += p.action_change;
-    sum.estimate_velocity2 += p.estimate_velocity2;
-    sum.estimate_height2 += p.estimate_height2;
-    sum.estimate_foot2 += p.estimate_foot2;
-    sum.power += p.power;
-    sum.extension_power += p.extension_power;
-    sum.torque2 += p.torque2;
+    add_members<float>(p, sum);
     duty += loaded_share(p.load);
     for (int l = 0; l < kNumLegs; ++l) {
       heights[l].push_back(p.foot_height[l]);

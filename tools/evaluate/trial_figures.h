@@ -94,6 +94,7 @@ class TrialRecorder {
   TrialFigures figures(const Trial& trial, bool fell, bool met, const RobotFacts& facts) const;
 
  private:
+  // Floats alone (rt/base/add_members.h).
   struct Period {
     float distance = 0;  // at its start
     float vx = 0, vy = 0, yaw_rate = 0, height = 0, tilt2 = 0;

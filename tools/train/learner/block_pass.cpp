@@ -7,20 +7,6 @@
 
 namespace sandrunner::learner {
 
-void LossSums::add(const LossSums& other) {
-  policy += other.policy;
-  value += other.value;
-  for (std::size_t k = 0; k < estimate_square.size(); ++k) {
-    estimate_square[k] += other.estimate_square[k];
-  }
-  kl += other.kl;
-  clipped += other.clipped;
-  asymmetry += other.asymmetry;
-  imitation += other.imitation;
-  encoding += other.encoding;
-  samples += other.samples;
-}
-
 template <typename Scalar>
 double entropy(const Scalar* log_std) {
   double sum = 0.5 * kActionSize * (1.0 + std::log(2.0 * std::numbers::pi));

@@ -42,7 +42,7 @@ struct AdvantageScale {
   double inverse_std = 1.0;
 };
 
-/// Sums over samples (steps x environments).
+/// Sums over samples (steps x environments), all double (rt/base/add_members.h).
 struct LossSums {
   double policy = 0.0;
   double value = 0.0;  ///< (V - R)^2 / 2
@@ -53,8 +53,6 @@ struct LossSums {
   double imitation = 0.0;  ///< |mean - teacher's mean|^2 / 12
   double encoding = 0.0;   ///< |h - teacher's h|^2 / size of h
   double samples = 0.0;
-
-  void add(const LossSums& other);
 };
 
 /// Working memory and wiring of all networks for a block of environments: the encoder over `steps`

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <utility>
 
+#include "rt/base/add_members.h"
 #include "rt/base/errors.h"
 #include "tools/train/learner/gae.h"
 #include "tools/train/learner/random.h"
@@ -250,12 +251,7 @@ void Learner::compute_advantages(UpdateStats& stats) {
     }
   });
   Sums total;
-  for (const Sums& sum : sums) {
-    total.advantage += sum.advantage;
-    total.advantage_square += sum.advantage_square;
-    total.target += sum.target;
-    total.target_square += sum.target_square;
-  }
+  for (const Sums& sum : sums) add_members<double>(sum, total);
   const double n = static_cast<double>(rollout_.shape.envs) * rollout_.shape.steps;
   const double mean = total.advantage / n;
   const double variance = std::max(0.0, total.advantage_square / n - mean * mean);
@@ -311,7 +307,7 @@ bool Learner::learn_minibatch(const int* blocks, int count, UpdateStats& stats) 
   });
   ranks_.gather(std::span(sums), count);
   LossSums total;
-  for (const LossSums& sum : sums) total.add(sum);
+  for (const LossSums& sum : sums) add_members<double>(sum, total);
   const double norm = reduce_gradients(count);
 
   const double estimate_squares =

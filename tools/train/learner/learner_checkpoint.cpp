@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Learner: to and from a checkpoint.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <string>
-#include <vector>
 
 #include "rt/base/errors.h"
 #include "tools/train/learner/learner.h"
 
 namespace sandrunner::learner {
-namespace {
-
-std::string join(const std::vector<int>& widths) {
-  std::string text;
-  for (const int width : widths) text += fmt::format("{}{}", text.empty() ? "" : "-", width);
-  return text;
-}
-
-}  // namespace
 
 std::string Learner::architecture() const {
   const NetworkSizes& network = config_.network;
   return fmt::format("envs {} of {}, privileged {}, hidden {}, estimator {}, actor {}, critic {}{}",
                      rollout_.shape.envs, config_.block_envs, rollout_.shape.privileged,
-                     network.hidden, join(network.estimator), join(network.actor),
-                     join(network.critic),
+                     network.hidden, fmt::join(network.estimator, "-"),
+                     fmt::join(network.actor, "-"), fmt::join(network.critic, "-"),
                      network.wiring == Wiring{} ? "" : ", " + wiring_text(network.wiring));
 }
 

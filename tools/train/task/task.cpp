@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "estimator/heading.h"
+#include "rt/base/add_members.h"
 #include "sim/ground/terrain_description.h"
 #include "sim/step/divergence.h"
 #include "tools/train/task/leg_modes.h"
@@ -213,7 +214,7 @@ void Task::end_step(int env, int t, learner::Rollout& rollout, WindowSums& windo
 WindowStats Task::end_window(double transitions, double late) {
   WindowSums all;
   for (WindowSums& sums : sums_) {
-    all.add(sums);
+    add_members<double>(sums, all);
     sums = {};
   }
   const WindowStats w = all.means();

@@ -36,30 +36,6 @@ void WindowSums::add_step(const StepOutcome& s, const Reward& reward, int kind, 
   }
 }
 
-void WindowSums::add(const WindowSums& other) {
-  steps_ += other.steps_;
-  reward_ += other.reward_;
-  for (std::size_t i = 0; i < kRewardTerms; ++i) terms_[i] += other.terms_[i];
-  torque_squared_ += other.torque_squared_;
-  power_ += other.power_;
-  lift_offs_ += other.lift_offs_;
-  height_ += other.height_;
-  height_steps_ += other.height_steps_;
-  abreast_ += other.abreast_;
-  diagonal_ += other.diagonal_;
-  loaded_ += other.loaded_;
-  gait_steps_ += other.gait_steps_;
-  top_kernel_ += other.top_kernel_;
-  top_steps_ += other.top_steps_;
-  for (int k = 0; k < 2; ++k) {
-    kernel_[k] += other.kernel_[k];
-    kind_steps_[k] += other.kind_steps_[k];
-    falls_[k] += other.falls_[k];
-    ratio_[k] += other.ratio_[k];
-    ratio_steps_[k] += other.ratio_steps_[k];
-  }
-}
-
 WindowStats WindowSums::means() const {
   const auto mean = [](double sum, double n) { return n > 0.0 ? sum / n : 0.0; };
   WindowStats w;

@@ -28,7 +28,7 @@ struct WindowStats {
   double abreast = 0.0, diagonal = 0.0;
 };
 
-/// Sums over the steps of a window.
+/// Sums over the steps of a window, all double (rt/base/add_members.h).
 class WindowSums {
  public:
   /// A step on ground of this kind (0 rigid, 1 soil). `top_speed_mps`: the curriculum's, which
@@ -36,7 +36,6 @@ class WindowSums {
   void add_step(const StepOutcome& s, const Reward& reward, int kind, int decisive,
                 double top_speed_mps, const reward::Velocity& velocity);
   void add_fall(int kind) { falls_[kind] += 1.0; }
-  void add(const WindowSums& other);
   WindowStats means() const;
 
  private:
