@@ -29,6 +29,10 @@ struct RobotFile {
   int foot_patches = 0;  ///< 0: as the shape has them
   std::array<double, 3> base_box_m{}, base_box_centre_m{};
 
+  /// Names of LF, RF, LH, RH.
+  std::array<std::string, kNumLegs> legs() const {
+    return {left_front, right_front, left_hind, right_hind};
+  }
   /// Whether it has a box of its own in place of the URDF's.
   bool has_base_box() const { return base_box_m != std::array<double, 3>{}; }
   /// Throws InputError.

@@ -19,6 +19,7 @@
 #include "sim/robot/inertia.h"
 #include "sim/robot/robot_file.h"
 #include "sim/robot/ros_description.h"
+#include "sim/robot/urdf_legs.h"
 #include "sim/robot/urdf_reader.h"
 
 namespace sandrunner::sim {
@@ -28,18 +29,8 @@ using Vec = Vec3<double>;
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
-// Names of the URDF's parts.
-struct Names {
-  const RobotFile* file;  // for errors
-  std::string base;
-  std::array<std::string, kNumLegs> legs;
-  std::array<std::string, kJointsPerLeg> joints;
-  std::array<std::string, kJointsPerLeg> links;  // hip, thigh, shank
-  std::string foot;
-};
-
 // The part of leg l: of a pattern with {leg}, or of four names with commas between.
-std::string part_of(std::string pattern, const Names& names, int l) {
+std::string part_of(std::string pattern, const RobotFile& file, int l) {
   if (pattern.find(',') != std::string::npos) {
     std::istringstream list(pattern);
     std::vector<std::string> four;
@@ -48,7 +39,7 @@ std::string part_of(std::string pattern, const Names& names, int l) {
       four.push_back(name.substr(begin, name.find_last_not_of(' ') + 1 - begin));
     }
     if (four.size() != kNumLegs) {
-      names.file->fail(
+      file.fail(
           fmt::format("found {} names in '{}', expected one with {{leg}}, or those of "
                       "LF, RF, LH and RH",
                       four.size(), pattern));
@@ -56,21 +47,12 @@ std::string part_of(std::string pattern, const Names& names, int l) {
     return four[static_cast<std::size_t>(l)];
   }
   constexpr std::string_view kLeg = "{leg}";
-  const std::string& leg = names.legs[l];
+  const std::string leg = file.legs()[l];
   for (auto at = pattern.find(kLeg); at != std::string::npos;
        at = pattern.find(kLeg, at + leg.size())) {
     pattern.replace(at, kLeg.size(), leg);
   }
   return pattern;
-}
-
-Names names_in(const RobotFile& f) {
-  return {.file = &f,
-          .base = f.base,
-          .legs = {f.left_front, f.right_front, f.left_hind, f.right_hind},
-          .joints = {f.haa, f.hfe, f.kfe},
-          .links = {f.hip, f.thigh, f.shank},
-          .foot = f.foot};
 }
 
 // Stops, torque and speed limit of joint j of leg l.
@@ -97,9 +79,9 @@ void read_limits(const UrdfReader& urdf, const RobotFile& file, const urdf::Join
 }
 
 // Joint j of leg l; returns where it is from the parent's origin, base axes, m.
-Vec read_joint(const UrdfReader& urdf, const RobotFile& file, const Names& names, int l, int j,
-               const std::string& parent, const std::string& child, Robot& robot) {
-  const std::string name = part_of(names.joints[j], names, l);
+Vec read_joint(const UrdfReader& urdf, const RobotFile& file, const std::string& pattern, int l,
+               int j, const std::string& parent, const std::string& child, Robot& robot) {
+  const std::string name = part_of(pattern, file, l);
   robot.description.joint_names[kJointsPerLeg * l + j] = name;
   Vec place_m, axis;
   const urdf::Joint& joint = urdf.joint(name, parent, child, place_m, axis);
@@ -109,7 +91,7 @@ Vec read_joint(const UrdfReader& urdf, const RobotFile& file, const Names& names
     urdf.fail(fmt::format(
         "joint '{}': found axis {:.3g} {:.3g} {:.3g} in the axes of '{}', expected {}, either way; "
         "a leg has HAA (x), HFE (y), KFE (y), the front is x, the left is y",
-        name, axis.x, axis.y, axis.z, names.base, j == 0 ? "1 0 0" : "0 1 0"));
+        name, axis.x, axis.y, axis.z, file.base, j == 0 ? "1 0 0" : "0 1 0"));
   }
   robot.model.legs[l].sign[j] = std::copysign(1.0, along);
   return place_m;
@@ -175,20 +157,15 @@ void check_mass(const UrdfReader& urdf, const std::string& link, const Body<doub
                         kLeastMass_kg));
 }
 
-LegLinks links_of(const Names& names, int l) {
-  return {.hip = part_of(names.links[0], names, l),
-          .thigh = part_of(names.links[1], names, l),
-          .shank = part_of(names.links[2], names, l),
-          .foot = part_of(names.foot, names, l)};
-}
-
-LegLinks read_leg(const UrdfReader& urdf, const RobotFile& file, const Names& names, int l,
-                  Robot& robot) {
-  LegLinks links = links_of(names, l);
+LegLinks read_leg(const UrdfReader& urdf, const RobotFile& file, int l, Robot& robot) {
+  LegLinks links{.hip = part_of(file.hip, file, l),
+                 .thigh = part_of(file.thigh, file, l),
+                 .shank = part_of(file.shank, file, l),
+                 .foot = part_of(file.foot, file, l)};
   LegModel<double>& leg = robot.model.legs[l];
-  leg.haa = read_joint(urdf, file, names, l, 0, names.base, links.hip, robot);
-  leg.hfe = read_joint(urdf, file, names, l, 1, links.hip, links.thigh, robot);
-  leg.kfe = read_joint(urdf, file, names, l, 2, links.thigh, links.shank, robot);
+  leg.haa = read_joint(urdf, file, file.haa, l, 0, file.base, links.hip, robot);
+  leg.hfe = read_joint(urdf, file, file.hfe, l, 1, links.hip, links.thigh, robot);
+  leg.kfe = read_joint(urdf, file, file.kfe, l, 2, links.thigh, links.shank, robot);
   leg.hip = urdf.body(links.hip);
   leg.thigh = urdf.body(links.thigh);
   leg.shank = urdf.body(links.shank);
@@ -220,11 +197,12 @@ void read_base(const UrdfReader& urdf, const RobotFile& file, RobotModel<double>
   m.base_box_half_m = box->half_m;
 }
 
-void check_joints(const UrdfReader& urdf, const Names& names) {
+void check_joints(const UrdfReader& urdf, const RobotFile& file) {
   std::vector<std::string> others = urdf.moving_joints();
   const std::size_t found = others.size();
   for (int l = 0; l < kNumLegs; ++l) {
-    for (const std::string& joint : names.joints) std::erase(others, part_of(joint, names, l));
+    for (const auto& joint : {file.haa, file.hfe, file.kfe})
+      std::erase(others, part_of(joint, file, l));
   }
   if (found == kNumJoints || others.empty()) return;
   if (others.size() > 4) {
@@ -237,8 +215,8 @@ void check_joints(const UrdfReader& urdf, const Names& names) {
 }
 
 // The legs are where their names say.
-void check_sides(const RobotFile& file, const Names& names, const RobotModel<double>& m) {
-  constexpr std::array kKeys{"left_front", "right_front", "left_hind", "right_hind"};
+void check_sides(const RobotFile& file, const RobotModel<double>& m) {
+  const std::array<std::string, kNumLegs> legs = file.legs();
   std::array<Vec, kNumLegs> hips;
   for (int l = 0; l < kNumLegs; ++l) hips[l] = m.legs[l].haa + m.legs[l].hfe;
   for (int l = 0; l < kNumLegs; ++l) {
@@ -247,14 +225,14 @@ void check_sides(const RobotFile& file, const Names& names, const RobotModel<dou
       file.fail(fmt::format(
           "legs.{}: the URDF has '{}' at y = {:.3g} m and '{}' at {:.3g}, expected the left one at "
           "the greater y",
-          kKeys[l], names.legs[l], hips[l].y, names.legs[l ^ 1], hips[l ^ 1].y));
+          kLegKeys[l], legs[l], hips[l].y, legs[l ^ 1], hips[l ^ 1].y));
     }
     if ((l < 2) != (from_other_end.x > 0.0)) {
       file.fail(
           fmt::format("legs.{}: the URDF has '{}' at x = {:.3g} m and '{}' at {:.3g}, expected the "
                       "front one at "
                       "the greater x",
-                      kKeys[l], names.legs[l], hips[l].x, names.legs[l ^ 2], hips[l ^ 2].x));
+                      kLegKeys[l], legs[l], hips[l].x, legs[l ^ 2], hips[l ^ 2].x));
     }
   }
 }
@@ -277,19 +255,18 @@ Robot parse_robot(const std::string& map_text, const std::string& map_name,
   Robot robot;
   const RobotFile file = read_robot_file(map_text, map_name, robot);
   const UrdfReader urdf(urdf_text, urdf_name, file.base);
-  const Names names = names_in(file);
   robot.description.name = file.name;
   robot.description.urdf = urdf_text;
-  robot.description.leg_names = names.legs;
+  robot.description.leg_names = file.legs();
   robot.map = map_text;
 
-  check_joints(urdf, names);
+  check_joints(urdf, file);
   read_base(urdf, file, robot.model);
   std::array<LegLinks, kNumLegs> links;
-  for (int l = 0; l < kNumLegs; ++l) links[l] = read_leg(urdf, file, names, l, robot);
-  check_sides(file, names, robot.model);
+  for (int l = 0; l < kNumLegs; ++l) links[l] = read_leg(urdf, file, l, robot);
+  check_sides(file, robot.model);
   urdf.reject_other_masses();
-  describe_for_ros(urdf, names.base, links, robot);
+  describe_for_ros(urdf, file.base, links, robot);
   check_pose(file, "pose.nominal_rad", robot.nominal_rad, robot);
   check_pose(file, "pose.lying_rad", robot.lying_rad, robot);
   check_pose(file, "pose.fold_rad", all_legs(robot.fold_rad), robot);
