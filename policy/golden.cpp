@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <span>
 
-#include "policy/text.h"
 #include "rt/core/split_mix.h"
 
 namespace sandrunner {
@@ -146,30 +145,15 @@ const float* insight_at(const GoldenExample& golden, int step) {
   return golden.insight.empty() ? nullptr : &golden.insight[step * kInsightSize];
 }
 
-template <typename Values>
-double worst(const std::string& file, int step, const char* what, const Values& found,
-             const std::vector<float>& expected) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const double wanted = expected[step * found.size() + i];
-    const double deviation = std::abs(found[i] - wanted) / std::max(1.0, std::abs(wanted));
-    if (!(deviation <= kGoldenTolerance)) {
-      fail_file(file, "golden example fails at step {}: {}[{}] is {}, expected {:.9g}", step, what,
-                i, found[i], wanted);
-    }
-    largest = std::max(largest, deviation);
-  }
-  return largest;
-}
-
 /// `step`: of a network, from an observation and an insight to its output.
 template <typename Step>
 double worst(const std::string& file, const GoldenExample& golden, Step step) {
   double largest = 0.0;
   for (int k = 0; k < kGoldenSteps; ++k) {
     const auto output = step(&golden.observation[k * kObservationSize], insight_at(golden, k));
-    largest = std::max({largest, worst(file, k, "action", output.action, golden.action),
-                        worst(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
+    largest =
+        std::max({largest, golden_deviation(file, k, "action", output.action, golden.action),
+                  golden_deviation(file, k, "estimate", output.estimate_raw, golden.estimate_raw)});
   }
   return largest;
 }

@@ -3,10 +3,13 @@
 // than `Network`, and run again whenever the file is loaded.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "policy/network.h"
+#include "policy/text.h"
 
 namespace sandrunner {
 
@@ -35,5 +38,23 @@ double check_golden_example(const std::string& file, const Network& network,
 /// `Network` does not.
 double check_golden_example(const std::string& file, const NetworkParameters& parameters,
                             const GoldenExample& golden);
+
+/// The largest deviation of `found` from the values of this step in `expected`, relative to
+/// max(1, |expected value|). Throws InputError as check_golden_example does.
+template <typename Values>
+double golden_deviation(const std::string& file, int step, const char* what, const Values& found,
+                        const std::vector<float>& expected) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double wanted = expected[step * found.size() + i];
+    const double deviation = std::abs(found[i] - wanted) / std::max(1.0, std::abs(wanted));
+    if (!(deviation <= kGoldenTolerance)) {
+      fail_file(file, "golden example fails at step {}: {}[{}] is {}, expected {:.9g}", step, what,
+                i, found[i], wanted);
+    }
+    largest = std::max(largest, deviation);
+  }
+  return largest;
+}
 
 }  // namespace sandrunner

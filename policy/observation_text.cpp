@@ -16,27 +16,19 @@
 namespace sandrunner {
 namespace {
 
-struct TermRow {
-  TermKind kind;
-  const char* name;
-};
-constexpr TermRow kTerms[] = {{TermKind::kAngularVelocity, "angular_velocity"},
-                              {TermKind::kGravity, "gravity"},
-                              {TermKind::kCommand, "command"},
-                              {TermKind::kJointPosition, "joint_position"},
-                              {TermKind::kJointVelocity, "joint_velocity"},
-                              {TermKind::kLastAction, "last_action"},
-                              {TermKind::kPhase, "phase"}};
+constexpr Named<TermKind> kTerms[] = {{TermKind::kAngularVelocity, "angular_velocity"},
+                                      {TermKind::kGravity, "gravity"},
+                                      {TermKind::kCommand, "command"},
+                                      {TermKind::kJointPosition, "joint_position"},
+                                      {TermKind::kJointVelocity, "joint_velocity"},
+                                      {TermKind::kLastAction, "last_action"},
+                                      {TermKind::kPhase, "phase"}};
 /// What networks of others see, and no robot measures.
 constexpr const char* kNotMeasured[] = {"linear_velocity", "height_scan", "foot_contact"};
 
 constexpr Named<HistoryOrder> kOrders[] = {{HistoryOrder::kNewestFirst, "newest_first"},
                                            {HistoryOrder::kOldestFirst, "oldest_first"},
                                            {HistoryOrder::kByTerm, "by_term"}};
-
-const TermRow& row_of(TermKind kind) {
-  return *std::ranges::find_if(kTerms, [&](const TermRow& row) { return row.kind == kind; });
-}
 
 std::optional<double> number_of(const std::string& word) {
   double value = 0.0;
@@ -61,10 +53,10 @@ ObservationTerm parse_term(const std::string& where, const std::string& text) {
   if (std::ranges::find(kNotMeasured, std::string_view(name)) != std::end(kNotMeasured)) {
     fail_term(where, text, "what a robot measures; train without it, or estimate it");
   }
-  const auto row = std::ranges::find_if(kTerms, [&](const TermRow& r) { return name == r.name; });
+  const auto row = std::ranges::find_if(kTerms, [&](const auto& r) { return name == r.name; });
   if (row == std::end(kTerms)) fail_term(where, text, "one of " + names_of(kTerms));
   ObservationTerm term;
-  term.kind = row->kind;
+  term.kind = row->value;
   std::vector<double>* values = nullptr;
   std::vector<double> clip, period;
   for (std::size_t i = 1; i < words.size(); ++i) {
@@ -117,7 +109,7 @@ std::vector<ObservationTerm> parse_terms(const std::string& where, const std::st
 std::string terms_text(const std::vector<ObservationTerm>& terms) {
   std::vector<std::string> texts;
   for (const ObservationTerm& term : terms) {
-    std::string text = row_of(term.kind).name;
+    std::string text = name_of(kTerms, term.kind);
     if (!term.scale.empty()) text += " scale " + joined(term.scale, " ");
     if (term.clip > 0.0) text += fmt::format(" clip {}", term.clip);
     if (term.period_s > 0.0) text += fmt::format(" period {}", term.period_s);

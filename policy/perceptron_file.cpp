@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <sstream>
 #include <utility>
@@ -222,15 +221,8 @@ double check_golden_example(const std::string& path, const PerceptronFile& file)
     JointArray<float> action;
     std::array<float, 3> velocity;
     network.answer(&file.golden_observation[k * inputs], action, velocity);
-    for (std::size_t j = 0; j < kNumJoints; ++j) {
-      const double wanted = file.golden_action[k * kNumJoints + j];
-      const double deviation = std::abs(action[j] - wanted) / std::max(1.0, std::abs(wanted));
-      if (!(deviation <= kGoldenTolerance)) {
-        fail_file(path, "golden example fails at step {}: action[{}] is {}, expected {:.9g}", k, j,
-                  action[j], wanted);
-      }
-      largest = std::max(largest, deviation);
-    }
+    const auto step = static_cast<int>(k);
+    largest = std::max(largest, golden_deviation(path, step, "action", action, file.golden_action));
   }
   return largest;
 }
