@@ -10,12 +10,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-Json lists_json(const std::map<std::string, std::vector<double>>& lists) {
-  Json json = Json::object();
-  for (const auto& [name, values] : lists) json[name] = values;  // nan becomes null
-  return json;
-}
-
 std::map<std::string, std::vector<double>> lists_from(const Json& json) {
   std::map<std::string, std::vector<double>> lists;
   for (const auto& [name, values] : json.items()) {
@@ -33,8 +27,8 @@ Json to_json(const Measured& measured) {
     groups.push_back({{"ground", group.ground},
                       {"scenario", group.scenario},
                       {"command", group.command},
-                      {"runs", lists_json(group.runs)},
-                      {"lists", lists_json(group.lists)},
+                      {"runs", group.runs},
+                      {"lists", group.lists},
                       {"packed", group.packed}});
   }
   return groups;
