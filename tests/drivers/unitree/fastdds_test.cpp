@@ -2,12 +2,12 @@
 // The wire's process with a robot whose DDS is not ours (fastdds_peer.cpp).
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <unistd.h>
 
 #include <string>
 
 #include "drivers/unitree/wire_process.h"
 #include "rt/base/clock_ns.h"
+#include "tests/rt/dds/own_domain.h"
 #include "tests/support/child_process.h"
 #include "tests/support/joint_names.h"
 
@@ -26,7 +26,7 @@ RobotFigures robot_of_test() {
 TEST(UnitreeFastDdsTest, ARobotOnAnotherDdsIsReleasedReadAndCommanded) {
   UnitreeConfig config;
   config.interface = "lo";
-  config.domain = 60 + getpid() % 150;
+  config.domain = own_domain();
   ChildProcess robot({SANDRUNNER_FASTDDS_PEER, std::to_string(config.domain)});
   RobotState state;
   StateCounters counters;

@@ -13,6 +13,7 @@
 
 #include "drivers/unitree/messages.h"
 #include "drivers/unitree/unitree_api.h"
+#include "tests/rt/dds/own_domain.h"
 
 namespace sandrunner::unitree {
 namespace {
@@ -57,8 +58,9 @@ std::vector<std::uint8_t> on_the_wire(const Message& message, const dds_topic_de
       "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" "
       "multicast=\"false\"/></Interfaces><AllowMulticast>false</AllowMulticast></General>"
       "</Domain></CycloneDDS>";
-  const dds_entity_t domain = dds_create_domain(97, kAlone);
-  const dds_entity_t participant = dds_create_participant(97, nullptr, nullptr);
+  const int number = own_domain();
+  const dds_entity_t domain = dds_create_domain(number, kAlone);
+  const dds_entity_t participant = dds_create_participant(number, nullptr, nullptr);
   const dds_entity_t topic = dds_create_topic(participant, &type, "unitree_test", nullptr, nullptr);
   const dds_entity_t reader = dds_create_reader(participant, topic, nullptr, nullptr);
   const dds_entity_t writer = dds_create_writer(participant, topic, nullptr, nullptr);

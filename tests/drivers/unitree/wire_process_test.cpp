@@ -21,6 +21,7 @@
 
 #include "rt/base/clock_ns.h"
 #include "rt/base/errors.h"
+#include "tests/rt/dds/own_domain.h"
 #include "tests/support/joint_names.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/hil/emulated/unitree_peer.h"
@@ -34,14 +35,14 @@ constexpr double kKp = 31.0, kDampingKd = 2.5;
 
 /// Another domain in each test: the wire of the one before may still damp its robot.
 UnitreeConfig config_of_test() {
-  static int tests = 0;
+  static int domain = 0;
   static const testing::TestInfo* last = nullptr;
   const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
-  if (test != last) ++tests;
+  if (test != last) domain = own_domain();
   last = test;
   UnitreeConfig config;
   config.interface = "lo";
-  config.domain = 60 + (getpid() + tests) % 150;
+  config.domain = domain;
   return config;
 }
 

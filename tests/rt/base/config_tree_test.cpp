@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "tests/support/error_of.h"
 #include "tests/support/not_finite.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sandrunner {
 namespace {
@@ -284,8 +284,8 @@ TEST(ConfigTreeTest, EffectiveTextGivesTheSameConfigurationAgain) {
 }
 
 TEST(ConfigTreeTest, FilesThatCannotBeUsedAreNamedWithTheLine) {
-  const std::filesystem::path folder = testing::TempDir();
-  const std::string path = folder / "config_tree_test.toml";
+  const TemporaryFolder folder;
+  const std::string path = folder.path("test.toml");
   ConfigTree config;
   std::ofstream(path) << "a = 1\nb = = 2\n";
   EXPECT_EQ(error_of([&] { config.add_file(path); }).find(path + ":2: not valid TOML: "), 0U);
@@ -296,10 +296,10 @@ TEST(ConfigTreeTest, FilesThatCannotBeUsedAreNamedWithTheLine) {
   EXPECT_EQ(config.integer("a", 0, 0, 1), 1);
   EXPECT_EQ(error_of([&] { config.integer("a", 0, 5, 6); }),
             path + ":1: a: found 1, expected a whole number from 5 to 6");
-  std::filesystem::remove(path);
+  std::remove(path.c_str());
   EXPECT_EQ(error_of([&] { config.add_file(path); }),
             path + ": cannot be read (No such file or directory), expected a TOML file");
-  EXPECT_EQ(error_of([&] { config.add_file(folder); }).find(folder.string()), 0U);
+  EXPECT_EQ(error_of([&] { config.add_file(folder.path("")); }).find(folder.path("")), 0U);
 }
 
 TEST(ConfigTreeTest, KeysOfTooManyPartsAreRefused) {

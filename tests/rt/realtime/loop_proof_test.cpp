@@ -14,6 +14,7 @@
 
 #include "rt/operator/remote_operator.h"
 #include "tests/policy/random_perceptron.h"
+#include "tests/rt/dds/own_domain.h"
 #include "tests/rt/realtime/watched_section.h"
 #include "tests/rt/support.h"
 #include "tests/support/child_process.h"
@@ -125,8 +126,8 @@ TEST(LoopProofTest, NoThreadDoesWithANetworkOfOthersEither) {
 
 TEST(LoopProofTest, NoThreadOfARobotThatIsDrivenOverDdsDoesMoreThanWithTheSimulator) {
   const PolicySpec spec = load_shipped_policy("go2").spec();
-  const std::vector<std::string> network = {"hardware.unitree.interface=lo",
-                                            "hardware.unitree.domain=74"};
+  const std::vector<std::string> network = {
+      "hardware.unitree.interface=lo", "hardware.unitree.domain=" + std::to_string(own_domain())};
   std::vector<std::string> hil = {SANDRUNNER_HIL, "--hardware", SANDRUNNER_UNITREE_EXAMPLE};
   ConfigTree tree;
   sim::add_terrain_layer(tree, "dry-sand");

@@ -2,13 +2,13 @@
 // The deployed program and the emulated Unitree robot, two processes on this computer's loopback.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/rt/dds/own_domain.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/unless_stalled.h"
@@ -23,11 +23,9 @@ const std::string kWalk_s = "10";  // standing up included
 class UnitreeLoopbackTest : public testing::Test {
  protected:
   UnitreeLoopbackTest() {
-    // Another clone of this project may run the same test.
     std::string text = read_file(SANDRUNNER_UNITREE_EXAMPLE);
     text.replace(text.find("\"eth0\""), 6, "\"lo\"");
-    write_file(folder_.path("robot.toml"),
-               fmt::format("{}domain = {}\n", text, 76 + getpid() % 24));
+    write_file(folder_.path("robot.toml"), fmt::format("{}domain = {}\n", text, own_domain()));
   }
 
   Ended run(std::vector<std::string> words) const {

@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -16,6 +15,7 @@
 #include "rt/core/processor.h"
 #include "rt/core/state_hash.h"
 #include "tests/support/error_of.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/train/data/thread_ranks.h"
 #include "toy_task.h"
 
@@ -107,8 +107,8 @@ TEST(LearnerTest, WeightsAreThoseWrittenDownFromBothCompilers) {
 }
 
 TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
-  const std::string path =
-      (std::filesystem::path(testing::TempDir()) / "learner_resume.bin").string();
+  const TemporaryFolder folder;
+  const std::string path = folder.path("checkpoint.bin");
   Training whole(1, 4, with_mirror());
   whole.run(7);
   {
@@ -135,7 +135,6 @@ TEST(LearnerTest, ResumesToTheWeightsOfAnUninterruptedRun) {
   whole.learner.save(expected);
   expected.put("task", whole.task.states.data(), whole.task.states.size());
   EXPECT_EQ(load_checkpoint(path).sections, expected.sections);
-  std::filesystem::remove(path);
 }
 
 TEST(LearnerTest, SymmetryWeightPullsTheAnswersToBothImagesTogether) {
