@@ -94,6 +94,7 @@ TEST(HardwareConfigTest, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal("mit", "bus = \"can0\"", "bus = \"can9\""), HasSubstr("bus 'can9' is none"));
   EXPECT_THAT(refusal("mit", "\"can1\"", "\"can0\""), HasSubstr("'can0' stands twice"));
   EXPECT_THAT(refusal("mit", "sign = 1", "sign = 0"), HasSubstr("sign 0"));
+  EXPECT_THAT(refusal("mit", "sign = 1", "sign = 2"), HasSubstr("hardware.drive[0].sign"));
   EXPECT_THAT(refusal("mit", "sign = 1", "position_rad = 2.0"),
               HasSubstr("rad from its zero needed"));
   EXPECT_THAT(refusal("mit", "rate_hz = 800", "rate_hz = 900"), HasSubstr("a divisor of 4000"));

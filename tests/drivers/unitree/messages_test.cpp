@@ -71,24 +71,6 @@ TEST(UnitreeCrcTest, IsThatOfTheRobotsOwnLibrary) {
   EXPECT_EQ(crc_of(state), 0x85F11EA6);
 }
 
-TEST(UnitreeCrcTest, DiffersFromLikelyMistakes) {
-  const LowCmd command = standing_command();
-  std::array<std::uint8_t, sizeof command> bytes;
-  std::memcpy(bytes.data(), &command, sizeof command);
-  std::uint32_t in_memory_order = 0xFFFFFFFF, zlib = 0xFFFFFFFF;
-  for (std::size_t i = 0; i < sizeof command - 4; ++i) {
-    in_memory_order ^= static_cast<std::uint32_t>(bytes[i]) << 24;
-    zlib ^= bytes[i];
-    for (int bit = 0; bit < 8; ++bit) {
-      in_memory_order = in_memory_order << 1 ^ ((in_memory_order >> 31) != 0 ? 0x04C11DB7u : 0u);
-      zlib = zlib >> 1 ^ ((zlib & 1) != 0 ? 0xEDB88320u : 0u);
-    }
-  }
-  EXPECT_EQ(in_memory_order, 0x5D38BFE4);
-  EXPECT_EQ(zlib ^ 0xFFFFFFFF, 0x5B14B397);
-  EXPECT_EQ(crc_of(command), 0x190C4FD7);
-}
-
 TEST(UnitreeCrcTest, DoesNotCoverPadding) {
   LowState state, dirty;
   RobotState robot;

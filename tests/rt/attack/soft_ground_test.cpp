@@ -30,13 +30,13 @@ TEST(SoftGroundTest, StandDoesNotToppleThere) {
 }
 
 TEST(SoftGroundTest, CampaignOverGroundsAndRobots) {
-  print_outcomes_header();
   for (const std::string robot : {"raibo", "go2"}) {
     for (const std::string terrain : {"memory-foam", "air-mattress", "rigid", "dry-sand",
                                       "wet-sand", "grass", "athletic-track", "vinyl"}) {
       if (!is_selected(robot + ", " + terrain)) continue;
       const Outcome seen = stand_on(robot, terrain, 124.0);
-      print_outcome(robot + ", " + terrain, seen);
+      std::printf("%s, %s: largest tilt %.0f degrees, %s\n", robot.c_str(), terrain.c_str(),
+                  degrees(seen.largest_tilt_rad), fault_name(seen.fault));
       EXPECT_FALSE(seen.fell()) << robot << ", " << terrain;
     }
   }

@@ -98,6 +98,7 @@ TEST_P(FaultCaseTest, BrakesWithinTwoMillisecondsThenSwitchesOff) {
   EXPECT_EQ(loop.output.command.joints().kd_nmsprad[0], 2.0);
   EXPECT_EQ(loop.output.faults, bits(fault_case));
   EXPECT_EQ(loop.controller.state().gate.first_fault, fault_case.fault);
+  EXPECT_EQ(loop.output.fault_joints, loop.controller.state().gate.fault_joints);
   EXPECT_EQ(loop.controller.state().gate.first_fault_tick, loop.output.policy_input.tick);
 
   // Latched: the end of the disturbance changes nothing.

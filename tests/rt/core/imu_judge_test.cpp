@@ -236,22 +236,5 @@ TEST_F(ImuJudgeTest, AfterAStallOfTheLoopTheMotionInItIsNotJudged) {
   EXPECT_EQ(run_s(0.5), 0u);
 }
 
-TEST(ForeignTrafficTest, IsAFaultOfItsJointInEveryModeFromThatTickOn) {
-  for (const Mode mode :
-       {Mode::kPassive, Mode::kDamping, Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
-    FakeLoop loop;
-    loop.reach(mode);
-    loop.tick();
-    ASSERT_EQ(loop.output.mode, mode);
-    loop.spoil = [](ControllerInput& seen) { seen.sensors.foreign_traffic = 1u << 7; };
-    loop.tick();
-    EXPECT_EQ(loop.output.mode, Mode::kFault) << mode_name(mode);
-    EXPECT_EQ(loop.output.first_fault, Fault::kForeignTraffic);
-    EXPECT_EQ(loop.output.fault_joints, 1u << 7);
-    EXPECT_EQ(loop.output.command.enabled(), mode != Mode::kPassive);
-    EXPECT_TRUE(only_brakes(loop.output.command));
-  }
-}
-
 }  // namespace
 }  // namespace sandrunner

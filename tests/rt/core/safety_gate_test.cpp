@@ -511,6 +511,15 @@ TEST_F(SafetyGateTest, FaultOfADriveIsAFaultInEveryModeAndNamesItsJoint) {
   }
 }
 
+TEST_F(SafetyGateTest, ForeignTrafficIsAFaultInEveryModeAndNamesItsJoint) {
+  for (const Mode mode : {Mode::kPassive, Mode::kDamping, Mode::kStand, Mode::kWalk}) {
+    state = {};
+    sensors.foreign_traffic = 1u << 7;
+    EXPECT_EQ(judge(mode), fault_bit(Fault::kForeignTraffic));
+    EXPECT_EQ(state.fault_joints, std::uint64_t{1} << 7);
+  }
+}
+
 TEST_F(SafetyGateTest, EveryJointAtFaultIsNamedUntilTheNextLatch) {
   sensors.joints.velocity_radps[4] = kNan;
   judge(Mode::kWalk);

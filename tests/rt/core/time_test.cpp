@@ -73,17 +73,6 @@ TEST(StallTest, OfThirtyMillisecondsIsNoFaultAndMakesNothingOlder) {
   }
 }
 
-TEST(StallTest, ThatIsLongerIsNamedAsTheLoopsOwnWhereTheRobotCarriesItself) {
-  for (const Mode mode : {Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
-    FakeLoop loop;
-    loop.reach(mode);
-    loop.robot.now.tick += 121;
-    loop.tick();
-    EXPECT_EQ(loop.output.faults, bit(Fault::kLoopStalled));
-    EXPECT_TRUE(only_brakes(loop.output.command));
-  }
-}
-
 TEST(StallTest, ASilentDriveBeforeItIsStillSilentAfterIt) {
   FakeLoop loop;
   loop.reach(Mode::kStand);
@@ -126,13 +115,6 @@ TEST(StandTest, IsReachedByPostureAndNotByTime) {
   loop.run_s(0.2);
   EXPECT_EQ(loop.output.faults, bit(Fault::kNotStanding));
   EXPECT_TRUE(only_brakes(loop.output.command));
-}
-
-TEST(StandTest, StopWhileStandingUpEndsInDamping) {
-  FakeLoop loop;
-  loop.reach(Mode::kStandUp);
-  loop.request(ModeRequest::kStop);
-  EXPECT_EQ(loop.output.mode, Mode::kDamping);
 }
 
 TEST(LostOperatorTest, WalksAtZeroThenStandsThenLiesDown) {

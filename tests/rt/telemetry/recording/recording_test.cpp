@@ -14,7 +14,6 @@
 #include "tests/rt/telemetry/recording/recording_program.h"
 #include "tests/support/small_robot.h"
 #include "tests/support/text_match.h"
-#include "tests/support/unless_stalled.h"
 #include "tests/support/wait_until.h"
 
 namespace sandrunner {
@@ -50,28 +49,6 @@ TEST_F(RecordingTest, HoldsEveryTickAndReplaysBitForBit) {
   EXPECT_EQ(contents.info.policy, shipped_policy_text());
   EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0);
   EXPECT_EQ(output(), "2000 ticks and 50 policy steps compared: every bit agrees\n");
-}
-
-TEST_F(RecordingTest, ThreadedRunReplaysBitForBit) {
-  unless_stalled([&](std::string& said) {
-    record("--clock realtime");
-    said = output();
-    EXPECT_FALSE(stalled(said)) << said;
-  });
-  EXPECT_EQ(run(SANDRUNNER_REPLAY, path()), 0) << output();
-}
-
-TEST_F(RecordingTest, StateHashIsThatOfTheRunWithoutRecording) {
-  const std::string walk = "--start walk --duration 0.5 ";
-  const auto hash = [&] {
-    const std::string text = output();
-    const std::size_t at = text.find("state hash");
-    return text.substr(at, text.find('\n', at) - at);
-  };
-  run(SANDRUNNER_PROGRAM, walk);
-  const std::string without = hash();
-  run(SANDRUNNER_PROGRAM, walk + "--record '" + folder_.path("") + "'");
-  EXPECT_EQ(hash(), without);
 }
 
 TEST_F(RecordingTest, OfGo2WithItsOwnPolicyReplaysBitForBitAndIsDrawn) {
