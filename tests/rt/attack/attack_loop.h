@@ -3,10 +3,12 @@
 // drifting_attitude_test.cpp.
 #pragma once
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "tests/rt/loop/disturbed_loop.h"
+#include "tests/rt/loop/watch.h"
 
 namespace sandrunner::attack {
 
@@ -62,6 +64,12 @@ inline Snapshot walking(const World& world, Drives drives, const VelocityCommand
   loop.walk(velocity, duration_s);
   EXPECT_EQ(loop.mode(), Mode::kWalk);
   return loop.snapshot();
+}
+
+/// Whether a campaign is to run the row `name`: all, or those that contain SANDRUNNER_ATTACK_ONLY.
+inline bool is_selected(const std::string& name) {
+  const char* const only = std::getenv("SANDRUNNER_ATTACK_ONLY");
+  return only == nullptr || name.find(only) != std::string::npos;
 }
 
 }  // namespace sandrunner::attack

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "outcome.h"
+#include "attack_loop.h"
 
 namespace sandrunner::attack {
 namespace {

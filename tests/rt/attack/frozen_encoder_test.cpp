@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "outcome.h"
+#include "attack_loop.h"
 
 namespace sandrunner::attack {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "outcome.h"
+#include "attack_loop.h"
 #include "sim/robot/clearance.h"
 
 namespace sandrunner::attack {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "outcome.h"
+#include "attack_loop.h"
 #include "tests/support/not_finite.h"
 
 namespace sandrunner::attack {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "outcome.h"
+#include "attack_loop.h"
 
 namespace sandrunner::attack {
 namespace {

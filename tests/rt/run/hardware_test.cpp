@@ -203,7 +203,7 @@ TEST_F(HardwareTest, ALowerTorqueLimitOfTheGateIsTheDrivesToo) {
 }
 
 TEST_F(HardwareTest, EffectiveSettingsReadBackToTheSame) {
-  for (const char* example : {"moteus.toml"}) {
+  for (const char* example : {"mit.toml", "moteus.toml"}) {
     ConfigTree tree;
     sim::add_terrain_layer(tree, "dry-sand");
     tree.add_file(std::string(SANDRUNNER_HARDWARE_EXAMPLES) + "/" + example);
